@@ -15,7 +15,7 @@ from estimator.allan.estimate import allan_terms
 from estimator.allan.rests import Rests
 from estimator.allan.results import TERMS, SensorNoise
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, Sensor
-from service.words.noise import size_in_words
+from service.sessions.words.noise import size_in_words
 from tests.estimator.allan.noises import noise
 
 INTERVAL = 0.01

@@ -19,10 +19,11 @@ from sqlalchemy import inspect, text
 from benchmarks.figures import Figure
 from benchmarks.fleet.cost import of_database
 from benchmarks.fleet.fill import KEY
-from service.flows.receive import upload
-from service.storage import Database, Files, Storage
+from service.opening import open_database
+from service.storage import Files, Storage
 from service.storage.engine import open_engine
 from service.storage.waits import PATIENT
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block
 from tests.databases import postgres_databases
 
@@ -47,7 +48,7 @@ counting them by stand.
 def run() -> Iterator[Figure]:
     """Both uploads, in turn."""
     with postgres_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-p11-") as folder:
-        storage = Storage(Database(databases.migrated()), Files(Path(folder)))
+        storage = Storage(open_database(databases.migrated()), Files(Path(folder)))
         server = int((databases.server.pgdata / "postmaster.pid").read_text().split()[0])
         fill(storage)
         ours, theirs = uploads(storage, server)

@@ -24,9 +24,10 @@ from benchmarks.figures import Figure
 from benchmarks.fleet.cost import cost
 from benchmarks.fleet.fill import NOW, TEMPLATES, Size, fill, multiply
 from service.app import create_app
-from service.flows.summarise import summarise_all
+from service.fleet.changes import summarise_all
+from service.opening import open_database
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Files, Storage
 from tests.databases import postgres_databases
 
 SESSIONS = 20
@@ -77,12 +78,12 @@ def filled() -> Iterator[tuple[Fleet, Fleet]]:
     """A fleet of a thousand units, and one of ten thousand of the same templates."""
     with postgres_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-p7-") as folder:
         server = int((databases.server.pgdata / "postmaster.pid").read_text().split()[0])
-        template = Storage(Database(databases.migrated()), Files(Path(folder)))
+        template = Storage(open_database(databases.migrated()), Files(Path(folder)))
         fill(template, Size(TEMPLATES, SESSIONS))
         template.database.close()
         fleets = []
         for units in (FEW, MANY):
-            storage = Storage(Database(databases.copied(template.database.url)), Files(Path(folder)))
+            storage = Storage(open_database(databases.copied(template.database.url)), Files(Path(folder)))
             multiply(storage, units // TEMPLATES)
             summarise_all(storage, NOW)
             storage.database.close()

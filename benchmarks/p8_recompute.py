@@ -25,9 +25,10 @@ from sqlalchemy import text
 from benchmarks.figures import Figure
 from benchmarks.fleet.cost import of_database
 from benchmarks.fleet.many_files import NOW, SESSIONS, TYPE, fill
-from service.background.recalibrating import by_workers, units_behind
+from service.opening import open_storage
+from service.records.many import by_workers, units_behind
 from service.settings import Settings
-from service.storage import Storage, open_storage
+from service.storage import Storage
 from tests.databases import PostgresDatabases, postgres_databases
 
 ORDINARY = 2_000

@@ -20,8 +20,8 @@ from benchmarks.fleet.fill import NOW, live, serial
 from benchmarks.kills.server import Service, free_port
 from benchmarks.p7_fleet import Asking
 from service.app import create_app
+from service.opening import open_storage
 from service.settings import Settings
-from service.storage import open_storage
 from tests.databases import Databases, postgres_databases, sqlite_databases
 from tests.end_to_end.browser.conftest import FLAGS, NAMES, draw_all
 

@@ -13,7 +13,7 @@ from benchmarks.readiness import G
 from benchmarks.recordings.sets import folder, logs
 from estimator.readiness import Allowed, Question, readiness
 from estimator.session import ACCELEROMETER, ARBITRARY_ORIENTATIONS, GYROSCOPE, Array, CalibrationSession, Sensor
-from service.words.readiness import headline, reasons
+from service.planning.words.readiness import headline, reasons
 
 RAMP = "temperature-ramps/icm42652-cold-ramp/Sample_data.csv"
 RAMP_RATE = 500.0

@@ -17,16 +17,18 @@ from pathlib import Path
 
 from sqlalchemy import Engine, event
 
-from service.flows.keep import made
-from service.flows.receive import upload
 from service.ingest.checked import check
 from service.ingest.digest import content_digest
 from service.judging.calibrate import Basis, calibrate
 from service.judging.judge import judge
-from service.records.model import Model
+from service.models.records import Model
+from service.opening import open_storage
+from service.records.keep import made
 from service.settings import Settings
-from service.storage import Storage, open_storage
+from service.storage import Storage
 from service.storage.schema import upgrade
+from service.types.store import UnitTypes
+from service.uploads.receive import upload
 from tests.service.sessions import session_bytes
 
 TIMES, UNITS = 60, 12
@@ -78,7 +80,7 @@ def parts(storage: Storage) -> Iterator[tuple[str, float]]:
     checked = check(file, "a.json", NOW)
     found = calibrate(checked, BASELINE).calibration
     with storage.database.reading() as store:
-        unit_type = store.unit_types.of_unit(checked.session.unit)
+        unit_type = UnitTypes(store).of_unit(checked.session.unit)
     waiting, asked = iter(files[UNITS:]), Asked()
     yield "the whole upload", least(lambda: upload(storage, next(waiting), "a.json", NOW))
     yield f"of it: the database's driver, {asked.statements / TIMES:.0f} statements", 1e3 * asked.seconds / TIMES

@@ -10,7 +10,9 @@ from multiprocessing.queues import Queue
 import numpy as np
 
 from service.errors import AwayError
+from service.opening import open_database
 from service.storage import Database
+from service.units.store import Units
 from tests.databases import sqlite_databases
 
 HELD = 0.03
@@ -46,7 +48,7 @@ def main() -> int:
 
 def write(url: str, name: str, threads: int, end: float, found: "Queue[tuple[str, list[float], int]]") -> None:
     """What a process does until the end."""
-    database = Database(url)
+    database = open_database(url)
     with ThreadPoolExecutor(threads) as pool:
         own = [pool.submit(_write, database, end) for _ in range(threads)]
     waits, away = zip(*(one.result() for one in own), strict=True)
@@ -61,7 +63,7 @@ def _write(database: Database, end: float) -> tuple[list[float], int]:
         began = time.monotonic()
         try:
             with database.writing() as store:
-                store.units.exists("W-1")
+                Units(store).exists("W-1")
                 waits.append(time.monotonic() - began)
                 time.sleep(HELD)
         except AwayError:

@@ -2,7 +2,7 @@
 
 from alembic import context
 
-from service.storage.paper_tables import Base  # knows its own tables and those of `tables`
+from service.papers.tables import Base
 
 context.configure(
     connection=context.config.attributes["connection"],

@@ -8,24 +8,30 @@ from threading import Event, Thread
 from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
-from service import api, pages
-from service.api.measured import Measured
-from service.application import Application, Gate
-from service.background.asking import ask_for_missing
-from service.background.beside import work_beside
-from service.background.deliver_messages import deliver_until
-from service.background.derive_pending import derive_pending
-from service.background.take_in_waiting import take_in_waiting
-from service.background.watch_fleet import watch_fleet
-from service.background.work import Worker
-from service.boundary import guard
-from service.boundary.heads import HeadAsGet
-from service.identity.elsewhere import provider_of
-from service.ingest import limits
-from service.metrics import Metrics
-from service.reports.sealing import seal_of
+from service import pages
+from service.flags.messages import deliver_until
+from service.kit import limits
+from service.kit.bell import Bell
+from service.kit.metrics import Metrics
+from service.opening import open_storage
+from service.pages import api
+from service.papers.sealing import Seal, seal_of
+from service.people.gate import Gate
+from service.people.provider import provider_of
 from service.settings import VERSION, Settings
-from service.storage import open_storage
+from service.web import guard
+from service.web.application import Application
+from service.web.heads import HeadAsGet
+from service.web.measured import Measured
+from service.work.asking import ask_for_missing
+from service.work.beside import work_beside
+from service.work.derivations import derive_pending
+from service.work.diagnosis_reader import Reader
+from service.work.group_reader import GroupReader
+from service.work.job_desk import JobDesk
+from service.work.loop import Worker
+from service.work.uploads import take_in_waiting
+from service.work.watch_fleet import watch_fleet
 
 DESCRIPTION = (
     "Health of redundant inertial measurement units: calibration sessions in, parameters with uncertainties, "
@@ -66,10 +72,19 @@ def create_app(
 
 
 def _application(settings: Settings, clock: Callable[[], datetime]) -> Application:
-    metrics = Metrics()
+    metrics, bell = Metrics(), Bell()
     storage = open_storage(settings, metrics.count_file_fault)
+    k, workers = settings.coverage_factor, settings.diagnosis_workers
+    parts: dict[type, object] = {
+        Gate: Gate(settings, provider_of(settings)),
+        Reader: Reader(storage, clock, bell, metrics, k, workers),
+        GroupReader: GroupReader(storage, clock, bell, metrics, workers),
+        JobDesk: JobDesk(clock, bell, metrics, k, workers),
+    }
     seal = seal_of(settings.seal_key_file, settings.seal_password_file)
-    return Application(settings, storage, clock, Gate(settings), seal, provider_of(settings), metrics=metrics)
+    if seal is not None:
+        parts[Seal] = seal
+    return Application(settings, storage, clock, bell, metrics, parts)
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:

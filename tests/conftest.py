@@ -14,12 +14,12 @@ from hypothesis import HealthCheck
 from hypothesis import settings as hypothesis_settings
 
 from service.app import create_app
-from service.background.read_diagnosis import Reader
-from service.background.read_group import GroupReader
-from service.identity import passwords
-from service.lock_order import WATCHED
+from service.people import passwords
 from service.settings import Settings
 from service.storage import Storage
+from service.storage.lock_order import WATCHED
+from service.work.diagnosis_reader import Reader
+from service.work.group_reader import GroupReader
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
 from tests.memory import write_into_memory
 from tests.patience import LONG

@@ -13,10 +13,10 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.app import create_app
-from service.boundary.server import address_of, server_config
-from service.ingest import limits
-from service.ingest.limits import Limits
+from service.kit import limits
+from service.kit.limits import Limits
 from service.settings import Settings
+from service.web.server import address_of, server_config
 from tests.patience import LONG
 
 TLS = ssl.create_default_context()

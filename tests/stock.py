@@ -8,8 +8,9 @@ from pathlib import Path
 from uuid import uuid4
 
 from service.app import create_app
+from service.opening import open_database
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Files, Storage
 from tests.databases import Databases
 from tests.serving import http_client
 
@@ -22,7 +23,7 @@ Fill = Callable[[Settings], object]
 @contextmanager
 def stores(settings: Settings) -> Iterator[Storage]:
     """The stores of a service, without the service."""
-    database = Database(settings.database)
+    database = open_database(settings.database)
     yield Storage(database, Files(settings.files))
     database.close()
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.io import savemat
 
 from benchmarks.files.hostile import csv
-from service.ingest.limits import SMALL
+from service.kit.limits import SMALL
 
 SENSORS, ORIENTATIONS = 6, 24
 GRAVITY, SCALE, NOISE = 9.81, 0.12, 1e-5

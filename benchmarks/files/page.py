@@ -9,12 +9,12 @@ from benchmarks.files.service import Cost
 from estimator.long_logs.log import MOST_RESTS
 from service.ingest import LONG
 from service.ingest.apart import PACE
-from service.ingest.limits import LARGE, SMALL
-from service.pages.layout_form import MOST_CARRIED
-from service.records.job import KEPT as KEPT_MADE
+from service.jobs.records import KEPT as KEPT_MADE
+from service.kit.limits import LARGE, SMALL
 from service.storage.aside import KEPT, MOST, MOST_BYTES
 from service.storage.landing import IN_MEMORY
 from service.storage.waiting import UNASKED
+from service.uploads.layout.form import MOST_CARRIED
 
 RETRY = "503 with `Retry-After`"
 LIMITS = {

@@ -11,9 +11,10 @@ from pathlib import Path
 from sqlalchemy import Connection, text
 
 from benchmarks.fleet.fill import NOW, Size, fill
-from service.flows.diagnose import diagnose
+from service.opening import open_storage
+from service.records.diagnose import diagnose
 from service.settings import Settings
-from service.storage import Storage, open_storage
+from service.storage import Storage
 from tests.databases import postgres_databases
 
 SIZE = Size(units=10, sessions=8)

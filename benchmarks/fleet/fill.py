@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from sqlalchemy import Connection, inspect, text
 
-from service.flows.diagnose import diagnose
-from service.flows.receive import upload
-from service.flows.refresh_beside import refresh_beside
+from service.records.diagnose import diagnose
+from service.records.refresh_outlooks import refresh_beside
 from service.storage import Storage
 from service.storage.engine import open_engine
 from service.storage.waits import PATIENT
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block, true_sensors
 
 TEMPLATES = 10

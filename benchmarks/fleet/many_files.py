@@ -7,10 +7,10 @@ from hashlib import sha256
 
 from sqlalchemy import Connection, inspect, text
 
-from service.flows.receive import ID_DIGITS, upload
 from service.storage import Storage
 from service.storage.engine import open_engine
 from service.storage.waits import PATIENT
+from service.uploads.receive import ID_DIGITS, upload
 from tests.builders import accelerometer_block
 
 TEMPLATES, SESSIONS = 10, 10

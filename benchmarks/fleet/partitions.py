@@ -18,7 +18,8 @@ import psycopg
 
 from benchmarks.fleet.fill import Size, fill
 from benchmarks.sections import write_section
-from service.storage import Database, Files, Storage
+from service.opening import open_database
+from service.storage import Files, Storage
 from tests.databases import postgres_databases
 
 PAGE = Path(__file__).parents[2] / "docs/how-to/large-fleets.md"
@@ -49,7 +50,7 @@ def main() -> None:
         lines = written(sys.argv[1])
     else:
         with postgres_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-parts-") as folder:
-            storage = Storage(Database(databases.migrated()), Files(Path(folder)))
+            storage = Storage(open_database(databases.migrated()), Files(Path(folder)))
             fill(storage, SIZE)
             storage.database.close()
             lines = written(storage.database.url)

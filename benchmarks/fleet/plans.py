@@ -14,11 +14,17 @@ from sqlalchemy import event, text
 
 from benchmarks.fleet.fill import NOW, Size, fill
 from benchmarks.sections import write_section
-from service.flows.summarise import summarise_all
-from service.records.fleet import FleetQuery, Order
-from service.records.session_list import SessionQuery
-from service.storage import Database, Files, Storage
-from service.storage.queries.flags import FlagQuery
+from service.flags.store import FlagQuery, Flags
+from service.fleet.changes import summarise_all
+from service.fleet.records import FleetQuery, Order
+from service.fleet.store import Fleet
+from service.opening import open_database
+from service.outlook.populations_store import Populations
+from service.outlook.store import Outlooks
+from service.sessions.records import SessionQuery
+from service.sessions.store import Sessions
+from service.stands.store import Stands
+from service.storage import Files, Storage
 from service.storage.store import Store
 from tests.databases import postgres_databases
 
@@ -27,18 +33,18 @@ MARK = "<!-- written by python -m benchmarks.fleet.plans -->"
 SIZE = Size(10_000, 20)
 UNIT, STAND = "BA-003-00007", "ODG-1"
 QUESTIONS: dict[str, Callable[[Store], object]] = {
-    "The counts of the fleet page": lambda store: store.fleet.condition(),
-    "A page of units, worst first": lambda store: store.fleet.units(FleetQuery(limit=51)),
-    "The next page, after a unit": lambda store: store.fleet.units(FleetQuery(limit=51, after=UNIT)),
-    "Units last measured on a stand": lambda store: store.fleet.units(
+    "The counts of the fleet page": lambda store: Fleet(store).condition(),
+    "A page of units, worst first": lambda store: Fleet(store).units(FleetQuery(limit=51)),
+    "The next page, after a unit": lambda store: Fleet(store).units(FleetQuery(limit=51, after=UNIT)),
+    "Units last measured on a stand": lambda store: Fleet(store).units(
         FleetQuery(stand=STAND, order=Order.LAST, backwards=True, limit=26)
     ),
-    "Who drifts unlike the others": lambda store: store.populations.furthest(6),
-    "Due dates": lambda store: store.outlooks.due(1000),
-    "How stands are used": lambda store: store.stands.every(),
-    "Open flags": lambda store: store.flags.page(FlagQuery(unresolved=True, limit=101)),
-    "Sessions, the newest first": lambda store: store.sessions.wanted(SessionQuery(limit=51)),
-    "What the page of a unit begins with": lambda store: store.fleet.unit_known(UNIT, NOW),
+    "Who drifts unlike the others": lambda store: Populations(store).furthest(6),
+    "Due dates": lambda store: Outlooks(store).due(1000),
+    "How stands are used": lambda store: Stands(store).every(),
+    "Open flags": lambda store: Flags(store).page(FlagQuery(unresolved=True, limit=101)),
+    "Sessions, the newest first": lambda store: Sessions(store).wanted(SessionQuery(limit=51)),
+    "What the page of a unit begins with": lambda store: Fleet(store).unit_known(UNIT, NOW),
 }
 NODE = re.compile(r"(Seq Scan|Index Only Scan|Index Scan|Bitmap Index Scan)( Backward)?( using (\w+))?( on (\w+))?")
 """Where rows come from."""
@@ -47,10 +53,10 @@ NODE = re.compile(r"(Seq Scan|Index Only Scan|Index Scan|Bitmap Index Scan)( Bac
 def main() -> None:
     """Writes the section."""
     if len(sys.argv) > 1:
-        lines = _written(Storage(Database(sys.argv[1]), Files(Path(tempfile.gettempdir()))))
+        lines = _written(Storage(open_database(sys.argv[1]), Files(Path(tempfile.gettempdir()))))
     else:
         with postgres_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-plans-") as folder:
-            storage = Storage(Database(databases.migrated()), Files(Path(folder)))
+            storage = Storage(open_database(databases.migrated()), Files(Path(folder)))
             fill(storage, SIZE)
             lines = _written(storage)
     write_section(PAGE, MARK, lines)

@@ -12,14 +12,14 @@ from multiprocessing.process import BaseProcess
 import httpx
 
 from service.app import create_app
-from service.boundary.server import Server
 from service.settings import Settings
+from service.web.server import Server
 
 SOON = 120.0
 """Seconds in which a service must answer after it was started, on a machine that has much else to do."""
 
 forking = multiprocessing.get_context("forkserver")
-forking.set_forkserver_preload(["service.app", "service.boundary.server"])
+forking.set_forkserver_preload(["service.app", "service.web.server"])
 
 
 def free_port() -> int:

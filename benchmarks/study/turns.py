@@ -14,9 +14,9 @@ from benchmarks.study.report import table
 from benchmarks.study.turned_pairs import PROGRAMMES, Pair, Programme, Wish, draw_flipped, draw_pair
 from estimator import calibrate, diagnose, read_session
 from service.judging.judge import judge
-from service.judging.tolerances import ACCELEROMETER_DEFAULTS, GYROSCOPE_DEFAULTS
-from service.records.decision import Verdict
-from service.records.unit import UnitType
+from service.sessions.decision import Verdict
+from service.types.records import UnitType
+from service.types.rules import ACCELEROMETER_DEFAULTS, GYROSCOPE_DEFAULTS
 
 DEGREES = (0.01, 0.1, 0.5, 1.0, 2.0, 5.0)
 DRIFT_DEGREES = (0.0, 1.0, 5.0)

@@ -8,17 +8,7 @@
 It needs httpx and nothing else of the service; its errors are those of `service.errors`, with the service's own words.
 """
 
-from service.client.answers import (
-    Diagnosis,
-    Finding,
-    Flag,
-    Point,
-    Receipt,
-    Reservation,
-    Session,
-    Unit,
-    Usable,
-)
+from service.client.answers import Diagnosis, Finding, Flag, Point, Receipt, Reservation, Session, Unit, Usable
 from service.client.client import Client, connect
 
 __all__ = [

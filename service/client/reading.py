@@ -1,5 +1,6 @@
 """JSON of the service as the types of `answers`: fields that are not known yet are passed over, one that is missing or
-of another type is an error that names it."""
+of another type is an error that names it.
+"""
 
 from collections.abc import Sequence
 from dataclasses import fields, is_dataclass

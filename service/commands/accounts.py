@@ -14,15 +14,15 @@ from service.commands.exits import FAILED, say
 from service.commands.listing import AsLines, FormOf, Listing, rows_of, table_of
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.errors import ConflictError
-from service.flows.identity.accounts import AccountChange, add_account, change_account
-from service.flows.identity.links import make_link
-from service.flows.identity.sign_in_elsewhere import connect
-from service.flows.identity.tokens import make_token, revoke_token
-from service.records.audit import AuditLine
-from service.records.identity import COMMAND_LINE as WHO
-from service.records.identity import Account, Role, Token
+from service.kit.person import COMMAND_LINE as WHO
+from service.kit.person import Account, Role, Token
+from service.opening import open_database
+from service.people.changes import AccountChange, add_account, change_account, make_link, make_token, revoke_token
+from service.people.sign_in_elsewhere import connect
+from service.people.store import Accounts, Tokens
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Files, Storage
+from service.storage.audit import Audit, AuditLine
 from service.storage.store import Store
 
 user = typer.Typer(name="user", add_completion=False, no_args_is_help=True, help="Make and change accounts.")
@@ -34,7 +34,7 @@ RoleOf = Annotated[Role, typer.Option("--role", help="What they may do.", show_d
 
 @contextmanager
 def _opened(settings: Settings) -> Iterator[Storage]:
-    storage = Storage(Database(settings.database), Files(settings.files))
+    storage = Storage(open_database(settings.database), Files(settings.files))
     storage.database.require_ready()
     yield storage
     storage.database.close()
@@ -109,7 +109,7 @@ def list_users(
 ) -> None:
     """Print every account."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        accounts = store.accounts.every()
+        accounts = Accounts(store).every()
     Listing(form, as_json).show(rows_of(accounts), lambda: _accounts(accounts))
 
 
@@ -156,7 +156,7 @@ def list_tokens(
 ) -> None:
     """Print every token; secrets are not kept."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        tokens = store.tokens.every()
+        tokens = Tokens(store).every()
     Listing(form, as_json).show(rows_of(tokens), lambda: _tokens(tokens))
 
 
@@ -178,7 +178,7 @@ def verify(
 ) -> None:
     """Work out the chain of the whole trail again. Note the last hash elsewhere: it shows later that none was cut."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        check, is_there = store.audit.check(), not expect or store.audit.has(expect)
+        check, is_there = Audit(store).check(), not expect or Audit(store).has(expect)
     if check.broken is not None:
         say(f"Line {check.broken} does not follow from the lines before it: the trail was changed there.")
         raise typer.Exit(FAILED)
@@ -200,7 +200,7 @@ def list_lines(
 ) -> None:
     """Print who did what, the newest first."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
-        lines = store.audit.page(most, None, subject)
+        lines = Audit(store).page(most, None, subject)
     Listing(form, as_json).show(rows_of(lines), lambda: _lines(lines))
 
 

@@ -10,8 +10,10 @@ from typer.core import TyperGroup
 from estimator.wording import counted
 from service.commands.exits import FAILED, many, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
-from service.records.identity import COMMAND_LINE as WHO
-from service.storage import Database, Files
+from service.kit.person import COMMAND_LINE as WHO
+from service.opening import open_database
+from service.storage import Files
+from service.storage.audit import Audit
 from service.storage.backup import Restored, restore, verified, write_backup
 from service.storage.backup.doors import Doors
 from service.storage.backup.manifest import Manifest
@@ -79,10 +81,10 @@ def _write_down(url: str, restored: Restored, now: datetime) -> None:
     """In the audit trail, which a schema of an earlier version may not have room for yet."""
     if restored.manifest.revision != head_revision():
         return
-    database = Database(url)
+    database = open_database(url)
     with database.writing() as store:
         details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.doors)}
-        store.audit.write(now, WHO, "restore", "backup", details)
+        Audit(store).write(now, WHO, "restore", "backup", details)
     database.close()
 
 

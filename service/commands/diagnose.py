@@ -13,8 +13,8 @@ from estimator.session import DIAGNOSED
 from service.commands.console import AsJson, Files, for_each, print_json, problem_line, screen
 from service.commands.diagnosis_tables import diagnosis_view
 from service.commands.exits import UNUSABLE, say
+from service.diagnosis.document import inapplicable_to_dict
 from service.ingest import read_file
-from service.storage.diagnosis_document import inapplicable_to_dict
 
 Result = tuple[CalibrationSession, Diagnosis | None]
 """None of a programme in which no causes are looked for."""

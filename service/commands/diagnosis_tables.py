@@ -12,12 +12,13 @@ from estimator.diagnosis.results import Gain, Limit, Score, Structure
 from estimator.session import CalibrationSession
 from estimator.wording import counted
 from service.commands.speech import said
-from service.measures import number
-from service.records.diagnosis import DiagnosisState, state_of
-from service.words.diagnosis import NOT_APPLICABLE, errors_of, nothing_of, what_to_do
-from service.words.finding import FindingView, finding_view, standard_errors
-from service.words.limits import blind_causes
-from service.words.structures import told
+from service.diagnosis.records import state_of
+from service.diagnosis.words.diagnosis import NOT_APPLICABLE, errors_of, nothing_of, what_to_do
+from service.diagnosis.words.finding import FindingView, finding_view, standard_errors
+from service.diagnosis.words.limits import blind_causes
+from service.diagnosis.words.structures import told
+from service.kit.measures import number
+from service.sessions.records import DiagnosisState
 
 COLOURS = {
     DiagnosisState.NOTHING: "green",

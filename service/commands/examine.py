@@ -14,15 +14,18 @@ from pathlib import Path
 
 from packaging.requirements import Requirement
 
-from service.boundary.hosts import hosts_of
 from service.errors import ServiceError
-from service.ingest.limits import limits_of
-from service.records.work import WorkKind
+from service.kit.limits import limits_of
+from service.opening import open_database
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.settings import PREFIX, VERSION, Settings, retired
 from service.storage import Database
+from service.storage.audit import Audit
 from service.storage.engine import shown_url
 from service.storage.space import space_at
 from service.storage.writable import require_writable
+from service.web.hosts import hosts_of
 
 ELSEWHERE = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")
 """Variables that are read by commands and tests, not by the service."""
@@ -145,7 +148,7 @@ def database(settings: Settings, now: datetime) -> Iterator[Finding]:
     if settings.database.startswith(SQLITE) and not Path(settings.database.removeprefix(SQLITE)).exists():
         yield Finding("database", State.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
         return
-    opened = Database(settings.database)
+    opened = open_database(settings.database)
     try:
         opened.require_ready()
         yield Finding("database", State.OK, f"{where} answers and is at the newest migration")
@@ -166,7 +169,7 @@ def _clock(opened: Database, now: datetime) -> Iterator[Finding]:
     remedy = "Set the clocks of both machines, best by NTP."
     server = opened.server_time()
     with opened.reading() as store:
-        lines = store.audit.page(1)
+        lines = Audit(store).page(1)
     if server is not None and abs(server - now) > APART:
         yield Finding("clock", State.FAIL, f"{abs(server - now).total_seconds():.0f} s apart from the database", remedy)
     elif lines and lines[0].at - now > APART:
@@ -179,7 +182,7 @@ def _clock(opened: Database, now: datetime) -> Iterator[Finding]:
 def _waiting(opened: Database, settings: Settings) -> Iterator[Finding]:
     """Processes that work beside the requests, and what waits for them."""
     with opened.reading() as store:
-        waiting = store.work(WorkKind.DIAGNOSIS).count()
+        waiting = WorkQueue(store, WorkKind.DIAGNOSIS).count()
     workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
     text = f"{workers} beside the requests, {waiting} diagnoses waiting"
     if workers == 0:

@@ -11,7 +11,7 @@ from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server, screen
 from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.commands.speech import said
-from service.records.flag import FlagState
+from service.flags.records import FlagState
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
 """Red asks for somebody."""

@@ -20,7 +20,7 @@ from rich.progress import (
 
 from service.client import Client
 from service.commands.exits import say
-from service.records.job import KILOBYTE, OPEN, JobKind
+from service.jobs.records import KILOBYTE, OPEN, JobKind
 
 LOOK_EVERY = 1.0
 """Seconds between two looks at a job that is followed."""

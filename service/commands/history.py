@@ -12,9 +12,9 @@ from service.client import Point, connect
 from service.commands.console import DEFAULT_SERVER, Server
 from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.commands.upload import coloured
-from service.measures import deviation_measure, measured
-from service.records.session import ALL_PARAMETERS
-from service.words.noise import size_in_words
+from service.kit.measures import deviation_measure, measured
+from service.sessions.records import ALL_PARAMETERS
+from service.sessions.words.noise import size_in_words
 
 KNOWN = (*ALL_PARAMETERS, *TERMS)
 Unit = Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")]

@@ -14,8 +14,8 @@ from service.commands.exits import say
 from service.commands.following import followed
 from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.commands.speech import problems_said
-from service.records.job import KILOBYTE, JobKind, JobState
-from service.records.model import Scope
+from service.jobs.records import KILOBYTE, JobKind, JobState
+from service.models.records import Scope
 
 COLOURS = {JobState.DONE: "green", JobState.FAILED: "red", JobState.CANCELLED: "yellow"}
 jobs = typer.Typer(

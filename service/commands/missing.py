@@ -10,7 +10,7 @@ from estimator.planning import missing
 from service.commands.console import AsJson, print_json, problem_line, screen
 from service.commands.exits import UNUSABLE, say
 from service.ingest import read_file
-from service.words.missing import missing_in_words
+from service.planning.words.missing import missing_in_words
 
 
 def missing_positions(

@@ -12,7 +12,7 @@ from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.errors import RefusedError, ServiceError
-from service.records.group import Level
+from service.groups.records import Level
 
 PATHS = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
 models = typer.Typer(

@@ -15,8 +15,8 @@ from estimator.parity.results import Sight
 from service.commands.console import AsJson, print_json, problem_line, screen
 from service.commands.exits import UNUSABLE, say
 from service.ingest.stream import open_recording, session_in
-from service.measures import COVERAGE, in_words
-from service.words.in_service import found_in_words
+from service.judging.in_service_words import found_in_words
+from service.kit.measures import COVERAGE, in_words
 
 PARAMETERS = ("bias", "scale", "axis")
 """What a recording in service shows, the most frequent change first."""

@@ -18,17 +18,9 @@ from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 from service.commands.console import AsJson, print_json, problem_line, screen
 from service.commands.exits import UNUSABLE, say
 from service.ingest import read_file
-from service.measures import number
+from service.kit.measures import number
 from service.planning.question import PlanQuestion
-from service.words.plan import (
-    UNSEEN,
-    blind,
-    headline,
-    seen,
-    sigma_in_words,
-    tolerance_in_words,
-    unobserved,
-)
+from service.planning.words.plan import UNSEEN, blind, headline, seen, sigma_in_words, tolerance_in_words, unobserved
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """In the order of the table."""

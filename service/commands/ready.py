@@ -15,8 +15,8 @@ from service.commands.exits import FAILED, UNUSABLE, say
 from service.errors import RefusedError
 from service.ingest import read_file
 from service.planning.ready import ReadyQuestion
-from service.views.readiness import judged_by_defaults
-from service.words.readiness import headline, reasons
+from service.planning.rules import judged_by_defaults
+from service.planning.words.readiness import headline, reasons
 
 
 def ready(

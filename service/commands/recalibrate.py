@@ -9,13 +9,15 @@ from typing import Annotated, Any
 
 import typer
 
-from service.background.recalibrating import Outcome, Run, by_workers, can_share, one_by_one, units_behind
 from service.commands.console import AsJson, print_json, progress, screen
 from service.commands.exits import FAILED, many, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
-from service.flows.recalibrate import Recalibrated
+from service.models.store import Models
+from service.opening import open_storage
+from service.records.many import Outcome, Run, by_workers, can_share, one_by_one, units_behind
+from service.records.recalibrate import Recalibrated
 from service.settings import Settings
-from service.storage import Storage, open_storage
+from service.storage import Storage
 
 WORTH_STARTING = 100
 """Units for which other processes are started unless somebody says how many: their start takes some five seconds."""
@@ -70,7 +72,7 @@ def recalibrate_units(
 def _outcomes(storage: Storage, settings: Settings, units: list[str] | None, how: How) -> Iterator[Outcome]:
     """Unit after unit as it is done."""
     with storage.database.reading() as store:
-        count = len(units) if units else store.models.count_behind()
+        count = len(units) if units else Models(store).count_behind()
     wanted: Iterable[str] = units or units_behind(storage)
     with progress(count, "recalibrating", quiet=how.quiet) as advance, _run(storage, settings, count, how) as run:
         for outcome in run(wanted):

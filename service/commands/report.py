@@ -16,9 +16,9 @@ from service.commands.console import DEFAULT_SERVER, Out, Server, deliver, progr
 from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.commands.speech import said
 from service.commands.upload import coloured
-from service.measures import number
-from service.records.decision import Verdict
-from service.words.conditions import WITH_RESERVATION
+from service.kit.measures import number
+from service.sessions.decision import Verdict
+from service.sessions.words.conditions import WITH_RESERVATION
 
 
 class Format(StrEnum):

@@ -11,7 +11,7 @@ from service.client import Client
 from service.commands.console import are_large
 from service.commands.following import Moved, bar, followed
 from service.errors import RefusedError, ServiceError
-from service.records.job import JobState
+from service.jobs.records import JobState
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,20 @@ from typing import Annotated
 import typer
 
 from service.app import create_app, utc_now
-from service.boundary.hosts import hosts_of
-from service.boundary.server import Server, address_of
 from service.commands.console import progress
 from service.commands.exits import say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.demo.fill import FILES, fill, is_wanted
-from service.flows.identity.links import make_link
-from service.log import write_log
+from service.kit.log import write_log
+from service.opening import open_database
+from service.people.changes import make_link
+from service.people.store import Accounts
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Files, Storage
 from service.storage.schema import upgrade
 from service.storage.writable import require_writable
+from service.web.hosts import hosts_of
+from service.web.server import Server, address_of
 
 STARTED = "who started the service"
 """As the audit trail names them."""
@@ -65,9 +67,9 @@ def _first_link(settings: Settings) -> str | None:
     and must not reset anybody's password."""
     if settings.sign_in == "off":
         return None
-    storage = Storage(Database(settings.database), Files(settings.files))
+    storage = Storage(open_database(settings.database), Files(settings.files))
     with storage.database.reading() as store:
-        has_accounts = store.accounts.any()
+        has_accounts = Accounts(store).any()
     secret = None if has_accounts else make_link(storage, None, utc_now(), STARTED)
     storage.database.close()
     return secret
@@ -75,7 +77,7 @@ def _first_link(settings: Settings) -> str | None:
 
 def _fill(settings: Settings) -> None:
     """Uploads the demonstration fleet when there is nothing else in the database."""
-    storage = Storage(Database(settings.database), Files(settings.files))
+    storage = Storage(open_database(settings.database), Files(settings.files))
     if is_wanted(storage):
         say(f"Filling the empty database with a simulated demonstration fleet, {FILES} sessions.")
         with progress(FILES, "simulating, calibrating, storing") as advance:

@@ -14,11 +14,11 @@ from service.commands.certificate import Session
 from service.commands.console import DEFAULT_SERVER, Server, screen
 from service.commands.exits import say
 from service.errors import ConflictError
-from service.flows.sign_certificate import NOT_ISSUED
-from service.records.signature import Meaning
-from service.reports.sealing import seal_room
+from service.papers.changes import NOT_ISSUED
+from service.papers.records import Meaning
+from service.papers.sealing import seal_room
+from service.papers.words import STATES
 from service.settings import Settings
-from service.words.signature import STATES
 
 OWN_EYES_ONLY = 0o600
 """Of a file with a key."""

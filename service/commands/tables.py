@@ -12,10 +12,10 @@ from rich.text import Text
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
 from service.commands.speech import said
-from service.measures import COVERAGE, UNKNOWN, deviation_measure, in_measure, measured, number
-from service.words.coverage import coverage_in_words
-from service.words.fit import fit_in_words
-from service.words.names import method_name
+from service.kit.coverage import coverage_in_words
+from service.kit.measures import COVERAGE, UNKNOWN, deviation_measure, in_measure, measured, number
+from service.kit.names import method_name
+from service.sessions.words.fit import fit_in_words
 
 UNSEEN = "not observable"
 """Stands for a value that the session does not show."""

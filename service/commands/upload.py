@@ -11,8 +11,8 @@ from service.client import connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
 from service.commands.sending import Sending
 from service.commands.speech import said
-from service.records.decision import Verdict
-from service.words.conditions import Condition, condition_of
+from service.sessions.decision import Verdict
+from service.sessions.words.conditions import Condition, condition_of
 
 COLOURS = {
     Verdict.PASS: "green",

@@ -7,15 +7,20 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.cast import CAST, START, Handled, Intervention, Member, Remark
 from service.demo.history import files_of
 from service.demo.types import unit_type
-from service.flows.add_note import add_note
-from service.flows.diagnose import diagnose
-from service.flows.handle_flag import acknowledge_flag, resolve_flag
-from service.flows.receive import upload
-from service.flows.record_service import record_service
-from service.records.event import NewService
-from service.records.flag import FlagState, Matter
-from service.records.received import DEMONSTRATION
+from service.flags.changes import acknowledge_flag, resolve_flag
+from service.flags.records import FlagState, Matter
+from service.flags.store import Flags
+from service.fleet.store import Fleet
+from service.kit.arriving_files import DEMONSTRATION
+from service.records.changes import record_service
+from service.records.diagnose import diagnose
+from service.records.unit_changes import add_note
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.types.store import UnitTypes
+from service.units.records import NewService
+from service.units.store import Units
+from service.uploads.receive import upload
 
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""
@@ -28,15 +33,15 @@ FILES = sum(member.files for member in CAST)
 def is_wanted(storage: Storage) -> bool:
     """Whether the database is empty, or holds nothing but a demonstration whose filling was interrupted."""
     with storage.database.reading() as store:
-        units = store.fleet.condition().units
-        return units == 0 or (units < len(CAST) and store.sessions.only_demonstration())
+        units = Fleet(store).condition().units
+        return units == 0 or (units < len(CAST) and Sessions(store).only_demonstration())
 
 
 def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) -> None:
     """Uploads every session of every member, oldest unit first; ``advance`` is called once a session."""
     with storage.database.writing() as store:
         for kind in (ACCELEROMETER, GYROSCOPE):
-            store.unit_types.add_once(unit_type(kind), START)
+            UnitTypes(store).add_once(unit_type(kind), START)
     for member in CAST:
         _upload_member(storage, member, coverage_factor, advance)
 
@@ -76,6 +81,6 @@ def _do(storage: Storage, serial: str, done: Done) -> None:
 def _handle(storage: Storage, serial: str, done: Handled) -> None:
     """The open flag on the sensor's tolerance."""
     with storage.database.reading() as store:
-        opened = {flag.key: flag.id for flag in store.flags.open_of(store.units.key(serial))}
+        opened = {flag.key: flag.id for flag in Flags(store).open_of(Units(store).key(serial))}
     act = acknowledge_flag if done.state is FlagState.ACKNOWLEDGED else resolve_flag
     act(storage, opened[(Matter.TOLERANCE.value, done.sensor)], done.who, done.why, done.at)

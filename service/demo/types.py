@@ -6,7 +6,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.blocks import sensors_of
-from service.records.unit import Tolerances, UnitType
+from service.types.records import Tolerances, UnitType
 
 SENSORS = 6
 """On every cone, as in the published block."""

@@ -14,15 +14,15 @@ from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
 from service.ingest.formats import BINARY, is_binary
-from service.lock_order import outside_writing
+from service.storage.lock_order import outside_writing
 
 if TYPE_CHECKING:
     from service.ingest.apart import read_apart, turn
-    from service.ingest.limits import in_force
+    from service.kit.limits import in_force
 else:
     read_apart = function_on_demand("service.ingest.apart", "read_apart")
     turn = function_on_demand("service.ingest.apart", "turn")
-    in_force = function_on_demand("service.ingest.limits", "in_force")
+    in_force = function_on_demand("service.kit.limits", "in_force")
 
 LONG = 1024 * 1024
 """Bytes of text that are read here: a tenth of a second at most, and 40 MB. A session of positions has a hundredth."""

@@ -22,11 +22,11 @@ from typing import Any
 
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from service.errors import BusyError
-from service.ingest import limits
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
-from service.ingest.limits import Limits, refusal
 from service.ingest.scanned import Heard, listener
 from service.ingest.sender import SENDER
+from service.kit import limits
+from service.kit.limits import Limits, refusal
 
 SERVER = "service.ingest.fork_server"
 ROOT = str(Path(__file__).parents[2])

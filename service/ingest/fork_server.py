@@ -16,10 +16,11 @@ from pathlib import Path
 from typing import Any
 
 from estimator.errors import ScheduleError, SessionError
-from service.ingest import jobs, limits, scanned
+from service.ingest import jobs, scanned
 from service.ingest.apart import END, READY, SCANNED, SIZE, WAITING
 from service.ingest.exchange import Packed, pack, plain_bytes
-from service.ingest.limits import Limits, refusal
+from service.kit import limits
+from service.kit.limits import Limits, refusal
 
 STATM = Path("/proc/self/statm")
 """Sizes of this process in pages, the whole first (Linux)."""

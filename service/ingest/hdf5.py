@@ -11,8 +11,8 @@ from io import BytesIO
 import h5py
 import numpy as np
 
-from service.ingest.limits import check_table, refusal
 from service.ingest.metadata import KEY, with_metadata
+from service.kit.limits import check_table, refusal
 
 GROUP = "readings"
 """That holds one dataset a column."""

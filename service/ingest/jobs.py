@@ -10,10 +10,10 @@ from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.ingest.layout.look import look
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import document_of
-from service.ingest.limits import in_force, refusal
 from service.ingest.logs import log_of
 from service.ingest.long_log import averaged_if_long
 from service.ingest.recording import recording
+from service.kit.limits import in_force, refusal
 
 Content = bytes | Path
 """Of a file, or where it lies."""

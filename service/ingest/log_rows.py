@@ -12,9 +12,9 @@ from typing import Protocol
 import polars as pl
 
 from service.ingest.formats import PARQUET, may_be_log
-from service.ingest.limits import refusal
 from service.ingest.metadata import KEY
 from service.ingest.scanned import teller
+from service.kit.limits import refusal
 
 LONGEST_HEADER = 1024 * 1024
 """Bytes of # lines, and of the header, before the rows of a CSV file."""

@@ -15,10 +15,10 @@ from estimator.reading import Extent, read_session
 from estimator.reading.csv_text import cell_of
 from estimator.reading.keys import COLUMNS
 from estimator.session import CALIBRATIONS, Array, CalibrationSession
-from service.ingest.limits import check_table, in_force, refusal
 from service.ingest.log_rows import UNREADABLE, Rows, rows_of
 from service.ingest.metadata import with_metadata
 from service.ingest.parquet import columns_of
+from service.kit.limits import check_table, in_force, refusal
 
 LABEL, SETTINGS = "position", ("beta_deg", "run")
 """Columns that say where the block stood."""

@@ -14,8 +14,8 @@ from scipy.io import loadmat, whosmat
 from scipy.io.matlab import MatReadError, matfile_version
 
 from estimator.errors import FormatError
-from service.ingest.limits import check_table, in_force, refusal
 from service.ingest.metadata import with_metadata
+from service.kit.limits import check_table, in_force, refusal
 
 VERSION = b"MATLAB 5.0 MAT-file"
 """First bytes of one that is read: level 5, not the HDF5 of version 7.3."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
-from service.ingest.limits import in_force, refusal
+from service.kit.limits import in_force, refusal
 
 KEY = "imu-session"
 """Under which a table's file keeps the session's other fields."""

@@ -4,8 +4,8 @@ from io import BytesIO
 
 import polars as pl
 
-from service.ingest.limits import check_table, refusal
 from service.ingest.metadata import KEY, with_metadata
+from service.kit.limits import check_table, refusal
 
 MOST_TEXT = 64 * 1024 * 1024
 """Bytes of the labels of a column."""

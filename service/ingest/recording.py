@@ -7,10 +7,10 @@ import polars as pl
 
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
-from service.ingest.limits import check_table, in_force, refusal
 from service.ingest.log_rows import UNREADABLE, Rows, numbers, rows_of
 from service.ingest.metadata import with_metadata
 from service.ingest.parquet import columns_of
+from service.kit.limits import check_table, in_force, refusal
 
 HEAD = 100
 """Rows that are read and checked like a whole session."""

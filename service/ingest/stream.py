@@ -1,5 +1,6 @@
 """A recording of any length, some rows at a time: Parquet and CSV are scanned by a process of their own, within the
-limits of any file; other formats are read whole."""
+limits of any file; other formats are read whole.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

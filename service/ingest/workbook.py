@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 from xml.parsers import expat
 from zipfile import BadZipFile, ZipFile, ZipInfo
 
-from service.ingest.limits import check_table, in_force, refusal
+from service.kit.limits import check_table, in_force, refusal
 
 MOST_MEMBERS = 1000
 """Parts of a workbook: an ordinary one has some twenty."""

@@ -13,8 +13,8 @@ from estimator.reading.csv_text import named_columns
 from estimator.reading.problems import Problems, Where
 from service.ingest.in_russian import CHOSEN, IN_ENGLISH, heading_in_english, key_in_english, value_in_english
 from service.ingest.key_values import TEXTS, last_step, nested
-from service.ingest.limits import in_force, refusal
 from service.ingest.workbook import check_workbook
+from service.kit.limits import in_force, refusal
 
 BOOLEANS = ("true", "false")
 """How the library writes a cell that is true or false, which as a number would be 1 or 0."""

@@ -1,1 +1,1 @@
-"""A session against its unit's reference: tolerances, decisions, forecasts. Nothing here writes."""
+"""A session against its unit: plausible, of this unit, within tolerance, with which reservations."""

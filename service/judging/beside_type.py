@@ -13,9 +13,9 @@ import numpy as np
 from estimator.health.population import spread
 from estimator.results import SensorCalibration
 from estimator.session import Array
-from service.measures import MEASURES, in_words
-from service.records.doubt import Doubt
-from service.records.session import ParameterValue
+from service.kit.measures import MEASURES, in_words
+from service.sessions.doubt import Doubt
+from service.sessions.records import ParameterValue
 
 FEWEST = 5
 """Other units: with fewer, two unlike ones would be most of the type."""

@@ -18,7 +18,7 @@ from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Structure
 from estimator.results import Calibration, Residuals
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import leading_kind
+from service.kit.measures import leading_kind
 
 INPUTS = {ACCELEROMETER: STANDARD_GRAVITY, GYROSCOPE: EARTH_RATE}
 """What a sensor on a stand or at rest feels at most, m/s² (rad/s)."""

@@ -10,13 +10,13 @@ from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
 from estimator.results import Calibration
 from service.judging.calibrate import Comparison
-from service.judging.tolerances import tolerances_of
-from service.lock_order import outside_writing
-from service.records.decision import Decision, Judged, Opening, Verdict
-from service.records.unit import UnitType
-from service.words.advice import too_few
-from service.words.in_service import reason as recording_in_words
-from service.words.verdict import first_in_words, reason
+from service.judging.in_service_words import reason as recording_in_words
+from service.judging.words import first_in_words, reason
+from service.sessions.decision import Decision, Judged, Opening, Verdict
+from service.sessions.words.advice import too_few
+from service.storage.lock_order import outside_writing
+from service.types.records import UnitType
+from service.types.rules import tolerances_of
 
 
 @outside_writing

@@ -5,11 +5,14 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from estimator.results import Calibration
+from service.judging.records import Counted, UnitRecords
 from service.judging.reference import alike
-from service.records.derivation import Counted, UnitRecords
-from service.storage.queries.services import epoch
+from service.judging.store import Derivations
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.store import Sessions
+from service.sessions.words.advice import too_few
 from service.storage.store import Store
-from service.words.advice import too_few
+from service.units.store import epoch
 
 NOTHING_READ: Mapping[tuple[str, int], Calibration] = {}
 
@@ -33,21 +36,21 @@ class KnownUnit:
         if id in self.made:
             return self.made[id]
         if id not in self.read:
-            self.read[id] = self.store.calibrations.get(id)
+            self.read[id] = Calibrations(self.store).get(id)
         return self.read[id]
 
     def file(self, id: str) -> tuple[str, str]:
         """The hash and the name of a session's file."""
         if id in self.files:
             return self.files[id]
-        session = self.store.sessions.get(id)
+        session = Sessions(self.store).get(id)
         return session.sha256, session.filename
 
     def read_all(self, ids: Collection[str]) -> None:
         """Reads those of several sessions at once."""
         unread = {*ids} - self.made.keys() - self.read.keys()
         if len(unread) > 1:
-            self.read.update(self.store.calibrations.in_force(unread))
+            self.read.update(Calibrations(self.store).in_force(unread))
 
     def is_blind(self, one: Counted) -> bool:
         """Whether a session gives no uncertainty; a reference gave one when it was taken for it."""
@@ -77,7 +80,7 @@ def known_unit(
 ) -> KnownUnit:
     """A unit as its rows are now, with calibrations that were stored just before, and with those of references that
     were read already, by session and revision."""
-    records = store.derivations.records(unit)
+    records = Derivations(store).records(unit)
     current = {(one.id, one.revision) for one in records.counted}
     read = {id: found for (id, revision), found in references.items() if (id, revision) in current}
     return KnownUnit(store, unit, records, made or {}, read)

@@ -10,9 +10,10 @@ from datetime import UTC, datetime, timedelta
 
 from service.ingest.checked import Checked
 from service.judging.known_unit import KnownUnit
-from service.records.doubt import Doubt
-from service.records.session import StoredSession
-from service.words.names import day_of
+from service.kit.names import day_of
+from service.sessions.doubt import Doubt
+from service.sessions.records import StoredSession
+from service.sessions.store import Sessions
 
 FIRST_CLOCK = datetime(1980, 1, 7, tzinfo=UTC)
 """Clocks that lost their time start in 1970, or in 1980 with GPS; there was no session file then."""
@@ -44,7 +45,7 @@ def of_moment(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[
     for one in known.records.counted:
         if (one.block, one.programme, one.at) != own or one.id in but:
             continue
-        rival = known.store.sessions.get(one.id)
+        rival = Sessions(known.store).get(one.id)
         if not _are_apart(known, rival, new):
             yield Doubt(
                 f"The session of {rival.filename} was measured at the same moment, {_moment(new.measured_at)}",

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from math import dist
 
-from service.records.recomputation import MovedParameter, MovedVerdict
-from service.records.session import ParameterValue, StoredSession
+from service.models.records import MovedParameter, MovedVerdict
+from service.sessions.records import ParameterValue, StoredSession
 
 
 def moved_verdicts(before: Mapping[str, StoredSession], after: Sequence[StoredSession]) -> Iterator[MovedVerdict]:

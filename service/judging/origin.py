@@ -5,7 +5,9 @@ What was simulated says nothing of hardware: it must not move a measured unit's 
 
 from estimator.errors import FormatError, Problem
 from estimator.session import CalibrationSession
+from service.sessions.store import Sessions
 from service.storage.store import Store
+from service.units.store import Units
 
 OTHERS_MEASURED = (
     "this session is simulated, and the sessions of unit {unit} were measured; the two are never mixed: give the "
@@ -23,11 +25,11 @@ def require_one_origin(store: Store, session: CalibrationSession) -> bool:
     A unit whose simulated sessions were all withdrawn may be measured: somebody had tried out its serial number. True
     where it is measured from now on.
     """
-    known = store.units.is_simulated(session.unit)
+    known = Units(store).is_simulated(session.unit)
     if known is None or known == session.is_simulated:
         return False
     if session.is_simulated:
         raise FormatError([Problem("origin", OTHERS_MEASURED.format(unit=session.unit))])
-    if store.sessions.any_stands(session.unit):
+    if Sessions(store).any_stands(session.unit):
         raise FormatError([Problem("origin", OTHERS_SIMULATED.format(unit=session.unit))])
     return True

@@ -1,7 +1,7 @@
 """Step: a calibration as the rows of the history, one a sensor and parameter."""
 
 from estimator.results import Calibration, Estimate, SensorCalibration
-from service.records.session import ALL_PARAMETERS, ParameterValue
+from service.sessions.records import ALL_PARAMETERS, ParameterValue
 
 
 def parameter_values(calibration: Calibration) -> tuple[ParameterValue, ...]:

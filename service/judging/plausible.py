@@ -20,10 +20,12 @@ from service.judging.beside_type import MOST, beside_type, type_of_references
 from service.judging.known_unit import KnownUnit
 from service.judging.moments import of_date, of_moment
 from service.judging.same_unit import of_unit
-from service.judging.tolerances import tolerances_of
-from service.records.doubt import Correction, Doubt, Remedy
-from service.records.unit import UnitType
+from service.sessions.doubt import Correction, Doubt, Remedy
+from service.sessions.history_store import History
 from service.storage.store import Store
+from service.types.records import UnitType
+from service.types.rules import tolerances_of
+from service.types.store import UnitTypes
 
 LEAST_RATIO = 2.0
 """Of a scale factor to its nominal: makers state it within some percent, and no sensor loses half of it and works."""
@@ -83,10 +85,10 @@ Found = list[tuple[Sensor, SensorCalibration]]
 def _beside_its_type(store: Store, new: Checked, found: Found, calibration: Calibration) -> Iterator[Doubt]:
     """What no other unit of its type has; nothing where too few are known."""
     serial = new.session.unit
-    kind = store.unit_types.of_unit(serial)
+    kind = UnitTypes(store).of_unit(serial)
     if _is_unnamed(new, kind) and not _is_design(found, kind):
         return
-    values = store.history.references_of_type(kind.name, serial, MOST, simulated=new.session.is_simulated)
+    values = History(store).references_of_type(kind.name, serial, MOST, simulated=new.session.is_simulated)
     others = type_of_references(values, tolerances_of(kind))
     scales = tuple(_of_scale(found, "value in the type's other units", others.scales(), Remedy.BOTH))
     yield from scales

@@ -12,7 +12,10 @@ from estimator.errors import Problem, ScheduleError
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
 from service.ingest.checked import Checked
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.store import Sessions
 from service.storage.store import Store
+from service.units.store import Services, Units
 
 
 @dataclass(frozen=True)
@@ -27,8 +30,8 @@ class Reference:
 
 def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> Reference:
     """The reference for a session of a block of the unit, by what was measured and when."""
-    since, until = store.services.around(unit, at)
-    return Reference(store.sessions.reference(unit, block, since, until, alike(programme)), since)
+    since, until = Services(store).around(unit, at)
+    return Reference(Sessions(store).reference(unit, block, since, until, alike(programme)), since)
 
 
 def alike(programme: str) -> tuple[str, ...]:
@@ -39,13 +42,13 @@ def alike(programme: str) -> tuple[str, ...]:
 def calibration_to_compare_with(store: Store, recording: Checked) -> Calibration:
     """The calibration of the epoch that a recording in service was made in; ScheduleError where there is none yet."""
     session = recording.session
-    if not store.units.exists(session.unit):
+    if not Units(store).exists(session.unit):
         raise _uncalibrated(session.unit, None)
-    unit = store.units.key(session.unit)
+    unit = Units(store).key(session.unit)
     found = reference_of(store, unit, session.block, session.programme, recording.measured_at)
     if found.session is None:
         raise _uncalibrated(session.unit, found.since)
-    return store.calibrations.get(found.session)
+    return Calibrations(store).get(found.session)
 
 
 def _uncalibrated(unit: str, since: datetime | None) -> ScheduleError:

@@ -13,11 +13,7 @@ from estimator.diagnosis.results import NoiseScale, Structure
 from service.judging.cause_sizes import Size, Yardstick, size_of_cause, size_of_structure
 from service.judging.standing import Otherwise, acts_within, is_of_record
 from service.judging.temperatures import Covered
-from service.measures import COVERAGE
-from service.records.decision import Verdict
-from service.records.reservation import Doubt, Reservation
-from service.words.noise_claims import wrong_errors
-from service.words.reservation import (
+from service.judging.words import (
     ADD,
     CORRECT,
     FAILED,
@@ -36,6 +32,11 @@ from service.words.reservation import (
     within,
     worth_in,
 )
+from service.kit.measures import COVERAGE
+from service.sessions.decision import Verdict
+from service.sessions.doubt import DoubtKind as Doubt
+from service.sessions.doubt import Reservation
+from service.sessions.words.noise_claims import wrong_errors
 
 WORTH_SAYING = 1 / 3
 """Part of a tolerance from which on an effect is told: what a measurement may leave uncertain of it at most, too."""

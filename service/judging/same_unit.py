@@ -1,6 +1,7 @@
 """Step: is a session of the unit that its file says? Readings that are stored already under another serial number are a
 copy; a new serial number that is nearly a known one is probably that one, mistyped; and so is one of a numbered series
-whose calibration is that of a neighbour, far closer than two units of the type are."""
+whose calibration is that of a neighbour, far closer than two units of the type are.
+"""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -13,9 +14,13 @@ from estimator.session import CALIBRATIONS
 from service.ingest.checked import Checked
 from service.judging.known_unit import KnownUnit
 from service.judging.serials import folded, is_one_keystroke, is_slip
-from service.records.doubt import Correction, Doubt, Remedy
-from service.records.session import ParameterValue
-from service.words.names import day_of
+from service.kit.names import day_of
+from service.sessions.doubt import Correction, Doubt, Remedy
+from service.sessions.history_store import History
+from service.sessions.records import ParameterValue
+from service.sessions.store import Sessions
+from service.types.store import UnitTypes
+from service.units.store import Units
 
 FEWEST = 5
 """Other units of the type, from which on it is known how far units lie apart."""
@@ -33,7 +38,7 @@ def of_unit(
     known: KnownUnit, new: Checked, sensors: Sequence[SensorCalibration], but: Collection[str]
 ) -> Iterator[Doubt]:
     """A doubt for a session that is probably of another unit; ``but`` are itself and the one that it replaces."""
-    copy = known.store.sessions.of_readings(new.readings_digest, known.unit, but)
+    copy = Sessions(known.store).of_readings(new.readings_digest, known.unit, but)
     if copy is not None:
         yield Doubt(
             f"These readings are stored already as session {copy.id} of {copy.unit}, {day_of(copy.started_at)}",
@@ -56,8 +61,8 @@ def of_unit(
 def _near(known: KnownUnit, new: Checked, sensors: Sequence[SensorCalibration]) -> tuple[str, str] | None:
     """The known unit that a new one probably is, and why."""
     serial = new.session.unit
-    own_type = known.store.unit_types.of_unit(serial).name
-    units = known.store.units.accepted(simulated=new.session.is_simulated)
+    own_type = UnitTypes(known.store).of_unit(serial).name
+    units = Units(known.store).accepted(simulated=new.session.is_simulated)
     alike = folded(serial)
     for other, _ in units:
         if other != serial and folded(other) == alike:
@@ -76,8 +81,8 @@ def _of_same_calibration(
     known: KnownUnit, own_type: str, beside: Sequence[str], sensors: Sequence[SensorCalibration]
 ) -> tuple[str, str] | None:
     """The neighbour whose parameters these are."""
-    others = known.store.history.references_by_unit(own_type, MOST)
-    others |= known.store.history.references_by_unit(own_type, MOST, beside)
+    others = History(known.store).references_by_unit(own_type, MOST)
+    others |= History(known.store).references_by_unit(own_type, MOST, beside)
     if len(others) <= FEWEST:
         return None
     for other in beside:

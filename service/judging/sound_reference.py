@@ -7,7 +7,7 @@ it, could neither be judged nor judge another.
 from collections.abc import Iterator, Mapping
 
 from estimator.results import Calibration, Estimate, SensorCalibration
-from service.records.session import PARAMETERS
+from service.sessions.records import PARAMETERS
 
 
 def left_uncertain(

@@ -9,10 +9,10 @@ from estimator.diagnosis.explanation.accepted import calibrate_extended
 from estimator.diagnosis.explanation.temperature import OF_TEMPERATURE
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, CalibrationSession
+from service.diagnosis.words.causes import UNKNOWN_CAUSE
 from service.judging.judge import judge
-from service.records.decision import Verdict
-from service.records.unit import UnitType
-from service.words.causes import UNKNOWN_CAUSE
+from service.sessions.decision import Verdict
+from service.types.records import UnitType
 
 MOST_ALTERNATIVES = 3
 """Of the strongest finding, the likeliest ones, that a verdict is taken under: each costs another calibration."""

@@ -16,10 +16,10 @@ from estimator.health.fits import Readings
 from estimator.health.prognosis import Track
 from estimator.results import Residuals
 from service.judging.cause_sizes import Size
-from service.judging.histories import TrackKey, histories
-from service.records.decision import Verdict
-from service.records.session import StoredSession
-from service.storage.queries.outlooks import ChangeRow, ReferenceRow
+from service.outlook.rules.histories import TrackKey, histories
+from service.outlook.store import ChangeRow, ReferenceRow
+from service.sessions.decision import Verdict
+from service.sessions.records import StoredSession
 
 WITHIN = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts by which temperature did not do much."""

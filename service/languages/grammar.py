@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from service.languages.language import Language
 
 DATE = re.compile(r"(\d{1,2} )?(Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)( \d{4})")
-"""``7 Mar 2026`` or ``Mar 2026``, as `service.words.names` writes it."""
+"""``7 Mar 2026`` or ``Mar 2026``, as `service.kit.names` writes it."""
 AXIS = re.compile(r"(Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)( \d{2})?")
 """``Jan`` or ``Jan 04``, as an axis of time has it."""
 MONTH_NAMES = tuple(month_name)[1:]

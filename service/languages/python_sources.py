@@ -72,8 +72,10 @@ def _told(node: ast.AST, *, described: bool) -> Iterator[ast.expr]:
 
 
 def _children(node: ast.AST) -> Iterator[ast.AST]:
-    """Without documentation, decorators, annotations and names of keys."""
+    """Without documentation, decorators, annotations, names of keys, and examples for programs."""
     for name, value in ast.iter_fields(node):
+        if isinstance(node, ast.keyword) and node.arg == "json_schema_extra":
+            continue
         if name in ("annotation", "returns", "decorator_list", "slice", "type_comment"):
             continue
         for child in value if isinstance(value, list) else [value]:

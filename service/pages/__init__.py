@@ -8,61 +8,31 @@ from functools import cache
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from service.admission import ADMITTED
-from service.pages import (
-    account_routes,
-    admin_routes,
-    arrival_routes,
-    assets,
-    before_routes,
-    certificate_routes,
-    diagnosis_routes,
-    event_routes,
-    flag_routes,
-    help_routes,
-    job_routes,
-    layout_routes,
-    model_routes,
-    oidc_routes,
-    paper_routes,
-    plan_routes,
-    record_routes,
-    remark_routes,
-    routes,
-    saved_routes,
-    session_routes,
-    stand_routes,
-    type_routes,
-)
-from service.pages.headers import SecurityHeaders
-from service.pages.in_language import InOneLanguage
-from service.pages.problem import ProblemPages, unexpected_pages
+from service.pages import flags, help, routes, saved
+from service.pages.certificate import pages as papers
+from service.pages.diagnosis import pages as diagnoses
+from service.pages.model import pages as models
+from service.pages.plan import before as before_pages
+from service.pages.plan import plan as plan_pages
+from service.pages.records import pages as records
+from service.pages.session import list_pages as sessions
+from service.pages.stand import pages as stands
+from service.pages.type import pages as types
+from service.pages.unit import remarks
+from service.pages.uploads import arrivals as arrivals_pages
+from service.people import account_pages, admin_pages, oidc_pages
+from service.people.admission import ADMITTED
+from service.uploads.layout import pages as layouts
+from service.web import assets
+from service.web.headers import SecurityHeaders
+from service.web.in_language import InOneLanguage
+from service.web.problem_pages import ProblemPages, unexpected_pages
+from service.work import pages as work
 
 PARTS = (
-    routes,
-    account_routes,
-    admin_routes,
-    certificate_routes,
-    diagnosis_routes,
-    flag_routes,
-    saved_routes,
-    layout_routes,
-    model_routes,
-    event_routes,
-    record_routes,
-    remark_routes,
-    paper_routes,
-    oidc_routes,
-    before_routes,
-    plan_routes,
-    session_routes,
-    stand_routes,
-    type_routes,
-    arrival_routes,
-    help_routes,
-    job_routes,
-    assets,
-)
+    routes, account_pages, admin_pages, papers, diagnoses, flags, saved, layouts, models, records, remarks, oidc_pages,
+    before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work, assets,
+)  # fmt: skip
 """Every file of addresses."""
 
 

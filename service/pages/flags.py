@@ -1,15 +1,31 @@
-"""Flags as people read them."""
+"""The pages of flags and their forms."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated
 from urllib.parse import quote
 
-from service.pages.flags_view import ORDERS, PAGE_SIZE, FlagsView
-from service.pages.flags_view import STATES as CHOICES
-from service.pages.saved import Saved
-from service.records.flag import Flag, FlagState, Matter, Notice, NoticeKind
-from service.records.model import Scope
-from service.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
+from fastapi import APIRouter, Form, Query, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+from pydantic import Field
+
+from service.flags.assigned import ME, active_names, assignee_meant
+from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, bring_flags, resolve_flag
+from service.flags.records import Flag, FlagState, Matter, Notice, NoticeKind
+from service.flags.store import Flags
+from service.flags.view import ORDERS, PAGE_SIZE, FlagsAsked, FlagsView, choices_of
+from service.flags.view import STATES as CHOICES
+from service.models.records import Scope
+from service.pages.saved import Saved, saved
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.people.forms import SEE_OTHER, By, Number, Perhaps, Why
+from service.people.view_store import SavedViews
+from service.people.views import ListPage
+from service.sessions.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
+from service.web.dependencies import Now, Reading
+from service.web.fields import NO_NUL
+from service.web.render import render
 
 MATTERS = {
     Matter.TOLERANCE: "Out of tolerance",
@@ -137,3 +153,74 @@ def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:
 def _heading(flag: Flag) -> str:
     matter = MATTERS[flag.matter]
     return f"{flag.place}: {matter[0].lower()}{matter[1:]}" if flag.place else matter
+
+
+router = APIRouter(prefix="/flags", include_in_schema=False)
+Chosen = Annotated[list[Annotated[int, Field(ge=1, le=2_000_000_000)]], Form(min_length=1, max_length=200)]
+"""Flags that were ticked."""
+Asking = Annotated[FlagsAsked, Query()]
+"""The view that a form was sent from, and that comes back."""
+To = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+"""Login or name; empty for nobody."""
+
+
+@router.get("")
+def show_flags(request: Request, store: Reading, person: PersonOf, asked: Asking) -> HTMLResponse:
+    """The open flags of the fleet, newest first, or those of them that the address asks for."""
+    view = FlagsView.of(asked)
+    if view.assigned == ME and not person.login:
+        view = replace(view, assigned="")
+    found = Flags(store).page(view.query(assignee_meant(store, view.assigned, person)))
+    kept = saved(SavedViews(store).of(person.login, ListPage.FLAGS), view, ListPage.FLAGS, person)
+    assigned = choices_of(Flags(store).assignees(), is_signed_in=bool(person.login))
+    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), kept))
+
+
+@router.post("/assign")
+def assign_chosen(
+    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "", asked: Asking
+) -> RedirectResponse:
+    """Several are given to somebody."""
+    assign_flags(storage, flag, Assignment(to, by, why), now)
+    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+
+
+@router.post("/{id}/assign")
+def assign(id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "") -> RedirectResponse:
+    """One is given to somebody."""
+    return _back(assign_flag(storage, id, Assignment(to, by, why), now))
+
+
+@router.post("/acknowledge")
+def acknowledge_chosen(
+    flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, to: To = "", asked: Asking
+) -> RedirectResponse:
+    """Somebody looks after several; where the form names whom, they are given to them."""
+    if to.strip():
+        assign_flags(storage, flag, Assignment(to, by), now)
+    bring_flags(storage, flag, FlagState.ACKNOWLEDGED, by, why, now)
+    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+
+
+@router.post("/resolve")
+def resolve_chosen(flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, asked: Asking) -> RedirectResponse:
+    """Several matters are settled."""
+    bring_flags(storage, flag, FlagState.RESOLVED, by, why, now)
+    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+
+
+@router.post("/{id}/acknowledge")
+def acknowledge(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
+    """Somebody looks after the flag."""
+    return _back(acknowledge_flag(storage, id, by, why, now))
+
+
+@router.post("/{id}/resolve")
+def resolve(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
+    """The matter is settled."""
+    return _back(resolve_flag(storage, id, by, why, now))
+
+
+def _back(flag: Flag) -> RedirectResponse:
+    (card,) = flag_cards([flag])
+    return RedirectResponse(f"{card.home}#flags", SEE_OTHER)

@@ -5,41 +5,51 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
-from service.admission import PersonOf
-from service.dependencies import JobDeskOf, Now, Reading, ReadingFleet, ReceptionOf, SettingsOf, StorageOf
-from service.flows.correct_session import remedies_of
-from service.flows.receive import receive_all
-from service.flows.take_in import is_long
+from service.diagnosis.store import Diagnoses
+from service.flags.store import FlagQuery, Flags
+from service.fleet.announced_store import Announcements
+from service.fleet.store import Fleet
+from service.groups.records import Level
 from service.ingest import is_own_layout
-from service.ingest.limits import in_force
-from service.judging.model_in_force import model_as_of
-from service.judging.standouts import fleet_standouts
-from service.pages.fleet import MOST_STANDOUTS, fleet_page
-from service.pages.fleet_view import FleetAsked, FleetView
-from service.pages.follow import SOONEST, follow_seconds
-from service.pages.forms import Key
-from service.pages.group import MOST_FOUND, found_line, group_section
-from service.pages.layout_form import carried
-from service.pages.received import FormFiles
-from service.pages.remarks import remarks
-from service.pages.render import render
+from service.kit.arriving_files import where
+from service.kit.limits import in_force
+from service.models.rules import model_as_of
+from service.models.store import Models
+from service.outlook.reading import dated
+from service.outlook.rules.standouts import fleet_standouts
+from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
+from service.pages.fleet.view import FleetAsked, FleetView
+from service.pages.group.sections import MOST_FOUND, found_line, group_section
 from service.pages.saved import saved
-from service.pages.session import session_page
-from service.pages.unit import unit_page
-from service.pages.upload import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
-from service.records.doubt import Remedies
-from service.records.group import Level
-from service.records.received import where
-from service.records.saved_view import ListPage
-from service.records.state import RecordState
-from service.storage.queries.flags import FlagQuery
-from service.views.found_and_left import found_and_left
-from service.views.history import recent_history
-from service.views.outlook import dated
-from service.views.pattern import type_names
-from service.views.session_report import session_report
-from service.views.traceability import traceability_of
-from service.views.unit_report import unit_report
+from service.pages.session.pages import session_page
+from service.pages.unit.pages import unit_page
+from service.pages.unit.remarks import remarks
+from service.pages.unit.report import unit_report
+from service.papers.certified import traceability_of
+from service.papers.found_and_left import found_and_left
+from service.papers.session_report import recent_history, session_report
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.people.forms import Key
+from service.people.view_store import SavedViews
+from service.people.views import ListPage
+from service.planning.pattern import type_names
+from service.records.dependencies import ReceptionOf
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.doubt import Remedies
+from service.sessions.states import RecordState
+from service.sessions.store import Sessions
+from service.units.remarks_store import SaidOf
+from service.uploads.correct import remedies_of
+from service.uploads.layout.form import carried
+from service.uploads.receive import receive_all
+from service.uploads.received import FormFiles
+from service.uploads.take_in import is_long
+from service.uploads.upload_pages import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
+from service.web.dependencies import Now, Reading, SettingsOf
+from service.web.follow import SOONEST, follow_seconds
+from service.web.render import render
+from service.work.dependencies import JobDeskOf, ReadingFleet
 
 MOST_QUESTIONED = 20
 """Sessions that the fleet page names; the latest."""
@@ -60,11 +70,11 @@ def show_fleet(
     asked: Annotated[FleetAsked, Query()],
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
-    view, announced = FleetView.of(asked), store.announced.all(MOST_QUESTIONED, MOST_FOUND)
-    condition = store.fleet.condition_at(now)
+    view, announced = FleetView.of(asked), Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
+    condition = Fleet(store).condition_at(now)
     shown = fleet_page(
         condition,
-        store.fleet.units(view.query(now)),
+        Fleet(store).units(view.query(now)),
         view,
         now,
         overdue=condition.overdue,
@@ -72,8 +82,8 @@ def show_fleet(
         unlike=fleet_standouts(store, MOST_STANDOUTS),
         stands=announced.stands,
         questioned=announced.questioned,
-        choices=store.fleet.choices(),
-        kept=saved(store.saved_views.of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
+        choices=Fleet(store).choices(),
+        kept=saved(SavedViews(store).of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
     )
     return render(request, "fleet.html", shown)
 
@@ -99,7 +109,7 @@ def show_unit(
             recent_history(store, serial, HISTORY_LIMIT, raw=raw, noise=True),
             now=now,
             raw=raw,
-            flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
+            flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=dated(report.outlook, now),
@@ -116,7 +126,7 @@ def show_session(
 ) -> HTMLResponse:
     """One session with its parameters and residuals."""
     report = session_report(store, id)
-    made, said = report.diagnosis, store.said_of.session(report.session.unit, id)
+    made, said = report.diagnosis, SaidOf(store).session(report.session.unit, id)
     questioned = report.session.state is RecordState.QUESTIONED
     failed = "" if made else report.failed
     page = session_page(
@@ -126,8 +136,8 @@ def show_session(
         remedies=remedies_of(storage, id, report.states) if questioned else Remedies(),
         failed=failed,
         follow=None if made or failed else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
-        model=model_as_of(store.models.of_session(id), report.session.revision),
-        computed=store.calibrations.revisions(id),
+        model=model_as_of(Models(store).of_session(id), report.session.revision),
+        computed=Calibrations(store).revisions(id),
         said=remarks(
             report.session.unit,
             id,
@@ -142,7 +152,7 @@ def show_session(
 @router.get("/sessions/{id}/outcome")
 def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Key) -> HTMLResponse:
     """What became of an upload by now, as the card of the upload page."""
-    outcome = outcome_of(store.sessions.get(id), store.diagnoses.summary(id))
+    outcome = outcome_of(Sessions(store).get(id), Diagnoses(store).summary(id))
     return render(request, "outcome.html", upload_page((outcome,), settings))
 
 
@@ -173,7 +183,7 @@ def take_uploads(
     kept = reception.storage.files
     asked = [table_outcome(file, carried(kept, person.login, file, now)) for file in tables]
     with reception.storage.database.reading() as store:
-        outcomes = (*asked, *jobs, *outcomes_of(sessions, found, store.diagnoses.summary))
+        outcomes = (*asked, *jobs, *outcomes_of(sessions, found, Diagnoses(store).summary))
         names = type_names(store)
     page = upload_page(outcomes, settings, names)
     return render(request, "upload.html", page, 422 if page.refused else 200)

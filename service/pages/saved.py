@@ -1,19 +1,26 @@
-"""The views of a list that were kept under a name: links above it, and the form that keeps the one that is shown."""
+"""The views of a list that were saved under a name."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 from urllib.parse import parse_qsl, urlsplit
 
+from fastapi import APIRouter, Form
+from fastapi.responses import RedirectResponse
 from pydantic import BaseModel
 
-from service.flows.keep_view import may_remove, may_share
-from service.pages.flags_view import FlagsAsked, FlagsView
-from service.pages.fleet_view import FleetAsked, FleetView
-from service.pages.list_view import ListView
-from service.pages.sessions_view import SessionsAsked, SessionsView
-from service.records.identity import Person
-from service.records.saved_view import ListPage, SavedView
+from service.flags.view import FlagsAsked, FlagsView
+from service.kit.person import Person
+from service.pages.fleet.view import FleetAsked, FleetView
+from service.pages.session.view import SessionsAsked, SessionsView
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.people.forms import SAYS_SOMETHING, SEE_OTHER, By, Number
+from service.people.keep_view import may_remove, may_share, remove_view, save_view
+from service.people.views import ListPage, NewView, SavedView
+from service.web.dependencies import Now
+from service.web.fields import NO_NUL
+from service.web.list_view import ListView
 
 LISTS: Mapping[ListPage, tuple[type[BaseModel], Any]] = {
     ListPage.FLEET: (FleetAsked, FleetView),
@@ -92,3 +99,27 @@ def view_of(page: ListPage, query: str) -> ListView:
 def query_of(url: str) -> str:
     """What is asked of an address."""
     return urlsplit(url).query
+
+
+router = APIRouter(prefix="/views", include_in_schema=False)
+Name = Annotated[str, Form(max_length=100, pattern=SAYS_SOMETHING)]
+Query = Annotated[str, Form(max_length=20_000, pattern=NO_NUL)]
+"""An address's, percent signs included: nine parts of 200 characters."""
+
+
+@router.post("")
+def save(
+    page: Annotated[ListPage, Form()], name: Name, query: Query, by: By, storage: StorageOf, now: Now,
+    *, person: PersonOf, shared: Annotated[bool, Form()] = False,
+) -> RedirectResponse:  # fmt: skip
+    """Keeps what the list is asked for."""
+    view = view_of(page, query)
+    save_view(storage, NewView(page, name.strip(), query_of(view.url()), shared), person, by, now)
+    return RedirectResponse(view.url(), SEE_OTHER)
+
+
+@router.post("/{id}/remove")
+def remove(id: Number, by: By, storage: StorageOf, now: Now, person: PersonOf) -> RedirectResponse:
+    """Removes a view; the list stays as it is shown."""
+    gone = remove_view(storage, id, person, by, now)
+    return RedirectResponse(view_of(gone.page, gone.query).url(), SEE_OTHER)

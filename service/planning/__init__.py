@@ -1,1 +1,1 @@
-"""Plans for people: asked in people's units, answered in words. The command and the page share it."""
+"""Plans: what a session would tell, and whether a unit is ready, before it is measured."""

@@ -8,18 +8,9 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from estimator.planning import Request, Wanted
 from estimator.results import ARCSEC
-from estimator.session import (
-    ACCELEROMETER,
-    GYROSCOPE,
-    Array,
-    CalibrationSession,
-    Sensor,
-    Site,
-    Stand,
-    StandErrors,
-)
+from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession, Sensor, Site, Stand, StandErrors
 from estimator.simulate import cone, stand_schedule
-from service.measures import MEASURES
+from service.kit.measures import MEASURES
 
 HALF_ANGLE = float(np.arccos(1 / np.sqrt(3)))
 """54.7°: three of the axes are orthogonal."""

@@ -8,7 +8,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from estimator.readiness import Allowed, Question
 from estimator.readiness.question import USUAL
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import MEASURES
+from service.kit.measures import MEASURES
 from service.planning.question import Amount, blank
 
 MINUTE = 60.0

@@ -5,10 +5,10 @@ import numpy as np
 from estimator.arrays import unit
 from estimator.errors import Problem
 from estimator.session import Sensor
-from service.measures import MEASURES
+from service.kit.measures import MEASURES
 from service.planning.question import PlanQuestion
-from service.records.session import PARAMETERS
-from service.records.unit import UnitType
+from service.sessions.records import PARAMETERS
+from service.types.records import UnitType
 
 MOST_SENSORS = 48
 """As many as `imu-health simulate` makes; larger blocks are not tried."""

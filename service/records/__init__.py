@@ -1,1 +1,1 @@
-"""What flows between the rooms: frozen records, complete at birth, one definition each. SI inside."""
+"""What becomes of records, and everything that is derived of them again."""

@@ -1,12 +1,9 @@
 """What is kept: the database (rows) and the files (uploaded bytes)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
-from service.settings import Settings
 from service.storage.database import Database
-from service.storage.files import Files, ignore
-from service.storage.waits import waits_of
+from service.storage.files import Files
 
 
 @dataclass(frozen=True)
@@ -17,9 +14,4 @@ class Storage:
     files: Files
 
 
-def open_storage(settings: Settings, count: Callable[[str], None] = ignore) -> Storage:
-    """The stores that the settings name; ``count`` is told of faults of files."""
-    return Storage(Database(settings.database, waits_of(settings.database_seconds)), Files(settings.files, count))
-
-
-__all__ = ["Database", "Files", "Storage", "open_storage"]
+__all__ = ["Database", "Files", "Storage"]

@@ -1,12 +1,13 @@
 """Large tables of people's own layouts, set aside while it is said how they are read: under who sent them and their
-hash, for a while, and so many at most. Nothing of them is stored before that is confirmed."""
+hash, for a while, and so many at most. Nothing of them is stored before that is confirmed.
+"""
 
 import os
 from datetime import datetime, timedelta
 from hashlib import sha256
 from pathlib import Path
 
-from service.records.received import Content, Landed
+from service.kit.arriving_files import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.files import Files, content_hash
 from service.storage.folders import make_folder, named_in

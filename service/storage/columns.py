@@ -6,6 +6,8 @@ from typing import Any
 from sqlalchemy import BigInteger, DateTime, Dialect, Integer, text
 from sqlalchemy.types import TypeDecorator
 
+RESOLVED = "resolved"
+"""State of a flag that is closed."""
 IS_OPEN, IS_WAITING, IS_QUESTIONED = "state <> 'resolved'", "state = 'waiting'", "state = 'questioned'"
 IS_AT_WORK = "ended_at IS NULL"
 IS_FAILED = "state = 'failed'"

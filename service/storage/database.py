@@ -1,6 +1,6 @@
 """The database: the only place that commits. One transaction a request.
 
-In which order locks are taken, and what is not done while one is held, says `service.lock_order`.
+In which order locks are taken, and what is not done while one is held, says `service.storage.lock_order`.
 """
 
 from collections.abc import Iterator
@@ -12,12 +12,13 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from service.errors import AwayError
-from service.lock_order import writing
+from service.storage.audit import Audit
 from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
+from service.storage.lock_order import writing
 from service.storage.revisions import unfit
 from service.storage.schema import stored_revision
-from service.storage.store import Store
+from service.storage.store import BeforeCommit, Store
 from service.storage.turns import Turns
 from service.storage.waits import Waits
 
@@ -25,8 +26,8 @@ from service.storage.waits import Waits
 class Database:
     """Hands out one transaction at a time."""
 
-    def __init__(self, url: str, waits: Waits | None = None) -> None:
-        self.url, self._account = url, ""
+    def __init__(self, url: str, before_commit: BeforeCommit, waits: Waits | None = None) -> None:
+        self.url, self._before_commit, self._account = url, before_commit, ""
         self.engine = open_engine(url, waits)
         self._turns = Turns((waits or Waits()).lock) if self.engine.name == "sqlite" else None
         self._writing_engine = self.engine.execution_options(**{WRITES: True})
@@ -53,8 +54,8 @@ class Database:
         with database_faults(), writing(), turn, Session(self._writing_engine) as session:
             store = Store(session, self._account)
             yield store
-            store.tallies.settle()
-            store.audit.seal()
+            self._before_commit(store)
+            Audit(store).seal()
             session.commit()
 
     def require_ready(self) -> None:

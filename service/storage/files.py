@@ -7,8 +7,8 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 
 from service.errors import DamagedError, NotFoundError
-from service.log import log
-from service.records.received import Content, Landed
+from service.kit.arriving_files import Content, Landed
+from service.kit.log import log
 from service.storage.faults import disk_faults
 from service.storage.folders import make_folder, named_in, sync_folder
 from service.storage.landing import IN_MEMORY, Landings, landings

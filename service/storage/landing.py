@@ -8,8 +8,8 @@ from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import IO
 
-from service.log import log
-from service.records.received import Content, Landed
+from service.kit.arriving_files import Content, Landed
+from service.kit.log import log
 from service.storage.faults import disk_faults
 from service.storage.folders import make_folder
 from service.storage.parts import PART

@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import IO
 
-from service.log import log
+from service.kit.log import log
 
 PART = ".part-"
 """Begins the name of a file that is still being written."""

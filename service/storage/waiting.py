@@ -6,8 +6,7 @@ from datetime import datetime, timedelta
 from pathlib import Path
 
 from service.errors import DamagedError
-from service.records.job import Sent
-from service.records.received import Content, Landed
+from service.kit.arriving_files import Content, Landed, Sent
 from service.storage.faults import disk_faults
 from service.storage.files import Files, file_hash
 from service.storage.folders import is_name, make_folder, named_in, sync_folder

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from service.app import create_app
-from service.flows.receive import upload
+from service.uploads.receive import upload
 from tests.blind.case import Case
 from tests.blind.cases import draw_case
 from tests.blind.catalogue import CATALOGUE

@@ -11,10 +11,10 @@ from sqlalchemy import create_engine, update
 
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.app import utc_now
-from service.background.watch_fleet import look
-from service.metrics import Metrics
+from service.kit.metrics import Metrics
+from service.sessions.tables import CalibrationRow
 from service.settings import Settings
-from service.storage.tables import CalibrationRow
+from service.work.watch_fleet import look
 from tests.databases import Databases
 from tests.lives.quiet import differences, state, wait_until_quiet
 from tests.lives.service import Service

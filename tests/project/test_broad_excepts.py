@@ -7,7 +7,7 @@ from tests.project.source import PACKAGES, ROOT, Module, modules
 MISTAKES = {"Exception", "AssertionError", "AttributeError", "NameError"}
 """What no input and no store can end in."""
 PLACES = {
-    "service/flows/guard.py": "the boundary of work beside the requests",
+    "service/kit/guard.py": "the boundary of work beside the requests",
     "service/ingest/hdf5.py": "what h5py raises on damaged files",
     "service/ingest/logs/ulog.py": "what pyulog raises on damaged files",
 }

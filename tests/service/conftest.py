@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from estimator.health import odds, posterior
-from service.log import write_log
+from service.kit.log import write_log
 from tests.conftest import Holding
 from tests.service.sessions import FAILED
 

@@ -2,6 +2,6 @@
 
 from functools import partial
 
-from service.flows.receive import upload
+from service.uploads.receive import upload
 
 upload_and_date = partial(upload, is_dated_later=False)

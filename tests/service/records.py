@@ -3,13 +3,19 @@
 from datetime import UTC, datetime
 from typing import Any
 
-from service.flows.derive_again import Deriving
-from service.records.flag import FlagState
-from service.records.state import RecordState, Step
+from service.flags.records import FlagState
+from service.flags.store import FlagQuery, Flags
+from service.fleet.store import Fleet
+from service.outlook.store import Outlooks
+from service.records.derive_again import Deriving
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.history_store import History, HistoryQuery
+from service.sessions.states import RecordState, Step
+from service.sessions.store import Sessions
+from service.stands.store import Stands
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
-from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
+from service.units.store import Units
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
@@ -27,20 +33,20 @@ def way(storage: Storage, at_once: int | None = 20) -> Deriving:
 def state_of(storage: Storage, *serials: str) -> dict[str, Any]:
     """What is known of units, to the last digit; when and under which number it was written down apart."""
     with storage.database.reading() as store:
-        units = {serial: _unit(store, serial) for serial in serials if store.units.exists(serial)}
-        return units | {"stands": store.stands.motions()}
+        units = {serial: _unit(store, serial) for serial in serials if Units(store).exists(serial)}
+        return units | {"stands": Stands(store).motions()}
 
 
 def _unit(store: Store, serial: str) -> dict[str, Any]:
-    counted = [s for s in store.sessions.of_unit(serial) if s.state is RecordState.ACCEPTED]
-    flags = [f for f in store.flags.page(FlagQuery(serial)) if f.state is not FlagState.RESOLVED]
+    counted = [s for s in Sessions(store).of_unit(serial) if s.state is RecordState.ACCEPTED]
+    flags = [f for f in Flags(store).page(FlagQuery(serial)) if f.state is not FlagState.RESOLVED]
     return {
         "sessions": [(s.id, s.verdict, s.reason, s.is_reference, s.revision) for s in counted],
-        "decisions": [store.sessions.decisions(s.id) for s in counted],
-        "motions": [store.sessions.motions(s.id) for s in counted],
-        "calibrations": [store.calibrations.json(s.id) for s in counted],
-        "history": store.history.points(store.units.key(serial), HistoryQuery()),
-        "outlook": store.outlooks.of_unit(serial),
-        "condition": store.fleet.unit(serial),
+        "decisions": [Sessions(store).decisions(s.id) for s in counted],
+        "motions": [Sessions(store).motions(s.id) for s in counted],
+        "calibrations": [Calibrations(store).json(s.id) for s in counted],
+        "history": History(store).points(Units(store).key(serial), HistoryQuery()),
+        "outlook": Outlooks(store).of_unit(serial),
+        "condition": Fleet(store).unit(serial),
         "flags": sorted((f.key, f.severity, f.summary, f.proposal, f.session) for f in flags),
     }

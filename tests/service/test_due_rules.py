@@ -10,12 +10,14 @@ import pytest
 from icalendar import Calendar
 
 from service.app import create_app
-from service.flows.record_service import record_service
-from service.records.event import NewService
+from service.kit.names import day_of
+from service.outlook.document import outlook_from_dicts, outlook_to_dicts
+from service.outlook.store import Outlooks
+from service.records.changes import record_service
 from service.settings import Settings
 from service.storage import Storage
-from service.storage.outlook_document import outlook_from_dicts, outlook_to_dicts
-from service.words.names import day_of
+from service.units.records import NewService
+from service.units.store import Units
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.dated import upload_and_date
 from tests.service.reports.documents import text_of
@@ -148,12 +150,12 @@ def test_an_overdue_unit_is_refused_with_the_same_sentence(client: httpx.Client,
 def test_an_outlook_of_an_earlier_version_is_still_read(client: httpx.Client, storage: Storage) -> None:
     measure(storage, DRIFTS)
     with storage.database.writing() as store:
-        unit, found = store.units.key("BA-017"), store.outlooks.of_unit("BA-017")
+        unit, found = Units(store).key("BA-017"), Outlooks(store).of_unit("BA-017")
         assert found is not None
         document, drawn = outlook_to_dicts(replace(found, reason="It is time."))
         del document["basis"]
         assert outlook_from_dicts(document, drawn).basis is None
-        store.outlooks.put(unit, outlook_from_dicts(document, drawn))
+        Outlooks(store).put(unit, outlook_from_dicts(document, drawn))
     answer = client.get(f"{UNIT}/outlook").raise_for_status().json()
     assert (answer["basis"], answer["reason"]) == (None, "It is time.")
     assert "It is time." in client.get("/units/BA-017", headers={"Accept": "text/html"}).text

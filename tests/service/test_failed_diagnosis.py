@@ -16,17 +16,19 @@ import pytest
 from sqlalchemy import text
 
 from service.app import create_app
-from service.background import read_diagnosis
-from service.background.bell import Bell
-from service.background.helper import Helper
-from service.background.kinds import DIAGNOSES, MOST_ATTEMPTS
-from service.background.work import LEASE, Worker, work_next
-from service.flows.guard import AT_FAULT
-from service.metrics import Metrics
-from service.records.diagnosis import DiagnosisState
-from service.records.work import WorkKind
+from service.diagnosis.store import Diagnoses
+from service.kit.bell import Bell
+from service.kit.guard import AT_FAULT
+from service.kit.metrics import Metrics
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.sessions.records import DiagnosisState
 from service.settings import Settings
 from service.storage import Storage
+from service.work import diagnosis_reader as read_diagnosis
+from service.work.helper import Helper
+from service.work.kinds import DIAGNOSES, MOST_ATTEMPTS
+from service.work.loop import LEASE, Worker, work_next
 from tests.conftest import SettingsHolding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import warm
@@ -131,7 +133,7 @@ def test_what_rests_on_a_diagnosis_that_somebody_is_making_is_asked_for_again(
 ) -> None:
     id = session_id(REFERENCE)
     with storage.database.writing() as store:
-        store.work(WorkKind.DIAGNOSIS).claim(id, NOW, datetime.now(UTC) + LEASE)
+        WorkQueue(store, WorkKind.DIAGNOSIS).claim(id, NOW, datetime.now(UTC) + LEASE)
     monkeypatch.setattr(read_diagnosis, "PATIENCE", 0.0)
     with http_client(create_app(settings)) as client:
         answer = client.get(f"/api/v1/sessions/{id}/certificate")
@@ -158,5 +160,5 @@ def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage, 
         for content in (LATER, REFERENCE):
             client.get(f"/api/v1/sessions/{session_id(content)}/diagnosis")
     with spoilt.database.reading() as store:
-        states = [store.diagnoses.summary(session_id(content)) for content in (REFERENCE, LATER)]
+        states = [Diagnoses(store).summary(session_id(content)) for content in (REFERENCE, LATER)]
     assert [state and state.state for state in states] == [DiagnosisState.NAMED, DiagnosisState.FAILED]

@@ -11,7 +11,7 @@ import pytest
 from fastapi import FastAPI
 
 from service.app import create_app
-from service.log import log, write_log
+from service.kit.log import log, write_log
 from service.settings import Settings
 from tests.serving import http_client
 

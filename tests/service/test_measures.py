@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.measures import deviation_measure, limit, measured, number, signed, size_in_words, value_measure
+from service.kit.measures import deviation_measure, limit, measured, number, signed, size_in_words, value_measure
 
 MICRO_G = deviation_measure("accelerometer", "bias", 1e-4)
 

@@ -2,7 +2,7 @@
 
 from charset_normalizer import from_bytes
 
-from service.ingest.limits import refusal
+from service.kit.limits import refusal
 
 MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
 """Byte order marks."""

@@ -15,7 +15,7 @@ from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
 from service.ingest.formats import HDF5, MAT, MCAP, PARQUET, SQLITE, ULOG, XLSX
-from service.ingest.limits import in_force, refusal
+from service.kit.limits import in_force, refusal
 
 MAPPING = "imu-mapping.json"
 """Name of the first part."""

@@ -17,9 +17,9 @@ from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
 from service.ingest.layout.decoding import decoded
 from service.ingest.layout.understand import joined
 from service.ingest.layout.units import unit_of
-from service.ingest.limits import check_table, refusal
 from service.ingest.workbook import check_workbook
 from service.ingest.xlsx import BOOLEANS, letters_of
+from service.kit.limits import check_table, refusal
 
 Cell = str | float | None
 SEPARATORS = (";", "\t", "|", ",")

@@ -8,8 +8,8 @@ from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import word_text
-from service.ingest.limits import refusal
 from service.ingest.xlsx import session_sheets, sheet_names
+from service.kit.limits import refusal
 
 SHOWN = 5
 """First cells of a column."""

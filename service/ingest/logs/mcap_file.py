@@ -8,9 +8,9 @@ import zstandard
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 
-from service.ingest.limits import refusal
 from service.ingest.logs.readers import Contents
 from service.ingest.logs.ros import CDR, IMU, Message, contents
+from service.kit.limits import refusal
 
 DAMAGED = (
     McapError,

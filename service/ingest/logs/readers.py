@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from importlib import import_module
 
 from service.ingest.formats import MCAP, SQLITE, ULOG
-from service.ingest.limits import refusal
 from service.ingest.logs.streams import Stream
 from service.ingest.logs.table import LogTable, log_table
+from service.kit.limits import refusal
 
 Read = Callable[[bytes, str], "Contents"]
 ROOMS = {ULOG: "ulog", MCAP: "mcap_file", SQLITE: "sqlite_bag"}

@@ -15,9 +15,9 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.ingest.limits import refusal
 from service.ingest.logs.readers import Contents
 from service.ingest.logs.streams import Array, Stream
+from service.kit.limits import refusal
 
 IMU = "sensor_msgs/msg/Imu"
 CDR = "cdr"

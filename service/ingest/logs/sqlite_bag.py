@@ -6,9 +6,9 @@ The database is opened in memory: nothing is written, and no file beside it is l
 import sqlite3
 from collections.abc import Iterator
 
-from service.ingest.limits import refusal
 from service.ingest.logs.readers import Contents
 from service.ingest.logs.ros import CDR, IMU, Message, contents
+from service.kit.limits import refusal
 
 QUERY = (
     "SELECT topics.name, messages.timestamp, messages.data FROM messages JOIN topics ON topics.id = messages.topic_id "

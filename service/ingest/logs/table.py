@@ -12,8 +12,8 @@ import numpy as np
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from estimator.wording import counted
-from service.ingest.limits import check_table, refusal
 from service.ingest.logs.streams import Array, Stream, in_order
+from service.kit.limits import check_table, refusal
 
 RATE = 50.0
 """Rows a second at most: a rest of two seconds has a hundred, and a log of three IMUs lasts half an hour within the

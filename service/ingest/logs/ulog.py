@@ -13,9 +13,9 @@ from pyulog import ULog
 from pyulog.exceptions import ULogException
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.ingest.limits import refusal
 from service.ingest.logs.readers import Contents
 from service.ingest.logs.streams import Array, Stream
+from service.kit.limits import refusal
 
 RAW = {"sensor_accel": ACCELEROMETER, "sensor_gyro": GYROSCOPE}
 COMBINED = {"accelerometer_m_s2": ACCELEROMETER, "gyro_rad": GYROSCOPE}

@@ -1,12 +1,13 @@
 """What a backup brings back of who is in: browsers and links end with it, for they may have been ended since. Tokens
-may have been revoked since; whoever restores says what becomes of them."""
+may have been revoked since; whoever restores says what becomes of them.
+"""
 
 from dataclasses import dataclass
 from datetime import datetime
 
 from sqlalchemy import Connection, delete, func, inspect, select, update
 
-from service.storage.identity_tables import AttemptRow, SignInLinkRow, SignInRow, TokenRow
+from service.people.tables import AttemptRow, SignInLinkRow, SignInRow, TokenRow
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """Puts a backup into an empty place, of either engine: the rows in one transaction, the files under a name of their own
-until all are there. Whatever interrupts it leaves a database without a schema, and it can be started again."""
+until all are there. Whatever interrupts it leaves a database without a schema, and it can be started again.
+"""
 
 import os
 import shutil

@@ -1,5 +1,6 @@
 """Writes a backup while the service runs: one read transaction sees all tables as they were at one moment, and the
-files that they name are there already and never change."""
+files that they name are there already and never change.
+"""
 
 import zipfile
 from collections import defaultdict
@@ -12,7 +13,6 @@ from pathlib import Path
 from sqlalchemy import Connection, Table, select
 
 from service.errors import ConflictError, ServiceError
-from service.records.job import JobKind
 from service.settings import VERSION
 from service.storage.backup.manifest import Manifest, TableContents, file_member, member_to_write, write_manifest
 from service.storage.backup.rows import lines_of, tables_of
@@ -27,6 +27,8 @@ from service.storage.waits import PATIENT
 
 QUICK = 1
 """Level of compression: nearly as small as the best, several times as fast."""
+UPLOAD = "upload"
+"""Kind of the jobs whose files wait beside the uploads."""
 
 
 def write_backup(url: str, files: Files, target: Path, now: datetime) -> Manifest:
@@ -99,7 +101,7 @@ def _waiting(connection: Connection, tables: list[Table]) -> dict[str, list[str]
     """Hashes of files that jobs are to take in, with the places where they lie until then."""
     found = defaultdict[str, list[str]](list)
     for jobs in (table for table in tables if table.name == "jobs" and "sent" in table.columns):
-        own = (jobs.columns.kind == JobKind.UPLOAD, jobs.columns.ended_at.is_(None))
+        own = (jobs.columns.kind == UPLOAD, jobs.columns.ended_at.is_(None))
         for digest, sent in connection.execute(select(jobs.columns.sha256, jobs.columns.sent).where(*own)):
             found[digest].append(sent["place"])
     return found

@@ -12,7 +12,7 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, Request, sync_playwright
 
-from service.flows.receive import upload as receive
+from service.uploads.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
 from tests.conftest import StockOf
 from tests.databases import Databases

@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import Browser, Page
 from scipy.spatial.transform import Rotation
 
-from service.flows.receive import upload
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 from tests.conftest import StockOf
 from tests.databases import Databases

@@ -12,16 +12,17 @@ import typst
 from playwright.sync_api import Browser, Page
 
 from service.demo.fill import fill
-from service.flows.diagnose import diagnose
-from service.flows.issue_certificate import issue_certificate
-from service.records.fleet import FleetQuery
-from service.records.paper import Laboratory
-from service.reports.certificate import drawn_certificate
-from service.reports.certificate.content import statement_of
-from service.reports.printable import printable_data
-from service.reports.typeset import TEMPLATES
+from service.fleet.records import FleetQuery
+from service.fleet.store import Fleet
+from service.kit.printable import printable_data
+from service.papers.certificate import drawn_certificate
+from service.papers.certificate.content import statement_of
+from service.papers.certified import certified_session
+from service.papers.changes import issue_certificate
+from service.papers.records import Laboratory
+from service.papers.typeset import TEMPLATES
+from service.records.diagnose import diagnose
 from service.settings import Settings
-from service.views.certificate import certified_session
 from tests.databases import Databases
 from tests.docs import bench
 from tests.end_to_end.browser.conftest import draw_all, opened
@@ -63,7 +64,7 @@ def demonstration(filled: Settings) -> Iterator[str]:
 def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
     with stores(filled) as storage:
         with storage.database.reading() as store:
-            worst = store.fleet.units(FleetQuery(limit=1))[0].last_session
+            worst = Fleet(store).units(FleetQuery(limit=1))[0].last_session
         assert worst is not None
         found = certified_session(storage, diagnose(storage, worst, NOW), LABORATORY)
         issue = issue_certificate(storage, statement_of(found), NOW, who="K. Ito")

@@ -8,7 +8,7 @@ import httpx
 import pytest
 from pydantic import TypeAdapter, computed_field
 
-from service.records.answer import Hidden, answer
+from service.kit.answer import Hidden, answer
 
 
 @answer

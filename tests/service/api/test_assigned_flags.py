@@ -6,8 +6,8 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.flows.identity.accounts import add_account
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people.changes import add_account
 from service.storage import Storage
 from tests.conftest import SettingsHolding
 from tests.databases import one_engine

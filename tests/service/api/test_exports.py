@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from service.api.exports import as_csv, fleet_table
+from service.pages.fleet.columns import fleet_table
+from service.web.files import as_csv
 from tests.service.pages.records import unit_summary
 
 

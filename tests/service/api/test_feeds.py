@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from icalendar import Calendar
 
-from service.api.calendar import DueDay, calendar
+from service.pages.feeds import DueDay, calendar
 from tests.conftest import Holding
 from tests.service.sessions import FAILED, session_bytes
 

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.files.hostile import HOSTILE
 from service.app import create_app
-from service.ingest.limits import SMALL, limits_of
+from service.kit.limits import SMALL, limits_of
 from service.settings import Settings
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes

@@ -7,17 +7,19 @@ import pytest
 from sqlalchemy import text
 
 from service.app import create_app
-from service.background.bell import Bell
-from service.background.kinds import GROUPS as QUEUE
-from service.background.read_group import MOST_WAITING, GroupReader
-from service.background.work import LEASE
-from service.flows.receive import upload
-from service.metrics import Metrics
-from service.records.group import Level
-from service.records.work import WorkKind
+from service.groups.records import Level
+from service.groups.store import Groups
+from service.groups.words.group import FAILED
+from service.kit.bell import Bell
+from service.kit.metrics import Metrics
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.settings import Settings
 from service.storage import Storage
-from service.words.group import FAILED
+from service.uploads.receive import upload
+from service.work.group_reader import MOST_WAITING, GroupReader
+from service.work.kinds import GROUPS as QUEUE
+from service.work.loop import LEASE
 from tests.conftest import Holding
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
@@ -45,10 +47,10 @@ def test_what_does_not_exist_is_not_found(client: httpx.Client, path: str) -> No
 def test_what_somebody_is_at_is_202_where_too_many_wait_for_it(settings: Settings, storage: Storage) -> None:
     upload(storage, GROUP[0], "a.json", NOW)
     with storage.database.writing() as store:
-        store.work(WorkKind.GROUP).claim(store.groups.find(Level.UNIT, "BA-017").place, NOW, NOW + LEASE)
+        WorkQueue(store, WorkKind.GROUP).claim(Groups(store).find(Level.UNIT, "BA-017").place, NOW, NOW + LEASE)
     app = create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)
     for _ in range(MOST_WAITING):
-        app.state.application.groups.places.acquire()
+        app.state.application.part(GroupReader).places.acquire()
     with http_client(app) as client:
         answer = client.get("/api/v1/units/BA-017/diagnosis")
     assert (answer.status_code, "Retry-After" in answer.headers, answer.json()["status"]) == (202, True, "pending")

@@ -6,9 +6,9 @@ import httpx
 import pytest
 
 from service.errors import ForbiddenError
-from service.flows.ask_job import ask_job, cancel_job
-from service.records.identity import Person, Role
-from service.records.job import JobKind, JobState, NewJob
+from service.jobs.changes import ask_job, cancel_job
+from service.jobs.records import JobKind, JobState, NewJob
+from service.kit.person import Person, Role
 from service.storage import Storage
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 

@@ -10,10 +10,10 @@ import pytest
 import segno
 from pypdf import PdfReader
 
-from service.measures import HARD
-from service.records.decision import Verdict
-from service.records.unit import UnitSummary
-from service.reports.label import label_of, label_pdf
+from service.fleet.condition import UnitSummary
+from service.kit.measures import HARD
+from service.papers.label import label_of, label_pdf
+from service.sessions.decision import Verdict
 from tests.conftest import Holding, SettingsHolding
 from tests.databases import one_engine
 from tests.service.reports.documents import text_of

@@ -13,9 +13,10 @@ import httpx
 import pytest
 
 from service.errors import BusyError
-from service.ingest import apart, limits
+from service.ingest import apart
 from service.ingest.formats import ULOG
 from service.ingest.sender import SENDER
+from service.kit import limits
 from tests.databases import all_on_one_engine
 from tests.service.ingest.test_formats import parquet_bytes
 from tests.service.sessions import session_bytes

@@ -7,8 +7,8 @@ import pytest
 from lxml import html
 
 from service.app import create_app
-from service.flows import keep_view
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people import keep_view
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine

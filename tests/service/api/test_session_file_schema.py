@@ -7,7 +7,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from estimator.reading import keys
-from service.api.schemas.session_file import SENSOR, SESSION_FILE, SITE, STAND, TABLE
+from service.sessions.schema import SENSOR, SESSION_FILE, SITE, STAND, TABLE
 from tests.builders import accelerometer_block, arbitrary_orientations, gyro_block, mixed_block, raw_log
 from tests.estimator.test_reading_docs import example
 

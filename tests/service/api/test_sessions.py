@@ -8,9 +8,9 @@ import httpx
 
 from estimator import calibrate
 from estimator.reading import read_session
-from service.flows.receive import upload
 from service.settings import Settings
 from service.storage import Files, Storage
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block
 from tests.conftest import Holding
 from tests.service.sessions import FAILED, session_bytes, session_id

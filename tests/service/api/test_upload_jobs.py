@@ -8,13 +8,13 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.flows.take_in import ask_upload
-from service.records.identity import EVERYBODY
-from service.records.received import SentFile
+from service.kit.arriving_files import SentFile
+from service.kit.person import EVERYBODY
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.schema import upgrade
 from service.storage.waiting import FOLDER
+from service.uploads.take_in import ask_upload
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.sessions import session_bytes
 from tests.serving import http_client, limited_client

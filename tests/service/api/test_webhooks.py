@@ -12,14 +12,14 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.background.deliver_messages import CLAIM, MOST_ATTEMPTS, deliver_due
-from service.flows.receive import upload
-from service.flows.register_webhook import fault_of, register_webhook
-from service.flows.remove_webhook import remove_webhook
-from service.metrics import Metrics
-from service.records.webhook import DeliveryState
+from service.flags.messages import CLAIM, MOST_ATTEMPTS, deliver_due
+from service.flags.records import DeliveryState
+from service.flags.webhooks import fault_of, register_webhook, remove_webhook
+from service.flags.webhooks_store import Webhooks
+from service.kit.metrics import Metrics
 from service.settings import Settings
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.receiver import Receiver, receiver
 from tests.service.sessions import FAILED, session_bytes
@@ -43,7 +43,7 @@ def body(hook: Receiver) -> dict[str, str]:
 def test_a_flag_and_a_verdict_are_told_signed(
     settings: Settings, hook: Receiver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.background.deliver_messages.LOOK_EVERY", 0.01)
+    monkeypatch.setattr("service.flags.messages.LOOK_EVERY", 0.01)
     allowed = settings.model_copy(update={"webhook_hosts": (hook.host,)})
     with http_client(create_app(allowed)) as client:
         registered = client.post("/api/v1/webhooks", json=body(hook))
@@ -69,7 +69,7 @@ def test_a_flag_and_a_verdict_are_told_signed(
 def test_a_receiver_that_does_not_answer_keeps_neither_the_others_waiting_nor_the_stop(
     settings: Settings, hook: Receiver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.background.deliver_messages.LOOK_EVERY", 0.01)
+    monkeypatch.setattr("service.flags.messages.LOOK_EVERY", 0.01)
     with receiver() as slow:
         slow.held = Event()
         allowed = settings.model_copy(update={"webhook_hosts": (slow.host, hook.host)})
@@ -86,7 +86,7 @@ def test_a_receiver_that_does_not_answer_keeps_neither_the_others_waiting_nor_th
 
 
 def test_an_attempt_ends_in_time_whatever_the_receiver_does(outbox: "Outbox", monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.background.deliver_messages.LONGEST_ATTEMPT", 0.05)
+    monkeypatch.setattr("service.flags.messages.LONGEST_ATTEMPT", 0.05)
     outbox.hook.held = Event()
     assert outbox.deliver() == 2
     outbox.hook.held.set()
@@ -155,7 +155,7 @@ class Outbox:
     def states(self) -> list[tuple[DeliveryState, int, str]]:
         """State, attempts and outcome of every delivery, oldest first."""
         with self.storage.database.reading() as store:
-            found = store.webhooks.deliveries(self.id, 100)
+            found = Webhooks(store).deliveries(self.id, 100)
         return [(d.state, d.attempts, d.outcome) for d in reversed(found)]
 
 
@@ -192,7 +192,7 @@ def test_a_host_that_is_no_longer_allowed_is_not_called(outbox: Outbox) -> None:
 
 def test_a_delivery_that_was_cut_short_is_made_again(outbox: Outbox) -> None:
     with outbox.storage.database.writing() as store:
-        claimed = store.webhooks.claim(NOW, NOW + CLAIM, 10)
+        claimed = Webhooks(store).claim(NOW, NOW + CLAIM, 10)
     assert (len(claimed), outbox.deliver()) == (2, 0)
     outbox.now += CLAIM
     assert outbox.deliver() == 2
@@ -222,4 +222,4 @@ def test_a_receiver_that_is_away_keeps_no_upload_waiting(storage: Storage) -> No
         assert upload(storage, content, "a.json", NOW).created
     assert deliver_due(storage, ("127.0.0.1:9",), lambda: NOW, Metrics()) == 2
     with storage.database.reading() as store:
-        assert all("ConnectError" in d.outcome for d in store.webhooks.deliveries(1, 10))
+        assert all("ConnectError" in d.outcome for d in Webhooks(store).deliveries(1, 10))

@@ -6,12 +6,16 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.background.derive_pending import derive_waiting
-from service.flows.choose_reference import choose_reference
-from service.flows.derive_again import derive_again
-from service.flows.receive import upload
+from service.judging.store import Derivations
+from service.records.changes import choose_reference
+from service.records.derive_again import derive_again
+from service.sessions.states_store import States
+from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
+from service.units.store import Units
+from service.uploads.receive import upload
+from service.work.derivations import derive_waiting
 from tests.conftest import SettingsHolding
 from tests.patience import until
 from tests.service.doubtful import MISTAKEN
@@ -30,7 +34,7 @@ def filled(storage: Storage) -> list[str]:
 
 def waiting(storage: Storage) -> int:
     with storage.database.reading() as store:
-        return store.derivations.waiting_of(UNIT)
+        return Derivations(store).waiting_of(UNIT)
 
 
 def test_what_is_judged_later_ends_as_what_is_judged_at_once(storage: Storage) -> None:
@@ -80,8 +84,8 @@ def test_another_reference_is_answered_with_what_verdicts_are_said_with_then(wor
 def test_what_a_killed_service_left_is_weighed_after_its_next_start(working: Settings) -> None:
     id = session_id(MISTAKEN[-1])
     with stores(working) as storage, storage.database.writing() as store:
-        store.states.choose(store.units.hold(UNIT), id, step())
-        derive_again(store, way(storage), UNIT, store.sessions.get(id).started_at, (id,))
+        States(store).choose(Units(store).hold(UNIT), id, step())
+        derive_again(store, way(storage), UNIT, Sessions(store).get(id).started_at, (id,))
     with http_client(create_app(working)) as client:
         until(lambda: waits(client) == 0)
         assert said(client, id) == (True, ["cause"])

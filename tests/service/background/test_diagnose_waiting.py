@@ -9,20 +9,23 @@ from threading import Event, Thread
 import pytest
 
 from service.app import create_app
-from service.background.asking import ask_for_missing
-from service.background.bell import Bell
-from service.background.helper import DIED, Helper, Still
-from service.background.kinds import DIAGNOSES, MOST_ATTEMPTS, PUT_OFF, Kind
-from service.background.read_diagnosis import Reader
-from service.background.work import EXTEND, LEASE, Worker, work_next
+from service.diagnosis.store import Diagnoses
 from service.errors import AwayError
-from service.flows.guard import Failure
-from service.flows.receive import upload
-from service.metrics import Metrics
-from service.records.diagnosis import DiagnosisState
-from service.records.work import WorkKind
+from service.kit.bell import Bell
+from service.kit.guard import Failure
+from service.kit.metrics import Metrics
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.sessions.records import DiagnosisState
+from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
+from service.uploads.receive import upload
+from service.work.asking import ask_for_missing
+from service.work.diagnosis_reader import Reader
+from service.work.helper import DIED, Helper, Still
+from service.work.kinds import DIAGNOSES, MOST_ATTEMPTS, PUT_OFF, Kind
+from service.work.loop import EXTEND, LEASE, Worker, work_next
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes
 from tests.serving import http_client
@@ -61,13 +64,13 @@ def stored(storage: Storage, seed: int = 1) -> str:
 
 def state_of(storage: Storage, id: str) -> DiagnosisState | None:
     with storage.database.reading() as store:
-        made = store.diagnoses.summary(id)
+        made = Diagnoses(store).summary(id)
     return None if made is None else made.state
 
 
 def waiting(storage: Storage, now: datetime = LATER) -> tuple[str, ...]:
     with storage.database.reading() as store:
-        return store.work(WorkKind.DIAGNOSIS).waiting(now, 10)
+        return WorkQueue(store, WorkKind.DIAGNOSIS).waiting(now, 10)
 
 
 def test_a_process_of_its_own_makes_what_was_asked_for(own: Worker, helper: Helper) -> None:
@@ -82,7 +85,7 @@ def test_of_several_that_claim_one_at_once_only_one_gets_it(storage: Storage) ->
 
     def claim() -> None:
         with storage.database.writing() as store:
-            got.append(store.work(WorkKind.DIAGNOSIS).claim(id, NOW, NOW + LEASE))
+            got.append(WorkQueue(store, WorkKind.DIAGNOSIS).claim(id, NOW, NOW + LEASE))
 
     threads = [Thread(target=claim) for _ in range(5)]
     for thread in threads:
@@ -95,10 +98,10 @@ def test_of_several_that_claim_one_at_once_only_one_gets_it(storage: Storage) ->
 def test_a_claim_that_nobody_extends_runs_out(storage: Storage) -> None:
     id = stored(storage)
     with storage.database.writing() as store:
-        store.work(WorkKind.DIAGNOSIS).claim(id, NOW, NOW + LEASE)
+        WorkQueue(store, WorkKind.DIAGNOSIS).claim(id, NOW, NOW + LEASE)
     assert (waiting(storage, NOW + LEASE / 2), waiting(storage, NOW + LEASE)) == ((), (id,))
     with storage.database.writing() as store:
-        store.work(WorkKind.DIAGNOSIS).extend(id, NOW + 2 * LEASE)
+        WorkQueue(store, WorkKind.DIAGNOSIS).extend(id, NOW + 2 * LEASE)
     assert (waiting(storage, NOW + LEASE), waiting(storage, NOW + 2 * LEASE)) == ((), (id,))
 
 
@@ -126,7 +129,7 @@ def test_a_process_that_is_killed_at_its_work_costs_nothing(own: Worker, helper:
 def test_an_answer_that_nobody_took_is_never_that_of_the_next_job(own: Worker, helper: Helper) -> None:
     lost, sound = stored(own.storage, 1), stored(own.storage, 2)
     with own.storage.database.reading() as store:
-        own.storage.files.path(store.sessions.get(lost).sha256).unlink()
+        own.storage.files.path(Sessions(store).get(lost).sha256).unlink()
     helper.start()
     assert helper._process is not None
     pid, asked = helper._process.pid, iter([True])
@@ -149,8 +152,8 @@ def test_what_no_process_outlives_is_given_up_and_says_so(own: Worker, helper: H
     id = stored(own.storage)
     for _ in range(MOST_ATTEMPTS):
         with own.storage.database.writing() as store:
-            store.work(WorkKind.DIAGNOSIS).claim(id, NOW, NOW)
-            store.work(WorkKind.DIAGNOSIS).give_back(id)
+            WorkQueue(store, WorkKind.DIAGNOSIS).claim(id, NOW, NOW)
+            WorkQueue(store, WorkKind.DIAGNOSIS).give_back(id)
     assert work_next(own, helper.make, Event(), DIAGNOSES)
     assert (state_of(own.storage, id), waiting(own.storage)) == (DiagnosisState.FAILED, ())
 
@@ -167,7 +170,7 @@ def test_a_service_that_stops_gives_back_what_it_is_at(own: Worker, helper: Help
 def test_a_file_that_is_lost_is_put_off_and_tried_again_by_whoever_reads(own: Worker, helper: Helper) -> None:
     id = stored(own.storage)
     with own.storage.database.reading() as store:
-        file = own.storage.files.path(store.sessions.get(id).sha256)
+        file = own.storage.files.path(Sessions(store).get(id).sha256)
     file.rename(file.with_suffix(".away"))
     assert work_next(own, helper.make, Event(), DIAGNOSES)
     assert (waiting(own.storage, NOW), waiting(own.storage, NOW + PUT_OFF)) == ((), (id,))
@@ -181,19 +184,19 @@ def test_a_file_that_is_lost_is_put_off_and_tried_again_by_whoever_reads(own: Wo
 def test_what_changed_while_a_diagnosis_was_made_is_looked_at_again(storage: Storage) -> None:
     later = upload(storage, session_bytes(seed=2, month=2), "b.json", NOW).id
     with storage.database.reading() as store:
-        before = store.work(WorkKind.DIAGNOSIS).get(later)
+        before = WorkQueue(store, WorkKind.DIAGNOSIS).get(later)
     upload(storage, session_bytes(seed=1, month=1), "a.json", NOW)
     assert before is not None
     with storage.database.writing() as store:
-        assert not store.work(WorkKind.DIAGNOSIS).settle(later, before.ticket)
+        assert not WorkQueue(store, WorkKind.DIAGNOSIS).settle(later, before.ticket)
     assert later in waiting(storage)
 
 
 def test_a_starting_service_asks_for_what_is_missing(storage: Storage) -> None:
     id = stored(storage)
     with storage.database.writing() as store:
-        now = store.work(WorkKind.DIAGNOSIS).get(id)
-        assert store.work(WorkKind.DIAGNOSIS).settle(id, now and now.ticket)
+        now = WorkQueue(store, WorkKind.DIAGNOSIS).get(id)
+        assert WorkQueue(store, WorkKind.DIAGNOSIS).settle(id, now and now.ticket)
     assert waiting(storage) == ()
     ask_for_missing(storage, lambda: NOW, Metrics(), Bell(), Event())
     assert waiting(storage) == (id,)

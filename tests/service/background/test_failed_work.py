@@ -8,10 +8,10 @@ import httpx
 import pytest
 from sqlalchemy import text
 
+from service.kit.failed import AT_FAULT
+from service.opening import open_database
+from service.pages.usable.words import DATES_PENDING
 from service.settings import Settings
-from service.storage import Database
-from service.storage.failed import AT_FAULT
-from service.words.usable import DATES_PENDING
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes, session_id
 from tests.serving import limited_client
@@ -42,7 +42,7 @@ def dated_outlook(client: httpx.Client, unit: str) -> dict[str, Any]:
 
 def put_histories(settings: Settings, evidence: bytes) -> None:
     """What the first unit teaches its type, as a fault of the disk may leave it."""
-    database = Database(settings.database)
+    database = open_database(settings.database)
     with database.engine.begin() as connection:
         connection.execute(text("UPDATE histories SET evidence = :evidence"), {"evidence": evidence})
     database.close()

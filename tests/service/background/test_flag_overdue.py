@@ -2,11 +2,11 @@
 
 from datetime import UTC, datetime, timedelta
 
-from service.background.flag_overdue import flag_overdue
-from service.records.flag import FlagState, Matter
+from service.flags.records import FlagState, Matter
+from service.flags.store import FlagQuery, Flags
+from service.outlook.reading import outlook_of
+from service.records.flagging.overdue_units import flag_overdue
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
-from service.views.outlook import outlook_of
 from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
 
@@ -15,7 +15,7 @@ NOW = datetime(2026, 3, 2, tzinfo=UTC)
 
 def states(storage: Storage) -> list[tuple[Matter, FlagState]]:
     with storage.database.reading() as store:
-        return [(flag.matter, flag.state) for flag in store.flags.page(FlagQuery("BA-017"))]
+        return [(flag.matter, flag.state) for flag in Flags(store).page(FlagQuery("BA-017"))]
 
 
 def due_date(storage: Storage) -> datetime | None:

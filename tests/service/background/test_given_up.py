@@ -9,25 +9,29 @@ from typing import Any
 
 import pytest
 
-from service.background.bell import Bell
-from service.background.helper import Helper, Still
-from service.background.kinds import GROUPS, MODELS, MOST_ATTEMPTS, OUTLOOKS, Kind
-from service.background.work import Worker, work_next
-from service.flows.guard import AT_FAULT, Failure
-from service.flows.receive import upload
-from service.flows.refresh_group import current
-from service.flows.retry_failed import retry_failed
-from service.metrics import Metrics
-from service.records.group import Level
-from service.records.model import Evidence, ModelRevision, Scope
-from service.records.recomputation import Progress
-from service.records.work import WorkKind
+from service.groups.records import Level
+from service.groups.store import Groups
+from service.groups.words.group import FAILED
+from service.jobs.failures_store import Failures
+from service.jobs.retry import retry_failed
+from service.kit.bell import Bell
+from service.kit.failure_words import unit_failed, with_last_try
+from service.kit.guard import AT_FAULT, Failure
+from service.kit.metrics import Metrics
+from service.models.records import Evidence, ModelRevision, Progress, Scope
+from service.models.store import Models, Recomputations
+from service.models.words import GIVEN_UP, left_in_words
+from service.pages.usable.rules import usable
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.refresh_group import current
+from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
-from service.views.usable import usable
-from service.words.failed import unit_failed, with_last_try
-from service.words.group import FAILED
-from service.words.recomputations import GIVEN_UP, left_in_words
+from service.uploads.receive import upload
+from service.work.helper import Helper, Still
+from service.work.kinds import GROUPS, MODELS, MOST_ATTEMPTS, OUTLOOKS, Kind
+from service.work.loop import Worker, work_next
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 from tests.service.sessions import session_id
@@ -80,27 +84,27 @@ def test_an_outlook_is_given_up_until_its_unit_s_history_changes(
 ) -> None:
     assert tries(diagnosing(settings, two), helper, OUTLOOKS) == MOST_ATTEMPTS + 1
     with two.database.reading() as store:
-        assert not store.work(WorkKind.OUTLOOK).is_coming(UNIT)
+        assert not WorkQueue(store, WorkKind.OUTLOOK).is_coming(UNIT)
         assert unit_failed("The process died at the outlook of BA-017.") in usable(store, UNIT, NOW).reservations
     upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
     with two.database.reading() as store:
-        assert store.work(WorkKind.OUTLOOK).waiting(NOW, 10) == (UNIT,)
+        assert WorkQueue(store, WorkKind.OUTLOOK).waiting(NOW, 10) == (UNIT,)
 
 
 @one_engine
 def test_another_start_tries_an_outlook_again(settings: Settings, two: Storage, helper: Helper) -> None:
     tries(diagnosing(settings, two), helper, OUTLOOKS)
     with two.database.writing() as store:
-        assert store.work(WorkKind.OUTLOOK).waiting(NOW, 10) == ()
-        store.failures.try_again()
-        assert store.work(WorkKind.OUTLOOK).waiting(NOW, 10) == (UNIT,)
+        assert WorkQueue(store, WorkKind.OUTLOOK).waiting(NOW, 10) == ()
+        Failures(store).try_again()
+        assert WorkQueue(store, WorkKind.OUTLOOK).waiting(NOW, 10) == (UNIT,)
 
 
 @one_engine
 def test_a_group_is_given_up_with_these_sessions_and_says_so(settings: Settings, two: Storage, helper: Helper) -> None:
     assert tries(diagnosing(settings, two), helper, GROUPS) == 3 * (MOST_ATTEMPTS + 2)
     with two.database.reading() as store:
-        group = store.groups.find(Level.UNIT, UNIT)
+        group = Groups(store).find(Level.UNIT, UNIT)
         answer = current(store, group)
     assert answer is not None
     died = "The process died at the outlook of BA-017."
@@ -115,18 +119,18 @@ def test_sessions_keep_what_they_had_where_no_process_outlives_their_model(
     settings: Settings, two: Storage, helper: Helper
 ) -> None:
     with two.database.writing() as store:
-        revision = store.models.add(accepted())
-        store.recomputations.ask(revision.id, Scope.UNIT, UNIT, NOW)
+        revision = Models(store).add(accepted())
+        Recomputations(store).ask(revision.id, Scope.UNIT, UNIT, NOW)
     assert tries(diagnosing(settings, two), helper, MODELS) == MOST_ATTEMPTS + 1
     with two.database.reading() as store:
-        given_up = store.recomputations.of(revision.id)
+        given_up = Recomputations(store).of(revision.id)
         assert [one.state for one in given_up] == [Progress.GIVEN_UP]
-        assert store.sessions.get(session_id(GROUP[0])).revision == 0
+        assert Sessions(store).get(session_id(GROUP[0])).revision == 0
     assert left_in_words(given_up[0]) == GIVEN_UP
     assert retry_failed(two, NOW, "A. Weber") == 1
     assert work_next(diagnosing(settings, two), helper.make, Event(), MODELS)
     with two.database.reading() as store:
-        assert [one.state for one in store.recomputations.of(revision.id)] == [Progress.DONE]
+        assert [one.state for one in Recomputations(store).of(revision.id)] == [Progress.DONE]
 
 
 def accepted() -> ModelRevision:
@@ -139,11 +143,11 @@ def accepted() -> ModelRevision:
 @one_engine
 def test_a_session_at_fault_is_not_blamed_on_its_group(storage: Storage, two: Storage) -> None:
     with two.database.writing() as store:
-        group = store.groups.find(Level.UNIT, UNIT)
+        group = Groups(store).find(Level.UNIT, UNIT)
         for _ in range(2):
-            store.work(WorkKind.GROUP).claim(group.place, NOW, NOW)
-        store.work(WorkKind.GROUP).forgive(group.place)
-        assert store.work(WorkKind.GROUP).claim(group.place, NOW, NOW) == 1
+            WorkQueue(store, WorkKind.GROUP).claim(group.place, NOW, NOW)
+        WorkQueue(store, WorkKind.GROUP).forgive(group.place)
+        assert WorkQueue(store, WorkKind.GROUP).claim(group.place, NOW, NOW) == 1
 
 
 @one_engine

@@ -6,8 +6,8 @@ import zlib
 import pytest
 
 from service.errors import NotFoundError
-from service.flows.guard import AT_FAULT, Failure, Guard, ending_here, unforeseen
-from service.metrics import Metrics
+from service.kit.guard import AT_FAULT, Failure, Guard, ending_here, unforeseen
+from service.kit.metrics import Metrics
 from tests.service.test_log import lines
 
 

@@ -6,23 +6,24 @@ from threading import Event
 
 import pytest
 
-from service.background.bell import Bell
-from service.background.helper import Helper, Still
-from service.background.kinds import JOBS, MOST_ATTEMPTS, Kind
-from service.background.work import LEASE, Worker, work_next
-from service.background.work_job import work_piece
 from service.errors import ConflictError
-from service.flows.ask_job import ask_job, cancel_job, drop_outlived, file_of, tell_job
-from service.flows.guard import AT_FAULT, Failure
-from service.flows.receive import upload
-from service.flows.recompute import recompute
-from service.metrics import Metrics
-from service.records.identity import EVERYBODY
-from service.records.job import KEPT, Job, JobKind, JobState, NewJob, Piece
-from service.records.model import ModelRevision
-from service.records.recomputation import Progress, Task
+from service.jobs.changes import ask_job, cancel_job, drop_outlived, file_of, tell_job
+from service.jobs.records import KEPT, Job, JobKind, JobState, NewJob, Piece
+from service.jobs.store import Jobs
+from service.kit.bell import Bell
+from service.kit.guard import AT_FAULT, Failure
+from service.kit.metrics import Metrics
+from service.kit.person import EVERYBODY
+from service.models.records import ModelRevision, Progress, Task
+from service.models.store import Models, Recomputations
+from service.records.recalibrate import recompute
 from service.settings import Settings
 from service.storage import Storage
+from service.uploads.receive import upload
+from service.work.helper import Helper, Still
+from service.work.job_pieces import work_piece
+from service.work.kinds import JOBS, MOST_ATTEMPTS, Kind
+from service.work.loop import LEASE, Worker, work_next
 from tests.databases import one_engine
 from tests.service.background.test_given_up import accepted
 from tests.service.grouped import GROUP
@@ -52,9 +53,9 @@ def two_sessions(storage: Storage) -> Storage:
 def change_model(storage: Storage) -> tuple[ModelRevision, Job]:
     """A revision of the unit's model, with the job that it brings."""
     with storage.database.writing() as store:
-        changed = store.models.add(accepted())
-        tell_job(store, changed, store.recomputations.ask(changed.id, changed.scope, changed.subject, NOW), NOW)
-        return changed, store.jobs.page(1)[0]
+        changed = Models(store).add(accepted())
+        tell_job(store, changed, Recomputations(store).ask(changed.id, changed.scope, changed.subject, NOW), NOW)
+        return changed, Jobs(store).page(1)[0]
 
 
 @pytest.fixture
@@ -67,12 +68,12 @@ def helper(settings: Settings) -> Iterator[Helper]:
 
 def claim(storage: Storage, id: int, now: datetime = NOW) -> int | None:
     with storage.database.writing() as store:
-        return store.jobs.claim(id, now, now + LEASE)
+        return Jobs(store).claim(id, now, now + LEASE)
 
 
 def read(storage: Storage, id: int) -> Job:
     with storage.database.reading() as store:
-        return store.jobs.get(id)
+        return Jobs(store).get(id)
 
 
 def pieces(storage: Storage, id: int, count: int) -> Job:
@@ -107,9 +108,9 @@ def test_a_piece_that_two_were_at_is_counted_once(three: Storage) -> None:
     before = read(three, id)
     work_piece(three, id, NOW, 2.0)
     with three.database.writing() as store:
-        unit = store.jobs.next_unit(before)
+        unit = Jobs(store).next_unit(before)
         assert unit is not None
-        store.jobs.advance(before, unit[0], Piece())
+        Jobs(store).advance(before, unit[0], Piece())
     assert read(three, id).done == 1
 
 
@@ -128,7 +129,7 @@ def test_it_is_cancelled_between_two_pieces_and_keeps_what_is_whole(three: Stora
 def test_the_units_of_a_changed_model_are_one_job(two_sessions: Storage) -> None:
     changed, job = change_model(two_sessions)
     with two_sessions.database.reading() as store:
-        assert store.jobs.waiting(NOW, 10) == ()
+        assert Jobs(store).waiting(NOW, 10) == ()
     recompute(two_sessions, Task(changed.id, "BA-017"), NOW, 2.0)
     recompute(two_sessions, Task(changed.id, "BA-017"), NOW, 2.0)
     ended = read(two_sessions, job.id)
@@ -139,8 +140,8 @@ def test_a_changed_model_is_cancelled_for_units_that_nobody_is_at(two_sessions: 
     changed, job = change_model(two_sessions)
     cancel_job(two_sessions, job.id, EVERYBODY, "A. Silva", NOW)
     with two_sessions.database.reading() as store:
-        assert store.recomputations.waiting(NOW, 10) == ()
-        assert [one.state for one in store.recomputations.of(changed.id)] == [Progress.CANCELLED]
+        assert Recomputations(store).waiting(NOW, 10) == ()
+        assert [one.state for one in Recomputations(store).of(changed.id)] == [Progress.CANCELLED]
 
 
 @one_engine
@@ -148,8 +149,8 @@ def test_several_jobs_take_turns(three: Storage) -> None:
     ids = [ask_job(three, new, NOW).id for new in (AGAIN, REPORT)]
     claim(three, ids[0], NOW + timedelta(seconds=1))
     with three.database.writing() as store:
-        store.jobs.give_back(ids[0])
-        assert store.jobs.waiting(NOW + timedelta(seconds=2), 10) == (ids[1], ids[0])
+        Jobs(store).give_back(ids[0])
+        assert Jobs(store).waiting(NOW + timedelta(seconds=2), 10) == (ids[1], ids[0])
 
 
 @one_engine
@@ -184,6 +185,6 @@ def test_a_report_that_was_cancelled_leaves_no_file(three: Storage) -> None:
     job = ask_job(three, REPORT, NOW)
     claim(three, job.id)
     with three.database.writing() as store:
-        store.jobs.cancel(job.id, "A. Silva", NOW)
+        Jobs(store).cancel(job.id, "A. Silva", NOW)
     work_piece(three, job.id, NOW, 2.0)
     assert not list(three.files.folder.glob("made/*"))

@@ -6,18 +6,20 @@ from threading import Event
 
 import pytest
 
-from service.background.asking import ask_for_outdated
-from service.background.bell import Bell
-from service.background.helper import Helper
-from service.background.kinds import GROUPS
-from service.background.work import LEASE, Worker, work_next
-from service.flows.receive import upload
-from service.flows.refresh_group import current, refresh_group
-from service.metrics import Metrics
-from service.records.group import Group, Level
-from service.records.work import WorkKind
+from service.groups.records import Group, Level
+from service.groups.store import Groups
+from service.kit.bell import Bell
+from service.kit.metrics import Metrics
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.refresh_group import current, refresh_group
 from service.settings import Settings
 from service.storage import Storage
+from service.uploads.receive import upload
+from service.work.asking import ask_for_outdated
+from service.work.helper import Helper
+from service.work.kinds import GROUPS
+from service.work.loop import LEASE, Worker, work_next
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 
@@ -30,7 +32,7 @@ def unit(storage: Storage) -> Group:
     for content in GROUP[:2]:
         upload(storage, content, "a.json", NOW)
     with storage.database.reading() as store:
-        return store.groups.find(Level.UNIT, "BA-017")
+        return Groups(store).find(Level.UNIT, "BA-017")
 
 
 @pytest.fixture
@@ -43,7 +45,7 @@ def helper(settings: Settings) -> Iterator[Helper]:
 
 def waiting(storage: Storage, now: datetime = NOW) -> list[Level]:
     with storage.database.reading() as store:
-        return [store.groups.at(place).level for place in store.work(WorkKind.GROUP).waiting(now, 10)]
+        return [Groups(store).at(place).level for place in WorkQueue(store, WorkKind.GROUP).waiting(now, 10)]
 
 
 @one_engine
@@ -62,17 +64,17 @@ def test_a_process_of_its_own_makes_one_after_another(
 def test_one_process_claims_a_group_at_a_time(storage: Storage, unit: Group) -> None:
     for got in (1, None):
         with storage.database.writing() as store:
-            assert store.work(WorkKind.GROUP).claim(unit.place, NOW, NOW + LEASE) == got
+            assert WorkQueue(store, WorkKind.GROUP).claim(unit.place, NOW, NOW + LEASE) == got
     assert Level.UNIT not in waiting(storage)
     assert Level.UNIT in waiting(storage, NOW + LEASE)
 
 
 def test_who_asks_while_it_is_made_is_not_settled_with_it(storage: Storage, unit: Group) -> None:
     with storage.database.reading() as store:
-        asked = store.work(WorkKind.GROUP).tickets(unit.place)
+        asked = WorkQueue(store, WorkKind.GROUP).tickets(unit.place)
     upload(storage, GROUP[2], "a.json", NOW)
     with storage.database.writing() as store:
-        store.work(WorkKind.GROUP).settle_each(asked)
+        WorkQueue(store, WorkKind.GROUP).settle_each(asked)
     assert Level.UNIT in waiting(storage)
 
 
@@ -80,6 +82,6 @@ def test_groups_without_an_answer_of_now_are_asked_for_once(storage: Storage, un
     refresh_group(storage, unit, NOW)
     assert ask_for_outdated(storage, lambda: NOW) == 0
     with storage.database.writing() as store:
-        for group in store.groups.every():
-            store.work(WorkKind.GROUP).settle_each(store.work(WorkKind.GROUP).tickets(group.place))
+        for group in Groups(store).every():
+            WorkQueue(store, WorkKind.GROUP).settle_each(WorkQueue(store, WorkKind.GROUP).tickets(group.place))
     assert [ask_for_outdated(storage, lambda: NOW) for _ in range(2)] == [2, 0]

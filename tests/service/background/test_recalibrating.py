@@ -10,13 +10,18 @@ from pathlib import Path
 import psutil
 import pytest
 
-from service.background import recalibrating, workers
-from service.background.recalibrating import by_workers, one_by_one, units_behind
 from service.errors import ConflictError, ServiceError
-from service.flows.receive import upload
-from service.records.model import ModelRevision, Scope
+from service.models.records import ModelRevision, Scope
+from service.models.store import Models
+from service.records import many as recalibrating
+from service.records import many as workers
+from service.records.many import by_workers, one_by_one, units_behind
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
+from service.storage.audit import Audit
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block
 from tests.databases import Databases, one_engine
 from tests.service.ingest.test_formats import parquet_bytes
@@ -42,13 +47,13 @@ def fill(storage: Storage, *units: str, more: tuple[bytes, ...] = ()) -> list[st
 def accept(storage: Storage, session: str, scope: Scope = Scope.UNIT_TYPE, subject: str = TYPE) -> None:
     new = ModelRevision(0, scope, subject, "cubic-nonlinearity", ("A1",), session, None, "K. Ito", "", NOW)
     with storage.database.writing() as store:
-        store.models.add(new)
+        Models(store).add(new)
 
 
 def revisions(storage: Storage, ids: list[str]) -> set[tuple[int, ...]]:
     """That sessions were computed under."""
     with storage.database.reading() as store:
-        return {store.calibrations.revisions(id) for id in ids}
+        return {Calibrations(store).revisions(id) for id in ids}
 
 
 def test_only_units_that_a_later_model_concerns_are_behind(storage: Storage) -> None:
@@ -58,15 +63,15 @@ def test_only_units_that_a_later_model_concerns_are_behind(storage: Storage) -> 
     assert tuple(units_behind(storage)) == ()
     accept(storage, first, Scope.UNIT, UNITS[0])
     with storage.database.reading() as store:
-        assert (store.models.units_behind("", 9), store.models.units_behind(UNITS[0], 9)) == (UNITS[:1], ())
-        assert store.models.count_behind() == 1
+        assert (Models(store).units_behind("", 9), Models(store).units_behind(UNITS[0], 9)) == (UNITS[:1], ())
+        assert Models(store).count_behind() == 1
 
 
 @one_engine
 def test_a_session_whose_file_is_lost_is_told_and_stops_no_other(storage: Storage) -> None:
     lost, found = fill(storage, *UNITS[:2])
     with storage.database.reading() as store:
-        storage.files.path(store.sessions.get(lost).sha256).unlink()
+        storage.files.path(Sessions(store).get(lost).sha256).unlink()
     first, second = one_by_one(storage, clock, 2.0)(units_behind(storage))
     assert first.done is not None
     assert [(one.session, "missing" in one.why) for one in first.done.kept] == [(lost, True)]
@@ -130,7 +135,7 @@ def elsewhere(sqlite: Databases, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 def test_a_worker_with_another_database_computes_nothing(storage: Storage) -> None:
     fill(storage, *UNITS[:1])
     with storage.database.reading() as store:
-        last = store.audit.last()
+        last = Audit(store).last()
     with pytest.raises(ConflictError, match="IMU_HEALTH_DATABASE_URL"):
         workers._work(last, UNITS[0], NOW)
 
@@ -139,7 +144,7 @@ def test_a_worker_with_another_database_computes_nothing(storage: Storage) -> No
 def test_without_its_library_several_processes_are_refused_in_words(
     storage: Storage, settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recalibrating, "ROOM", "service.background.workers_of_nobody")
+    monkeypatch.setattr(recalibrating, "ROOM", "service.work.workers_of_nobody")
     with pytest.raises(ServiceError, match=r"pip install 'imu-health\[dask\]'"):
         by_workers(storage, settings, clock, workers=2)
 

@@ -8,20 +8,24 @@ from typing import Any
 import pytest
 
 from service.app import create_app
-from service.background.bell import Bell
-from service.background.helper import Helper
-from service.background.kinds import OUTLOOKS
-from service.background.work import LEASE, Worker, work_next
-from service.flows.receive import upload
-from service.flows.refresh_beside import refresh_beside
-from service.flows.withdraw_session import withdraw_session
-from service.metrics import Metrics
-from service.records.usable import Usable
-from service.records.work import WorkKind
+from service.flags.store import Flags
+from service.fleet.records import Usable
+from service.kit.bell import Bell
+from service.kit.metrics import Metrics
+from service.outlook.store import Outlooks
+from service.pages.usable.rules import usable
+from service.pages.usable.words import DATES_PENDING
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.changes import withdraw_session
+from service.records.refresh_outlooks import refresh_beside
 from service.settings import Settings
 from service.storage import Storage
-from service.views.usable import usable
-from service.words.usable import DATES_PENDING
+from service.units.store import Units
+from service.uploads.receive import upload
+from service.work.helper import Helper
+from service.work.kinds import OUTLOOKS
+from service.work.loop import LEASE, Worker, work_next
 from tests.databases import one_engine
 from tests.service.records import step, way
 from tests.service.sessions import session_bytes, session_id
@@ -43,13 +47,13 @@ def content_of(month: int) -> bytes:
 def known(storage: Storage) -> dict[str, Any]:
     """The outlook and the open flags of the unit."""
     with storage.database.reading() as store:
-        outlook, flags = store.outlooks.of_unit(UNIT), store.flags.open_of(store.units.key(UNIT))
+        outlook, flags = Outlooks(store).of_unit(UNIT), Flags(store).open_of(Units(store).key(UNIT))
     return {"outlook": outlook, "flags": [(flag.key, flag.summary) for flag in flags]}
 
 
 def waiting(storage: Storage) -> tuple[str, ...]:
     with storage.database.reading() as store:
-        return store.work(WorkKind.OUTLOOK).waiting(NOW, 10)
+        return WorkQueue(store, WorkKind.OUTLOOK).waiting(NOW, 10)
 
 
 @pytest.fixture
@@ -75,20 +79,20 @@ def test_it_is_what_it_would_be_within_the_upload(storage: Storage) -> None:
 def test_what_changed_meanwhile_is_looked_at_again(storage: Storage) -> None:
     fill(storage, (1, 2))
     with storage.database.reading() as store:
-        before = store.work(WorkKind.OUTLOOK).get(UNIT)
+        before = WorkQueue(store, WorkKind.OUTLOOK).get(UNIT)
     fill(storage, (3,))
     assert before is not None
     with storage.database.writing() as store:
-        assert not store.work(WorkKind.OUTLOOK).holds(UNIT, before.ticket)
+        assert not WorkQueue(store, WorkKind.OUTLOOK).holds(UNIT, before.ticket)
 
 
 def test_one_process_claims_it_at_a_time(storage: Storage) -> None:
     fill(storage, (1, 2))
     for got in (1, None):
         with storage.database.writing() as store:
-            assert store.work(WorkKind.OUTLOOK).claim(UNIT, NOW, NOW + LEASE) == got
+            assert WorkQueue(store, WorkKind.OUTLOOK).claim(UNIT, NOW, NOW + LEASE) == got
     with storage.database.writing() as store:
-        assert store.work(WorkKind.OUTLOOK).claim(UNIT, NOW + LEASE, NOW + 2 * LEASE)
+        assert WorkQueue(store, WorkKind.OUTLOOK).claim(UNIT, NOW + LEASE, NOW + 2 * LEASE)
 
 
 @one_engine
@@ -114,7 +118,7 @@ def test_whoever_asks_whether_a_unit_may_be_used_waits_for_its_dates(settings: S
 def test_until_its_dates_are_known_it_may_not_be_used_and_says_why(settings: Settings, storage: Storage) -> None:
     fill(storage, (9, 10))
     with storage.database.writing() as store:
-        store.work(WorkKind.OUTLOOK).claim(UNIT, NOW, NOW + LEASE)
+        WorkQueue(store, WorkKind.OUTLOOK).claim(UNIT, NOW, NOW + LEASE)
     worked = settings.model_copy(update={"diagnosis_workers": 1})
     with http_client(create_app(worked, lambda: NOW)) as client:
         page = client.get(f"/units/{UNIT}", headers={"Accept": "text/html"}).text

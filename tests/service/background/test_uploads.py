@@ -8,23 +8,25 @@ from threading import Event
 
 import pytest
 
-from service.background.bell import Bell
-from service.background.take_in_waiting import MOST_TRIES, UPLOADS, taking_in
-from service.background.work import Worker, work_next
 from service.errors import AwayError, BusyError, ConflictError, NotFoundError
-from service.flows import ask_job
-from service.flows import take_in as flow
-from service.flows.ask_job import cancel_job
-from service.flows.receive import Reception
-from service.flows.take_in import ask_upload, sweep_waiting, take_in
-from service.ingest import limits
-from service.metrics import Metrics
-from service.records.identity import EVERYBODY
-from service.records.job import Job, JobState
-from service.records.received import Replaced, SentFile
+from service.jobs import changes as ask_job
+from service.jobs.changes import cancel_job
+from service.jobs.records import Job, JobState
+from service.jobs.store import Jobs, UploadJobs
+from service.kit import limits
+from service.kit.arriving_files import Replaced, SentFile
+from service.kit.bell import Bell
+from service.kit.metrics import Metrics
+from service.kit.person import EVERYBODY
+from service.records.reception import Reception
+from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Files, Storage
 from service.storage.waiting import FOLDER, UNASKED
+from service.uploads import take_in as flow
+from service.uploads.take_in import ask_upload, sweep_waiting, take_in
+from service.work.loop import Worker, work_next
+from service.work.uploads import MOST_TRIES, UPLOADS, taking_in
 from tests import builders
 from tests.databases import one_engine
 from tests.estimator.test_reading_csv import csv_of
@@ -53,12 +55,12 @@ def asked(storage: Storage, file: SentFile = SESSION, place: str = "one") -> Job
 
 def read(storage: Storage, id: int) -> Job:
     with storage.database.reading() as store:
-        return store.jobs.get(id)
+        return Jobs(store).get(id)
 
 
 def sessions(storage: Storage) -> list[str]:
     with storage.database.reading() as store:
-        return [one.id for one in store.sessions.page(None, 0, 10)]
+        return [one.id for one in Sessions(store).page(None, 0, 10)]
 
 
 def waiting(storage: Storage) -> list[Path]:
@@ -138,7 +140,7 @@ def test_cancelled_while_it_is_read_it_leaves_nothing(storage: Storage, few_cell
 def test_once_it_is_being_stored_nobody_cancels_it(storage: Storage) -> None:
     job = asked(storage)
     with storage.database.writing() as store:
-        assert store.jobs.begin_storing(job.id)
+        assert Jobs(store).begin_storing(job.id)
     with pytest.raises(ConflictError, match="being stored"):
         cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
 
@@ -148,7 +150,7 @@ def test_whoever_waits_reads_how_far_it_is(storage: Storage, few_cells: None) ->
     job, seen = asked(storage, LOG), []
     take_in(reception(storage), job.id, NOW, lambda: seen.append(read(storage, job.id).done))
     with storage.database.reading() as store:
-        assert store.jobs.get(job.id).done == job.total
+        assert Jobs(store).get(job.id).done == job.total
     assert seen, "nothing was told while it was read"
 
 
@@ -166,7 +168,7 @@ def test_what_passes_is_tried_again_after_a_minute_and_says_why(
         assert work()
     assert (read(storage, job.id).held_up, work()) == ("The database does not answer.", False)
     with storage.database.reading() as store:
-        assert store.upload_jobs.waiting(NOW + timedelta(minutes=1), 10) == (job.id,)
+        assert UploadJobs(store).waiting(NOW + timedelta(minutes=1), 10) == (job.id,)
 
 
 @one_engine
@@ -223,17 +225,17 @@ def test_too_many_are_asked_to_come_again_and_leave_nothing(storage: Storage, mo
 def test_a_job_whose_storing_ended_without_a_session_can_be_cancelled(storage: Storage, ended: str) -> None:
     job = asked(storage)
     with storage.database.writing() as store:
-        store.upload_jobs.claim(job.id, NOW, NOW)
-        store.jobs.begin_storing(job.id)
+        UploadJobs(store).claim(job.id, NOW, NOW)
+        Jobs(store).begin_storing(job.id)
     with pytest.raises(ConflictError):
         cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
     later = NOW + timedelta(minutes=5)
     with storage.database.writing() as store:
         if ended == "give_back":
-            store.upload_jobs.give_back(job.id)
+            UploadJobs(store).give_back(job.id)
         elif ended == "put_off":
-            store.upload_jobs.put_off(job.id, later)
+            UploadJobs(store).put_off(job.id, later)
         else:
-            store.upload_jobs.claim(job.id, later, later)
+            UploadJobs(store).claim(job.id, later, later)
     cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
     assert read(storage, job.id).state is JobState.CANCELLED

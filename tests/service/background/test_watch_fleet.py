@@ -9,11 +9,11 @@ from threading import Event, Thread
 import pytest
 from sqlalchemy import text
 
-from service.background.watch_fleet import Pace, look, watch_fleet
-from service.metrics import Metrics
-from service.records.flag import Matter
+from service.flags.records import Matter
+from service.flags.store import FlagQuery, Flags
+from service.kit.metrics import Metrics
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
+from service.work.watch_fleet import Pace, look, watch_fleet
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.patience import LONG
 from tests.service.dated import upload_and_date
@@ -32,7 +32,7 @@ def spoil(storage: Storage, statement: str, **values: str) -> None:
 
 def flagged(storage: Storage, matter: Matter) -> set[tuple[str, str]]:
     with storage.database.reading() as store:
-        return {(f.unit, f.place) for f in store.flags.page(FlagQuery()) if f.matter is matter}
+        return {(f.unit, f.place) for f in Flags(store).page(FlagQuery()) if f.matter is matter}
 
 
 @contextmanager

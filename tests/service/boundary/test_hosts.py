@@ -6,8 +6,8 @@ import httpx
 import pytest
 from pydantic import ValidationError
 
-from service.boundary.hosts import hosts_of
 from service.settings import Settings
+from service.web.hosts import hosts_of
 from tests.service.boundary.conftest import At
 from tests.service.boundary.raw import head, sent
 from tests.service.sessions import session_bytes

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from datetime import timedelta
 
-from service.charts.history import history_charts
-from service.charts.tracks import tracks_of
-from service.records.event import Service
+from service.outlook.charts import history_charts
+from service.outlook.tracks import tracks_of
+from service.units.records import Service
 from tests.service.pages.records import NOON, bias_point
 
 

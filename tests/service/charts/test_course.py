@@ -5,7 +5,7 @@ import numpy as np
 from estimator import calibrate
 from estimator.diagnosis.results import Course
 from estimator.reading import read_session
-from service.charts.course import course_charts
+from service.diagnosis.charts import course_charts
 from tests.builders import accelerometer_block
 
 RESIDUALS = calibrate(read_session(accelerometer_block())).residuals

@@ -7,9 +7,9 @@ import pytest
 
 from estimator import calibrate, read_session
 from estimator.results import Calibration
-from service.charts.noise import noise_of
-from service.charts.residuals import residual_charts
-from service.words.fit import bands_in_words
+from service.sessions.charts.noise import noise_of
+from service.sessions.charts.residuals import residual_charts
+from service.sessions.words.fit import bands_in_words
 from tests.builders import arbitrary_orientations
 from tests.service.sessions import session_bytes
 

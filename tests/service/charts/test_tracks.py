@@ -5,8 +5,8 @@ from datetime import timedelta
 
 import pytest
 
-from service.charts.tracks import Track, tolerance_text, tracks_of
-from service.records.event import Service
+from service.outlook.tracks import Track, tolerance_text, tracks_of
+from service.units.records import Service
 from tests.service.pages.records import NOON, bias_point
 
 MICRO = 9.80665e-6

@@ -7,8 +7,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service.records.identity import Role
-from service.reports.sealing import seal_of
+from service.kit.person import Role
+from service.papers.sealing import seal_of
 from service.settings import Settings
 from service.storage import Storage
 from tests.conftest import StockOf

@@ -11,15 +11,19 @@ from estimator.reading import read_session
 from service.demo.cast import CAST, END
 from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
-from service.flows.receive import upload
-from service.judging.stand_health import stand_health
-from service.records.decision import Verdict
-from service.records.fleet import FleetQuery
+from service.flags.store import FlagQuery, Flags
+from service.fleet.records import FleetQuery
+from service.fleet.store import Fleet
+from service.outlook.reading import outlook_of
+from service.sessions.decision import Verdict
+from service.sessions.store import Sessions
 from service.settings import Settings
+from service.stands.health import stand_health
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
 from service.storage.schema import upgrade
-from service.views.outlook import outlook_of
+from service.units.remarks_store import Notes
+from service.units.store import Services
+from service.uploads.receive import upload
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import COMMAND, started
@@ -99,12 +103,12 @@ def test_dates_are_irregular_and_in_order_over_three_years() -> None:
 def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
     assert not is_wanted(demonstration)
     with demonstration.database.reading() as store:
-        units = {unit.serial: unit for unit in store.fleet.units(FleetQuery())}
-        flags = [(flag.unit, flag.place, flag.state.value) for flag in store.flags.page(FlagQuery())]
-        notes = [note.text for serial in units for note in store.notes.of_unit(serial)]
-        stages = [session.stage for session in store.sessions.of_unit("BA-109") if session.stage]
-        breaks = {serial: store.services.of_unit(serial) for serial in units}
-        sessions = store.sessions.page("BA-107", 0, 50)
+        units = {unit.serial: unit for unit in Fleet(store).units(FleetQuery())}
+        flags = [(flag.unit, flag.place, flag.state.value) for flag in Flags(store).page(FlagQuery())]
+        notes = [note.text for serial in units for note in Notes(store).of_unit(serial)]
+        stages = [session.stage for session in Sessions(store).of_unit("BA-109") if session.stage]
+        breaks = {serial: Services(store).of_unit(serial) for serial in units}
+        sessions = Sessions(store).page("BA-107", 0, 50)
         stands = stand_health(store)
         outlooks = {serial: outlook_of(store, serial, END) for serial in units}
     assert {serial: units[serial].verdict for serial in CONDITIONS} == CONDITIONS

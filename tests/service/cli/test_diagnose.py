@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from service.flows.receive import upload
 from service.settings import Settings
+from service.uploads.receive import upload
 from tests.databases import Databases
 from tests.service.cli.conftest import Run, write
 from tests.service.diagnosed import ALIASES, TEMPERATURE, TWO_AT_ONCE, UNEXPLAINED, boasting, drawn, swaying_stand, warm

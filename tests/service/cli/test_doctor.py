@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from service.commands.examine import State, database, variables
-from service.flows.add_note import add_note
+from service.records.unit_changes import add_note
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.schema import downgrade

@@ -7,8 +7,9 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service.flows.flagging.settle import Occasion, raise_flag
-from service.records.flag import Concern, Matter
+from service.flags.records import Concern, Matter
+from service.records.flagging.settle import Occasion, raise_flag
+from service.units.store import Units
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
@@ -35,7 +36,7 @@ def test_open_flags_are_shown(run: Run, address: str) -> None:
 def test_more_open_flags_than_a_page_holds_are_all_shown(run: Run, sqlite: Databases, stock_of: StockOf) -> None:
     with stock_of(sqlite).holding(*FAILED) as settings:
         with stores(settings) as storage, storage.database.writing() as store:
-            occasion = Occasion(store.units.key("BA-017"), None, NOW)
+            occasion = Occasion(Units(store).key("BA-017"), None, NOW)
             for number in range(1000):
                 raise_flag(store, occasion, Concern(Matter.CAUSE, str(number), 1, "seen"))
         with serving(settings) as address:

@@ -10,14 +10,15 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from service.flows.receive import Reception
-from service.flows.take_in import ask_upload, take_in
-from service.metrics import Metrics
-from service.records.identity import EVERYBODY
-from service.records.job import JobState
-from service.records.received import SentFile
+from service.jobs.records import JobState
+from service.jobs.store import Jobs
+from service.kit.arriving_files import SentFile
+from service.kit.metrics import Metrics
+from service.kit.person import EVERYBODY
+from service.records.reception import Reception
 from service.settings import Settings
 from service.storage.backup import write_backup
+from service.uploads.take_in import ask_upload, take_in
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
 from tests.service.sessions import session_bytes
@@ -74,5 +75,5 @@ def test_a_job_that_names_a_file_elsewhere_removes_nothing(settings: Settings) -
             connection.execute(change, {"name": OUTSIDE})
         take_in(Reception(storage, 2.0, Metrics(), lambda: None), 1, NOW)
         with storage.database.reading() as store:
-            assert store.jobs.get(1).state is JobState.FAILED
+            assert Jobs(store).get(1).state is JobState.FAILED
         assert outside.read_text() == "kept"

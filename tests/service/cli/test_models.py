@@ -5,7 +5,8 @@ from datetime import UTC, datetime
 
 import pytest
 
-from service.records.model import ModelRevision, Scope
+from service.models.records import ModelRevision, Scope
+from service.models.store import Models
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
@@ -48,6 +49,6 @@ def test_more_revisions_than_a_page_holds_are_all_shown(run: Run, sqlite: Databa
     with stock_of(sqlite).holding(GROUP[0]) as settings:
         with stores(settings) as storage, storage.database.writing() as store:
             for _ in range(1001):
-                store.models.add(REVISION)
+                Models(store).add(REVISION)
         with serving(settings) as address:
             assert len(run("models", "--json", "--server", address).documents) == 1001

@@ -11,9 +11,9 @@ import pytest
 
 from benchmarks.files.hostile import HOSTILE, Hostile
 from estimator.errors import FormatError
-from service.ingest import limits
 from service.ingest.recording import HEAD, recording
 from service.ingest.stream import open_recording
+from service.kit import limits
 from tests.service.cli.conftest import Run
 from tests.service.recordings import recording_bytes, recording_document
 from tests.service.sessions import session_bytes

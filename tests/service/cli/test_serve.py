@@ -8,7 +8,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service.storage.database import Database
+from service.opening import open_database
 from tests.databases import Databases
 from tests.service.cli.conftest import COMMAND, ENTRYPOINT, Run, started
 
@@ -38,7 +38,7 @@ def test_the_container_s_entrypoint_runs_other_commands() -> None:
 def test_db_upgrade_and_downgrade(run: Run, databases: Databases) -> None:
     url = databases.empty()
     assert run("db", "upgrade", "--database-url", url).code == 0
-    ready = Database(url)
+    ready = open_database(url)
     ready.require_ready()
     ready.close()
     assert run("db", "downgrade", "-1", "--database-url", url).code == 0

@@ -15,7 +15,7 @@ from service.client import Client, connect
 from service.client.answers import Point
 from service.client.reading import read
 from service.errors import ConflictError, NotFoundError, RefusedError, ServiceError, SignInError
-from service.records.identity import Role
+from service.kit.person import Role
 from service.settings import Settings
 from tests.conftest import SettingsHolding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - a hook

@@ -13,15 +13,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.flows.accept_session import accept_session
-from service.flows.choose_reference import choose_reference
-from service.flows.record_service import record_service
-from service.flows.withdraw_service import withdraw_service
-from service.flows.withdraw_session import withdraw_session
-from service.records.event import NewService
-from service.records.received import Replaced
-from service.records.state import RecordState
-from service.storage import Database, Files, Storage
+from service.kit.arriving_files import Replaced
+from service.opening import open_database
+from service.records.changes import accept_session, choose_reference, record_service, withdraw_service, withdraw_session
+from service.sessions.states import RecordState
+from service.sessions.store import Sessions
+from service.storage import Files, Storage
+from service.units.records import NewService
 from tests.databases import Databases
 from tests.estimator.test_reading_csv import csv_of
 from tests.service.dated import upload_and_date
@@ -80,7 +78,7 @@ class Crew:
         """Everything that was taken back is accepted again, and one reference before the service is the one that all
         agree on."""
         with self.storage.database.reading() as store:
-            gone = [s.id for s in store.sessions.of_unit(UNITS[0]) if s.state is RecordState.WITHDRAWN]
+            gone = [s.id for s in Sessions(store).of_unit(UNITS[0]) if s.state is RecordState.WITHDRAWN]
         for id in gone:
             accept_session(self.storage, way(self.storage), id, step())
         self.chosen(session_id(content(2)))
@@ -97,7 +95,7 @@ def known(databases: Databases, folder: Path, order: Any) -> dict[str, Any]:
     with ExitStack() as stack:
         url = databases.migrated()
         stack.callback(databases.drop, url)
-        database = Database(url)
+        database = open_database(url)
         stack.callback(database.close)
         crew = Crew(Storage(database, Files(folder)))
         first = min(i for i, (record, _) in enumerate(order) if record != "service")

@@ -4,12 +4,13 @@ from collections.abc import Callable
 
 import pytest
 
-from service.flows.correct_session import correct_session
-from service.flows.receive import Reception, upload
 from service.judging.beside_type import FEWEST
-from service.metrics import Metrics
-from service.records.state import RecordState
+from service.kit.metrics import Metrics
+from service.records.reception import Reception
+from service.sessions.states import RecordState
 from service.storage import Storage
+from service.uploads.correct import correct_session
+from service.uploads.receive import upload
 from tests.builders import Document
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.flows.test_questioned import slipped, times

@@ -8,16 +8,19 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from sqlalchemy import text
 
+from service.diagnosis.store import Diagnoses
 from service.errors import ConflictError, NotFoundError, RefusedError
-from service.flows.accept_model import accept_model
-from service.flows.diagnose import diagnose
-from service.flows.recalibrate import recalibrate
-from service.flows.receive import upload
-from service.flows.withdraw_model import withdraw_model
-from service.records.diagnosis import DiagnosisState
-from service.records.model import ModelRevision, NewModel, Scope
+from service.models.records import ModelRevision, NewModel, Scope
+from service.records.diagnose import diagnose
+from service.records.models import accept_model, withdraw_model
+from service.records.recalibrate import recalibrate
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.history_store import History, HistoryQuery
+from service.sessions.records import DiagnosisState
+from service.sessions.store import Sessions
 from service.storage import Storage
-from service.storage.queries.history import HistoryQuery
+from service.units.store import Units
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block, true_sensors
 from tests.conftest import SettingsHolding
 from tests.service.diagnosed import ECCENTRIC, TEMPERATURE, drawn
@@ -85,8 +88,8 @@ def test_the_next_session_is_calibrated_with_the_accepted_cause(warm: Storage) -
     assert revision.evidence.gain.after.chi2_per_dof < revision.evidence.gain.before.chi2_per_dof
     later = stored(warm, started_at="2026-08-01T09:00:00Z")
     with warm.database.reading() as store:
-        assert store.sessions.get(later).revision == 1
-        assert store.calibrations.get(later).fit.chi2 < store.calibrations.get(ID).fit.chi2 / 2
+        assert Sessions(store).get(later).revision == 1
+        assert Calibrations(store).get(later).fit.chi2 < Calibrations(store).get(ID).fit.chi2 / 2
 
 
 @pytest.mark.parametrize("scope", [Scope.UNIT, Scope.UNIT_TYPE])
@@ -94,7 +97,7 @@ def test_a_model_is_for_its_scope_alone(warm: Storage, scope: Scope) -> None:
     accept(warm, replace(ACCEPT, scope=scope))
     other = stored(warm, unit="ANOTHER")
     with warm.database.reading() as store:
-        assert store.sessions.get(other).revision == (1 if scope is Scope.UNIT_TYPE else 0)
+        assert Sessions(store).get(other).revision == (1 if scope is Scope.UNIT_TYPE else 0)
 
 
 def test_a_stand_s_cause_is_in_the_model_of_whatever_it_measures(storage: Storage) -> None:
@@ -104,7 +107,7 @@ def test_a_stand_s_cause_is_in_the_model_of_whatever_it_measures(storage: Storag
     assert accept_model(storage, diagnose(storage, id, NOW), new, NOW).subject == document["stand"]["id"]
     other = upload(storage, session_bytes(stand=WARM["stand"] | {"id": document["stand"]["id"]}), "b.json", NOW).id
     with storage.database.reading() as store:
-        assert store.sessions.get(other).revision == 1
+        assert Sessions(store).get(other).revision == 1
 
 
 REFUSED: dict[str, tuple[NewModel, str]] = {
@@ -123,23 +126,23 @@ def test_what_cannot_be_accepted_is_refused_with_its_field(warm: Storage, why: s
 
 def test_recomputing_adds_a_calibration_and_overwrites_none(warm: Storage) -> None:
     with warm.database.reading() as store:
-        before = store.calibrations.json(ID)
+        before = Calibrations(store).json(ID)
     accept(warm)
     done = recalibrate(warm, WARM["unit"], NOW)
     assert (done.sessions, done.recomputed, done.revision) == (1, 1, 1)
     assert recalibrate(warm, WARM["unit"], NOW).unchanged == 1
     with warm.database.reading() as store:
-        assert store.calibrations.revisions(ID) == (0, 1)
-        assert store.calibrations.json(ID, 0) == before
-        assert store.calibrations.json(ID) == store.calibrations.json(ID, 1) != before
+        assert Calibrations(store).revisions(ID) == (0, 1)
+        assert Calibrations(store).json(ID, 0) == before
+        assert Calibrations(store).json(ID) == Calibrations(store).json(ID, 1) != before
 
 
 def test_the_history_can_be_read_under_an_earlier_revision(warm: Storage) -> None:
     accept(warm)
     recalibrate(warm, WARM["unit"], NOW)
     with warm.database.reading() as store:
-        unit = store.units.key(WARM["unit"])
-        found = {revision: points_of(store.history.points, unit, revision) for revision in (None, 0, 1)}
+        unit = Units(store).key(WARM["unit"])
+        found = {revision: points_of(History(store).points, unit, revision) for revision in (None, 0, 1)}
     assert found[None] == found[1] != found[0]
     assert {point.revision for point in found[0]} == {0}
 
@@ -165,11 +168,11 @@ def test_every_step_is_in_the_audit(warm: Storage) -> None:
 def test_a_diagnosis_that_another_version_failed_to_make_is_made_again(warm: Storage) -> None:
     made = diagnose(warm, ID, NOW)
     with warm.database.writing() as store:
-        store.diagnoses.add_once(replace(made, estimator_version="later"))
+        Diagnoses(store).add_once(replace(made, estimator_version="later"))
     assert diagnose(warm, ID, NOW) == made
     spoil(warm, ID, estimator_version="0.0.1")
     with warm.database.reading() as store:
-        assert store.sessions.without_diagnosis("", 10, made.estimator_version) == (ID,)
+        assert Sessions(store).without_diagnosis("", 10, made.estimator_version) == (ID,)
     assert replace(diagnose(warm, ID, NOW), created_at=made.created_at) == made
     spoil(warm, ID, estimator_version=made.estimator_version)
     assert diagnose(warm, ID, NOW).state is DiagnosisState.FAILED
@@ -191,8 +194,8 @@ def test_a_withdrawn_cause_is_out_of_the_model_and_nothing_is_lost(warm: Storage
     again = recalibrate(warm, WARM["unit"], NOW)
     assert (again.recomputed, again.revision) == (1, withdrawn.id)
     with warm.database.reading() as store:
-        assert store.sessions.get(later).revision == withdrawn.id
-        baseline, extended, now = (store.calibrations.get(ID, r) for r in (0, accepted.id, withdrawn.id))
+        assert Sessions(store).get(later).revision == withdrawn.id
+        baseline, extended, now = (Calibrations(store).get(ID, r) for r in (0, accepted.id, withdrawn.id))
     assert now.fit.chi2 == baseline.fit.chi2 > extended.fit.chi2
 
 

@@ -4,12 +4,13 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from service.background.relearn import relearn
-from service.records.flag import Matter
-from service.records.outlook import Action, ParameterTrend, UnitOutlook
+from service.flags.records import Matter
+from service.flags.store import FlagQuery, Flags
+from service.outlook.reading import outlook_of
+from service.outlook.records import Action, ParameterTrend, UnitOutlook
+from service.sessions.store import Sessions
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
-from service.views.outlook import outlook_of
+from service.work.outlooks import relearn
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.dated import upload_and_date
 from tests.service.recordings import recording_bytes
@@ -35,7 +36,7 @@ def a3_bias(storage: Storage) -> ParameterTrend:
 
 def flags(storage: Storage) -> dict[Matter, str]:
     with storage.database.reading() as store:
-        return {flag.matter: flag.summary for flag in store.flags.page(FlagQuery("BA-017"))}
+        return {flag.matter: flag.summary for flag in Flags(store).page(FlagQuery("BA-017"))}
 
 
 def test_a_jump_within_the_tolerance_has_a_flag_of_its_own(storage: Storage) -> None:
@@ -98,4 +99,4 @@ def test_a_fleet_does_not_depend_on_the_order_in_which_its_sessions_came(storage
 def test_the_temperature_of_a_session_is_kept(storage: Storage) -> None:
     id = upload_and_date(storage, session_bytes(), "a.json", NOW).id
     with storage.database.reading() as store:
-        assert store.sessions.get(id).temperature == 21.0
+        assert Sessions(store).get(id).temperature == 21.0

@@ -9,12 +9,12 @@ import numpy as np
 from benchmarks.study.degrees_of_freedom import measured
 from estimator.session import CalibrationSession
 from estimator.writing import session_document
-from service.flows.diagnose import diagnose
-from service.flows.receive import upload
-from service.records.diagnosis import DiagnosisState
-from service.records.flag import Matter
+from service.flags.records import Matter
+from service.flags.store import FlagQuery, Flags
+from service.records.diagnose import diagnose
+from service.sessions.records import DiagnosisState
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
+from service.uploads.receive import upload
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
@@ -32,6 +32,6 @@ def test_a_session_without_a_degree_of_freedom_clears_no_flag(storage: Storage) 
     assert diagnosed(storage, replace(full, readings=jumped), 3) is DiagnosisState.NAMED
     assert diagnosed(storage, bare, 4) is DiagnosisState.UNDECIDED
     with storage.database.reading() as store:
-        flags = [f for f in store.flags.page(FlagQuery("TRIAD-1")) if f.matter is Matter.CAUSE]
+        flags = [f for f in Flags(store).page(FlagQuery("TRIAD-1")) if f.matter is Matter.CAUSE]
     assert "A2" in {f.place for f in flags}
     assert {f.proposal for f in flags} == {""}

@@ -7,11 +7,12 @@ from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import ConflictError, NotFoundError
-from service.flows.handle_flag import acknowledge_flag, resolve_flag
-from service.flows.receive import upload
-from service.records.flag import Flag, FlagState, Matter, NoticeKind
+from service.flags.changes import acknowledge_flag, resolve_flag
+from service.flags.records import Flag, FlagState, Matter, NoticeKind
+from service.flags.store import FlagQuery, Flags
+from service.fleet.store import Fleet
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
+from service.uploads.receive import upload
 from tests.conftest import Filled
 from tests.service.sessions import session_bytes
 
@@ -26,7 +27,7 @@ def measured(storage: Storage, month: int, moved: float = 0.0, seed: int | None 
 
 def flags(storage: Storage) -> tuple[Flag, ...]:
     with storage.database.reading() as store:
-        return store.flags.page(FlagQuery("BA-017"))
+        return Flags(store).page(FlagQuery("BA-017"))
 
 
 def kinds(flag: Flag) -> list[str]:
@@ -135,9 +136,9 @@ def test_what_a_person_resolved_no_older_session_raises_again(flagged: Storage) 
 def test_the_fleet_counts_open_flags(flagged: Storage) -> None:
     def counted() -> tuple[int, int]:
         with flagged.database.reading() as store:
-            unit = store.fleet.unit("BA-017")
+            unit = Fleet(store).unit("BA-017")
             assert unit is not None
-            return store.fleet.condition().flags, unit.flags
+            return Fleet(store).condition().flags, unit.flags
 
     assert counted() == (1, 1)
     acknowledge_flag(flagged, flags(flagged)[0].id, "K. Ito", "seen", NOW)

@@ -9,22 +9,24 @@ import pytest
 
 from estimator.diagnosis import diagnose as find_causes
 from service.errors import RefusedError
-from service.flows.accept_model import accept_model
-from service.flows.accept_session import accept_session
-from service.flows.diagnose import diagnose
-from service.flows.receive import upload
-from service.flows.record_service import record_service
-from service.flows.refresh_group import current, members_of, refresh_group
-from service.flows.withdraw_session import withdraw_session
+from service.flags.records import Matter
+from service.flags.store import Flags
+from service.groups.records import Group, GroupAnswer, Level
+from service.groups.store import GIVEN_UP, MOST_ATTEMPTS, Groups, Statistics
 from service.ingest import read_upload
-from service.records.event import NewService
-from service.records.flag import Matter
-from service.records.group import Group, GroupAnswer, Level
-from service.records.model import NewModel, Scope
-from service.records.work import WorkKind
+from service.models.records import NewModel, Scope
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.changes import accept_session, record_service, withdraw_session
+from service.records.diagnose import diagnose
+from service.records.models import accept_model
+from service.records.refresh_group import current, members_of, refresh_group
+from service.sessions.store import Sessions
 from service.settings import VERSION
 from service.storage import Storage
-from service.storage.queries.statistics import GIVEN_UP, MOST_ATTEMPTS
+from service.units.records import NewService
+from service.units.store import Units
+from service.uploads.receive import upload
 from tests.conftest import Filled
 from tests.databases import one_engine
 from tests.service.grouped import GROUP, cubic_session
@@ -42,7 +44,7 @@ def fill(storage: Storage, *contents: bytes) -> None:
 
 def group(storage: Storage, level: Level = Level.UNIT, name: str = UNIT) -> Group:
     with storage.database.reading() as store:
-        return store.groups.find(level, name)
+        return Groups(store).find(level, name)
 
 
 def refreshed(storage: Storage, level: Level = Level.UNIT, name: str = UNIT) -> GroupAnswer:
@@ -57,7 +59,7 @@ def told(answer: GroupAnswer) -> dict[str, Any]:
 def holds(storage: Storage) -> bool:
     """Whether the stored answer of the unit is of what is known."""
     with storage.database.reading() as store:
-        return current(store, store.groups.find(Level.UNIT, UNIT)) is not None
+        return current(store, Groups(store).find(Level.UNIT, UNIT)) is not None
 
 
 def twelve(storage: Storage) -> None:
@@ -99,7 +101,7 @@ def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(filled: Filled) -> None
 @one_engine
 def test_a_flag_is_raised_by_all_sessions_together_and_not_by_the_one_that_was_diagnosed_so(filled: Filled) -> None:
     with filled(twelve_with_the_last_diagnosed).database.reading() as store:
-        assert not [flag for flag in store.flags.open_of(store.units.key(UNIT)) if flag.matter is Matter.CAUSE]
+        assert not [flag for flag in Flags(store).open_of(Units(store).key(UNIT)) if flag.matter is Matter.CAUSE]
 
 
 @one_engine
@@ -155,7 +157,7 @@ def test_the_statistics_of_a_session_are_made_with_its_diagnosis(storage: Storag
     id = session_id(GROUP[0])
     diagnose(storage, id, NOW)
     with storage.database.reading() as store:
-        assert store.statistics.of([id])[id].sensors == ("A1", "A2", "A3")
+        assert Statistics(store).of([id])[id].sensors == ("A1", "A2", "A3")
 
 
 @one_engine
@@ -165,7 +167,7 @@ def test_every_change_of_a_record_asks_for_its_groups(storage: Storage) -> None:
         refreshed(storage, level, name)
     withdraw_session(storage, way(storage), session_id(GROUP[0]), step())
     with storage.database.reading() as store:
-        assert {store.groups.at(place).name for place in store.work(WorkKind.GROUP).waiting(NOW, 10)} == {
+        assert {Groups(store).at(place).name for place in WorkQueue(store, WorkKind.GROUP).waiting(NOW, 10)} == {
             UNIT,
             "three",
             "ODG-1",
@@ -182,7 +184,7 @@ def test_a_lost_file_is_left_out_and_named(storage: Storage) -> None:
 
 def file_of(storage: Storage, id: str) -> Path:
     with storage.database.reading() as store:
-        sha256 = store.sessions.get(id).sha256
+        sha256 = Sessions(store).get(id).sha256
     return next(storage.files.folder.rglob(f"{sha256}*"))
 
 
@@ -196,7 +198,7 @@ def test_a_group_without_a_session_says_so(storage: Storage) -> None:
 
 @one_engine
 def test_only_the_newest_are_pooled_and_the_rest_is_counted(storage: Storage, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.storage.queries.groups.MOST", 2)
+    monkeypatch.setattr("service.groups.store.MOST", 2)
     fill(storage, *GROUP[:3])
     found = told(refreshed(storage))
     assert (found["sessions"], found["left_out"], found["first"][:7]) == (2, 1, "2023-02")
@@ -207,8 +209,8 @@ def test_a_session_that_no_process_outlives_is_given_up(storage: Storage) -> Non
     id = session_id(GROUP[0])
     for attempt in range(MOST_ATTEMPTS + 1):
         with storage.database.writing() as store:
-            assert store.statistics.begin(id, VERSION) is (attempt < MOST_ATTEMPTS)
+            assert Statistics(store).begin(id, VERSION) is (attempt < MOST_ATTEMPTS)
     with storage.database.reading() as store:
         assert [m.why for m in members_of(store, group(storage)).without] == [GIVEN_UP]
     with storage.database.writing() as store:
-        assert store.statistics.begin(id, "the next one")
+        assert Statistics(store).begin(id, "the next one")

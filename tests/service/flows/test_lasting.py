@@ -9,17 +9,21 @@ import pytest
 
 from estimator import Calibration, calibrate, read_session
 from service.errors import ConflictError, RefusedError
-from service.flows.accept_lasting import accept_lasting
-from service.flows.receive import upload
-from service.flows.recompute import recompute
-from service.flows.refresh_group import refresh_group
-from service.flows.withdraw_model import withdraw_model
-from service.judging.model_in_force import model_of
-from service.records.group import Group, Level
-from service.records.model import ModelRevision, NewLasting, Scope
-from service.records.recomputation import Progress, Recomputation
+from service.fleet.announced_store import Announcements
+from service.groups.records import Group, Level
+from service.groups.store import Groups
+from service.models.evidence_document import evidence_from_dict, evidence_to_dict
+from service.models.records import ModelRevision, NewLasting, Progress, Recomputation, Scope
+from service.models.rules import model_of
+from service.models.store import Recomputations
+from service.records.models import accept_lasting, withdraw_model
+from service.records.recalibrate import recompute
+from service.records.refresh_group import refresh_group
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.store import Sessions
 from service.storage import Storage
-from service.storage.diagnosis_document import evidence_from_dict, evidence_to_dict
+from service.storage.audit import Audit
+from service.uploads.receive import upload
 from tests.conftest import Filled
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
@@ -35,7 +39,7 @@ NEW = NewLasting(CAUSE, (), "K. Ito", "seen on the bench")
 
 def group(storage: Storage, level: Level = Level.UNIT, name: str = UNIT) -> Group:
     with storage.database.reading() as store:
-        return store.groups.find(level, name)
+        return Groups(store).find(level, name)
 
 
 def scale(found: Calibration) -> float:
@@ -46,14 +50,14 @@ def scale(found: Calibration) -> float:
 
 def recompute_all(storage: Storage) -> None:
     with storage.database.reading() as store:
-        waiting = store.recomputations.waiting(NOW, 100)
+        waiting = Recomputations(store).waiting(NOW, 100)
     for task in waiting:
         recompute(storage, task, NOW, 2.0)
 
 
 def brought(storage: Storage, revision: int) -> tuple[Recomputation, ...]:
     with storage.database.reading() as store:
-        return store.recomputations.of(revision)
+        return Recomputations(store).of(revision)
 
 
 def four_sessions(storage: Storage) -> None:
@@ -83,9 +87,9 @@ def test_every_session_of_the_unit_is_computed_again_with_the_group_s_size(
     assert accepted.evidence is not None
     assert abs(accepted.evidence.amplitude[0] - LARGE) < 3 * accepted.evidence.sigma[0]
     with four.database.reading() as store:
-        before, after = (scale(store.calibrations.get(session_id(GROUP[0]), revision)) for revision in (0, None))
-        assert {store.sessions.get(session_id(c)).revision for c in GROUP} == {accepted.id}
-        assert store.sessions.page("BA-018", 0, 1)[0].revision == 0
+        before, after = (scale(Calibrations(store).get(session_id(GROUP[0]), revision)) for revision in (0, None))
+        assert {Sessions(store).get(session_id(c)).revision for c in GROUP} == {accepted.id}
+        assert Sessions(store).page("BA-018", 0, 1)[0].revision == 0
     sound = scale(calibrate(read_session(json.loads(cubic_session(0, cubic=0.0)))))
     assert abs(after - sound) < 0.1 * abs(before - sound)
 
@@ -98,7 +102,7 @@ def test_what_moved_is_kept(four: Storage, accepted: ModelRevision) -> None:
     assert one.outcome.furthest is not None
     assert (one.outcome.furthest.sensor, one.outcome.furthest.change != 0) == ("A2", True)
     with four.database.reading() as store:
-        lines = [line.action for line in store.audit.page(20)]
+        lines = [line.action for line in Audit(store).page(20)]
     assert (lines.count("recalibrate"), lines.count("accept model")) == (4, 1)
 
 
@@ -106,19 +110,19 @@ def test_what_moved_is_kept(four: Storage, accepted: ModelRevision) -> None:
 def test_the_next_session_has_it_at_once(four: Storage, accepted: ModelRevision) -> None:
     later = upload(four, cubic_session(12, cubic=LARGE), "b.json", NOW).id
     with four.database.reading() as store:
-        assert store.sessions.get(later).revision == accepted.id
+        assert Sessions(store).get(later).revision == accepted.id
 
 
 @one_engine
 def test_withdrawn_it_goes_out_of_every_session_again(four: Storage, accepted: ModelRevision) -> None:
     first = session_id(GROUP[0])
     with four.database.reading() as store:
-        plain = json.loads(store.calibrations.json(first, 0))
+        plain = json.loads(Calibrations(store).json(first, 0))
     ended = withdraw_model(four, accepted.id, "R. Duarte", "the bench was tilted", NOW)
     recompute_all(four)
     with four.database.reading() as store:
-        assert json.loads(store.calibrations.json(first)) == plain
-        assert store.sessions.get(first).revision == ended.id
+        assert json.loads(Calibrations(store).json(first)) == plain
+        assert Sessions(store).get(first).revision == ended.id
     assert [one.state for one in brought(four, ended.id)] == [Progress.DONE]
 
 
@@ -143,9 +147,9 @@ def test_what_the_group_does_not_show_is_refused(four: Storage, new: NewLasting,
 @one_engine
 def test_a_type_s_and_a_stand_s_units_are_all_asked_for(four: Storage, accepted: ModelRevision) -> None:
     with four.database.writing() as store:
-        assert store.recomputations.ask(accepted.id, Scope.UNIT_TYPE, "three", NOW) == 2
-        assert store.recomputations.ask(accepted.id, Scope.STAND, "ODG-1", NOW) == 2
-        assert store.recomputations.ask(accepted.id, Scope.STAND, "ODG-9", NOW) == 0
+        assert Recomputations(store).ask(accepted.id, Scope.UNIT_TYPE, "three", NOW) == 2
+        assert Recomputations(store).ask(accepted.id, Scope.STAND, "ODG-1", NOW) == 2
+        assert Recomputations(store).ask(accepted.id, Scope.STAND, "ODG-9", NOW) == 0
 
 
 @one_engine
@@ -193,5 +197,5 @@ def test_an_answer_that_is_made_again_knows_what_is_in_a_model(storage: Storage)
 def told_of_fleet(storage: Storage) -> list[str]:
     """Units whose sessions together show something new."""
     with storage.database.reading() as store:
-        found = store.announced.all(0, 10).found
+        found = Announcements(store).all(0, 10).found
     return [one.group.name for one in found if one.group.level is Level.UNIT]

@@ -5,23 +5,25 @@ from datetime import UTC, datetime
 
 import pytest
 
-from service.flows.accept_lasting import accept_lasting
-from service.flows.flagging.lasting import flag_lasting
-from service.flows.handle_flag import resolve_flag
-from service.flows.receive import upload
-from service.flows.refresh_group import current, members_of, refresh_group
-from service.flows.withdraw_model import withdraw_model
-from service.flows.withdraw_session import withdraw_session
+from service.flags.changes import resolve_flag
+from service.flags.records import Flag, FlagState, Matter
+from service.flags.store import FlagQuery, Flags
+from service.fleet.announced_store import Announcements
+from service.fleet.store import Fleet
+from service.groups.document import read_group
+from service.groups.records import Group, Level
+from service.groups.store import Groups
+from service.models.records import NewLasting, Scope
 from service.pages.flags import flag_cards
-from service.pages.group import found_line
-from service.records.flag import Flag, FlagState, Matter
-from service.records.group import Group, Level
-from service.records.model import NewLasting, Scope
+from service.pages.group.sections import found_line
+from service.records.changes import withdraw_session
+from service.records.flagging.lasting import flag_lasting
+from service.records.models import accept_lasting, withdraw_model
+from service.records.refresh_group import current, members_of, refresh_group
 from service.storage import Storage
-from service.storage.group_document import read_group
-from service.storage.queries.flags import FlagQuery
 from service.storage.schema import downgrade, upgrade
 from service.storage.store import Store
+from service.uploads.receive import upload
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
 from tests.service.records import step, way
@@ -34,12 +36,12 @@ NEW = NewLasting("cubic-nonlinearity", (), "K. Ito", "")
 
 def group(storage: Storage) -> Group:
     with storage.database.reading() as store:
-        return store.groups.find(Level.UNIT, "BA-017")
+        return Groups(store).find(Level.UNIT, "BA-017")
 
 
 def flags(storage: Storage) -> list[Flag]:
     with storage.database.reading() as store:
-        return list(store.flags.page(FlagQuery(matter=Matter.LASTING)))
+        return list(Flags(store).page(FlagQuery(matter=Matter.LASTING)))
 
 
 def refreshed(storage: Storage) -> list[Flag]:
@@ -93,21 +95,21 @@ def test_what_the_sessions_no_longer_show_is_proposed_to_be_resolved(flagged: St
 @one_engine
 def test_the_fleet_says_what_was_found_while_it_is_of_the_sessions_of_now(flagged: Storage) -> None:
     with flagged.database.reading() as store:
-        line = found_line(store.announced.all(9, 4))
+        line = found_line(Announcements(store).all(9, 4))
     assert line is not None
     ((home, whose, what),) = line.found
     assert (home, whose, line.more) == ("/units/BA-017#together", "unit BA-017", 0)
     assert what.startswith("A2 bends with the cube")
     upload(flagged, GROUP[4], "a.json", NOW)
     with flagged.database.reading() as store:
-        assert found_line(store.announced.all(9, 4)) is None
+        assert found_line(Announcements(store).all(9, 4)) is None
 
 
 def counted(store: Store) -> tuple[int, int]:
     """Open flags of the fleet, and of the unit."""
-    unit = store.fleet.unit("BA-017")
+    unit = Fleet(store).unit("BA-017")
     assert unit is not None
-    return store.fleet.condition().flags, unit.flags
+    return Fleet(store).condition().flags, unit.flags
 
 
 def of_stand(storage: Storage) -> None:
@@ -117,15 +119,15 @@ def of_stand(storage: Storage) -> None:
         assert answer is not None
         (shown,) = read_group(answer.document or {}).findings
         members = members_of(store, group(storage))
-        stand = store.groups.find(Level.STAND, "ODG-1")
+        stand = Groups(store).find(Level.STAND, "ODG-1")
         flag_lasting(store, stand, [replace(shown, level="stand", subject="ODG-1")], members.sessions[-1], NOW)
 
 
 def test_a_stand_s_effect_is_a_flag_of_the_stand_and_of_no_unit(flagged: Storage) -> None:
     of_stand(flagged)
     with flagged.database.reading() as store:
-        (about,) = store.flags.page(FlagQuery(stand="ODG-1"))
-        own = store.flags.page(FlagQuery("BA-017"))
+        (about,) = Flags(store).page(FlagQuery(stand="ODG-1"))
+        own = Flags(store).page(FlagQuery("BA-017"))
         counts = counted(store)
     assert (about.scope, about.subject, about.unit) == (Scope.STAND, "ODG-1", "BA-017")
     assert [flag.scope for flag in own] == [Scope.UNIT]
@@ -136,7 +138,7 @@ def test_a_stand_s_effect_is_a_flag_of_the_stand_and_of_no_unit(flagged: Storage
 def test_it_leads_to_the_stand_s_page_and_is_found_by_its_name(flagged: Storage) -> None:
     of_stand(flagged)
     with flagged.database.reading() as store:
-        found = store.flags.page(FlagQuery(text="odg"))
+        found = Flags(store).page(FlagQuery(text="odg"))
     (card,) = flag_cards(found)
     assert (card.home, card.name) == ("/stands/ODG-1", "ODG-1")
 
@@ -144,10 +146,10 @@ def test_it_leads_to_the_stand_s_page_and_is_found_by_its_name(flagged: Storage)
 def test_it_was_the_unit_s_before_flags_said_whose_they_are(flagged: Storage, store_url: str) -> None:
     of_stand(flagged)
     with flagged.database.reading() as store:
-        before = store.flags.page(FlagQuery())
+        before = Flags(store).page(FlagQuery())
     flagged.database.close()
     downgrade(store_url, "0023")
     upgrade(store_url)
     with flagged.database.reading() as store:
-        assert store.flags.page(FlagQuery()) == before
+        assert Flags(store).page(FlagQuery()) == before
         assert counted(store) == (2, 1)

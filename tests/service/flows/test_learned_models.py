@@ -3,13 +3,14 @@
 import pytest
 
 from service.errors import RefusedError
-from service.flows.accept_lasting import accept_lasting
-from service.flows.receive import upload
-from service.flows.refresh_group import refresh_group
-from service.flows.withdraw_model import withdraw_model
-from service.records.group import Level
-from service.records.model import ModelRevision, NewLasting, Scope
+from service.fleet.announced_store import Announcements
+from service.groups.records import Level
+from service.models.records import ModelRevision, NewLasting, Scope
+from service.records.models import accept_lasting, withdraw_model
+from service.records.refresh_group import refresh_group
+from service.sessions.calibrations_store import Calibrations
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.databases import one_engine
 from tests.service.flows.test_lasting import NOW, UNIT, brought, group, recompute_all
 from tests.service.grouped import WAVY, wavy_session
@@ -26,7 +27,7 @@ def refreshed(storage: Storage) -> None:
 def news(storage: Storage) -> list[str]:
     """What the unit's sessions together show that is in no model."""
     with storage.database.reading() as store:
-        return [one.own for one in store.announced.all(0, 10).found if one.group.level is Level.UNIT]
+        return [one.own for one in Announcements(store).all(0, 10).found if one.group.level is Level.UNIT]
 
 
 def taught(storage: Storage) -> ModelRevision:
@@ -40,7 +41,7 @@ def taught(storage: Storage) -> ModelRevision:
 def zero_of_a2(storage: Storage, content: bytes) -> tuple[float, float]:
     """m/s²: the zero in force, and its standard uncertainty."""
     with storage.database.reading() as store:
-        bias = store.calibrations.get(session_id(content)).sensors[1].bias
+        bias = Calibrations(store).get(session_id(content)).sensors[1].bias
     assert bias.value is not None
     assert bias.sigma is not None
     return bias.value, bias.sigma
@@ -65,7 +66,7 @@ def test_a_later_session_is_calibrated_with_it(storage: Storage) -> None:
     later = wavy_session(6)
     upload(storage, later, "a.json", NOW)
     with storage.database.reading() as store:
-        found = store.calibrations.get(session_id(later))
+        found = Calibrations(store).get(session_id(later))
     assert found.fit.p_value > 0.01
 
 

@@ -7,11 +7,13 @@ import pytest
 import yaml
 
 from estimator.allan.results import TERMS
-from service.flows.diagnose import diagnose
-from service.flows.keep_noise import keep_noise
-from service.flows.receive import upload
+from service.records.diagnose import diagnose
+from service.records.keep_noise import keep_noise
+from service.sessions.history_store import History, HistoryQuery
+from service.sessions.noise_store import Noises
 from service.storage import Storage
-from service.storage.queries.history import HistoryQuery
+from service.units.store import Units
+from service.uploads.receive import upload
 from tests.builders import raw_log
 from tests.databases import one_engine
 from tests.service.records import NOW
@@ -32,9 +34,9 @@ def kept(storage: Storage, month: int = 3, noise: float = 1e-3, **changes: int) 
 def test_the_terms_are_parameters_of_the_history(storage: Storage) -> None:
     kept(storage)
     with storage.database.reading() as store:
-        unit = store.units.key("LOG-1")
-        judged, all_of_it = (store.history.points(unit, HistoryQuery(noise=n)) for n in (False, True))
-        (white,) = store.history.points(unit, HistoryQuery(parameter="white-noise", sensor="A1"))
+        unit = Units(store).key("LOG-1")
+        judged, all_of_it = (History(store).points(unit, HistoryQuery(noise=n)) for n in (False, True))
+        (white,) = History(store).points(unit, HistoryQuery(parameter="white-noise", sensor="A1"))
     assert {point.parameter for point in all_of_it} - {point.parameter for point in judged} == set(TERMS)
     assert None not in (white.value, white.lower, white.upper)
     assert white.lower < WHITE < white.upper
@@ -44,19 +46,19 @@ def test_the_terms_are_parameters_of_the_history(storage: Storage) -> None:
 def test_a_term_that_the_rests_do_not_reach_has_no_number(storage: Storage) -> None:
     kept(storage)
     with storage.database.reading() as store:
-        walks = store.history.points(store.units.key("LOG-1"), HistoryQuery(parameter="random-walk"))
+        walks = History(store).points(Units(store).key("LOG-1"), HistoryQuery(parameter="random-walk"))
     assert [walk.value for walk in walks] == [None] * 3
 
 
 def test_another_model_revision_has_the_same_noise(storage: Storage) -> None:
     id = kept(storage)
     with storage.database.writing() as store:
-        store.noises.carry({id: 7})
-        store.noises.carry({id: 7})
-        again = store.history.points(store.units.key("LOG-1"), HistoryQuery(parameter="white-noise"))
+        Noises(store).carry({id: 7})
+        Noises(store).carry({id: 7})
+        again = History(store).points(Units(store).key("LOG-1"), HistoryQuery(parameter="white-noise"))
     assert len(again) == 3
     with storage.database.reading() as store:
-        found = store.noises.get(id)
+        found = Noises(store).get(id)
     assert found is not None
     assert (found.rests, [s.name for s in found.sensors]) == (12, ["A1", "A2", "A3"])
 
@@ -68,7 +70,7 @@ def test_it_is_made_beside_the_diagnosis_of_whatever_holds_rests(storage: Storag
     for id in ids:
         diagnose(storage, id, NOW)
     with storage.database.reading() as store:
-        assert [store.noises.has(id) for id in ids] == [False, True]
+        assert [Noises(store).has(id) for id in ids] == [False, True]
 
 
 @one_engine

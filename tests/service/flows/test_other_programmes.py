@@ -8,15 +8,20 @@ from datetime import UTC, datetime
 import pytest
 
 from estimator.session import CALIBRATIONS, IN_SERVICE, PROGRAMMES
-from service.flows.diagnose import diagnose, task_of
-from service.flows.recalibrate import recalibrate
-from service.flows.receive import upload
+from service.flags.records import Matter
+from service.flags.store import Flags
 from service.judging.calibrate import rests_on_model
-from service.records.decision import Verdict
-from service.records.diagnosis import DiagnosisState
-from service.records.flag import Matter
-from service.records.model import ModelRevision, Scope
+from service.models.records import ModelRevision, Scope
+from service.models.store import Models
+from service.records.diagnose import diagnose, task_of
+from service.records.recalibrate import recalibrate
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.decision import Verdict
+from service.sessions.records import DiagnosisState
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.units.store import Units
+from service.uploads.receive import upload
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import TEMPERATURE, drawn
@@ -41,7 +46,7 @@ def stored(storage: Storage, content: bytes) -> str:
 def accepted(storage: Storage, session: str) -> None:
     """A cause of A3 in the unit's model."""
     with storage.database.writing() as store:
-        store.models.add(replace(CUBIC, session=session))
+        Models(store).add(replace(CUBIC, session=session))
 
 
 @pytest.mark.parametrize("programme", ["rate table", "recording"])
@@ -83,7 +88,7 @@ def test_an_alignment_neither_raises_nor_clears_a_flag(storage: Storage) -> None
     diagnose(storage, stored(storage, json.dumps(cubic).encode()), NOW)
     diagnose(storage, stored(storage, alignment_bytes(unit=cubic["unit"], month=6, a2_stands=(0.04, -0.03))), NOW)
     with storage.database.reading() as store:
-        open_now = store.flags.open_of(store.units.key(cubic["unit"]))
+        open_now = Flags(store).open_of(Units(store).key(cubic["unit"]))
     assert [flag.matter for flag in open_now] == [Matter.CAUSE]
 
 
@@ -102,9 +107,9 @@ def test_a_recording_is_compared_again_with_the_reference_under_its_new_model(st
     done = recalibrate(storage, "BA-017", NOW)
     assert (done.recomputed, done.left) == (2, 0)
     with storage.database.reading() as store:
-        assert store.calibrations.revisions(recording) == (0, 1)
-        before, after = (store.calibrations.get(recording, revision) for revision in (0, 1))
-        assert store.sessions.get(recording).verdict is Verdict.FAIL
+        assert Calibrations(store).revisions(recording) == (0, 1)
+        before, after = (Calibrations(store).get(recording, revision) for revision in (0, 1))
+        assert Sessions(store).get(recording).verdict is Verdict.FAIL
     assert before.parity is not None
     assert after.parity is not None
     assert after.parity["isolated"] == "A3"
@@ -118,7 +123,7 @@ def test_no_accepted_cause_changes_what_is_no_calibration(storage: Storage, prog
     done = recalibrate(storage, "BA-017", NOW)
     assert (done.recomputed, done.unchanged) == (1, 1)
     with storage.database.reading() as store:
-        assert store.calibrations.revisions(other) == (0,)
+        assert Calibrations(store).revisions(other) == (0,)
 
 
 def test_a_programme_that_nobody_entered_anywhere_rests_on_no_model() -> None:

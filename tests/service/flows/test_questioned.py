@@ -8,16 +8,20 @@ import pytest
 
 from estimator import calibrate, read_session
 from service.errors import ConflictError
-from service.flows.accept_session import accept_session
-from service.flows.correct_session import correct_session
-from service.flows.diagnose import diagnose
-from service.flows.question_session import OTHERWISE_WRITTEN
-from service.flows.receive import Reception, upload
-from service.metrics import Metrics
-from service.records.decision import Verdict
-from service.records.session import Receipt
-from service.records.state import RecordKind, RecordState
+from service.kit.metrics import Metrics
+from service.records.change_state import OTHERWISE_WRITTEN
+from service.records.changes import accept_session
+from service.records.diagnose import diagnose
+from service.records.reception import Reception
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.decision import Verdict
+from service.sessions.records import Receipt
+from service.sessions.states import RecordKind, RecordState
+from service.sessions.states_store import States
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.uploads.correct import correct_session
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block, true_sensors
 from tests.service.records import NOW, state_of, step, way
 from tests.service.sessions import session_bytes
@@ -135,7 +139,7 @@ def test_a_diagnosis_that_says_it_was_done_otherwise_questions_the_session_once(
 
 def states(storage: Storage, id: str) -> list[RecordState]:
     with storage.database.reading() as store:
-        return [line.state for line in store.states.of(RecordKind.SESSION, id)]
+        return [line.state for line in States(store).of(RecordKind.SESSION, id)]
 
 
 @pytest.mark.parametrize("date", ["1970-01-01T00:00:00Z", "2000-01-03T00:00:00Z", "2006-05-01T00:00:00Z"])
@@ -159,9 +163,9 @@ def test_a_corrected_file_is_made_and_stands_for_the_questioned_one(reception: R
     made = correct_session(reception, asked.id, "K. Ito", NOW)
     assert (made.state, made.is_reference) == (RecordState.ACCEPTED, True)
     with reception.storage.database.reading() as store:
-        assert store.sessions.get(asked.id).superseded_by == made.id
-        assert "Corrected: " in store.sessions.get(made.id).notes
-        scales = [[s.scale.value for s in one.sensors] for one in (store.calibrations.get(made.id), right)]
+        assert Sessions(store).get(asked.id).superseded_by == made.id
+        assert "Corrected: " in Sessions(store).get(made.id).notes
+        scales = [[s.scale.value for s in one.sensors] for one in (Calibrations(store).get(made.id), right)]
     assert scales[0] == pytest.approx(scales[1], rel=1e-9)
 
 

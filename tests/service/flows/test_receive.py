@@ -9,23 +9,23 @@ from typing import Any
 import pytest
 from sqlalchemy import Connection, event, func, select, text
 
+from service.diagnosis.store import Diagnoses
 from service.errors import AwayError, NoSpaceError, RefusedError
-from service.flows.receive import Reception, receive, receive_all, upload
-from service.metrics import Metrics
-from service.records.received import SentFile
-from service.records.session import Receipt
-from service.records.work import WorkKind
+from service.kit.arriving_files import SentFile
+from service.kit.metrics import Metrics
+from service.opening import open_database
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.reception import Reception
+from service.sessions.records import Receipt
+from service.sessions.store import Sessions
+from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 from service.settings import Settings
-from service.storage import Database, Files, Storage
-from service.storage.tables import (
-    AuditRow,
-    CalibrationRow,
-    DecisionRow,
-    ParameterRow,
-    RefusalRow,
-    SessionRow,
-    UnitRow,
-)
+from service.storage import Files, Storage
+from service.storage.audit_table import AuditRow
+from service.units.tables import UnitRow
+from service.uploads.receive import receive, receive_all, upload
+from service.uploads.tables import RefusalRow
 from tests.builders import arbitrary_orientations, gyro_block
 from tests.databases import Databases, PostgresDatabases
 from tests.service.sessions import session_bytes
@@ -70,7 +70,7 @@ def test_rival_first_sessions_of_a_unit_leave_one_reference(storage: Storage, tw
         futures = [pool.submit(upload, place, content, "a.json", NOW) for place, content in jobs]
         ids = [future.result().id for future in futures]
     with storage.database.reading() as store:
-        stored = [store.sessions.get(id) for id in ids]
+        stored = [Sessions(store).get(id) for id in ids]
     assert [one.id for one in stored if one.is_reference] == [ids[0]]
     assert sorted(one.verdict.value for one in stored) == ["pass"] * 5 + ["undecidable"]
 
@@ -91,11 +91,11 @@ def test_a_unit_with_two_blocks_has_a_reference_for_each(storage: Storage) -> No
     files = [session_bytes(), gyros[0], session_bytes(seed=2), gyros[1]]
     ids = [upload(storage, file, "a.json", NOW).id for file in files]
     with storage.database.reading() as store:
-        assert [store.sessions.get(id).is_reference for id in ids] == [True, True, False, False]
+        assert [Sessions(store).get(id).is_reference for id in ids] == [True, True, False, False]
 
 
 def test_a_full_disk_under_the_database_stores_nothing_and_is_said(sqlite: Databases, tmp_path: Any) -> None:
-    database = Database(sqlite.migrated())
+    database = open_database(sqlite.migrated())
     storage = Storage(database, Files(tmp_path / "files"))
 
     def limit(connection: Any, _: Any) -> None:
@@ -116,9 +116,9 @@ def test_a_full_disk_under_the_database_stores_nothing_and_is_said(sqlite: Datab
 def test_a_database_killed_at_the_commit_leaves_nothing_and_the_upload_can_be_repeated(
     postgresql: PostgresDatabases, tmp_path: Any
 ) -> None:
-    database = Database(postgresql.migrated())
+    database = open_database(postgresql.migrated())
     storage = Storage(database, Files(tmp_path / "files"))
-    other = Database(postgresql.server.get_uri())
+    other = open_database(postgresql.server.get_uri())
 
     def kill(connection: Connection) -> None:
         mine = connection.scalar(text("SELECT pg_backend_pid()"))
@@ -156,8 +156,8 @@ def test_a_received_file_is_stored_and_counted_and_its_diagnosis_asked_for(stora
     own = reception(storage, rung)
     receipt = receive(own, SentFile("a.json", session_bytes()), NOW)
     with storage.database.reading() as store:
-        assert store.work(WorkKind.DIAGNOSIS).waiting(NOW, 10) == (receipt.id,)
-        assert not store.diagnoses.exists(receipt.id)
+        assert WorkQueue(store, WorkKind.DIAGNOSIS).waiting(NOW, 10) == (receipt.id,)
+        assert not Diagnoses(store).exists(receipt.id)
     assert rung == [None]
     assert b'imu_health_uploads_total{result="undecidable"} 1.0' in own.metrics.text()
 

@@ -8,18 +8,20 @@ from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import ConflictError, NotFoundError
-from service.flows.accept_session import accept_session
-from service.flows.choose_reference import choose_reference
-from service.flows.record_service import record_service
-from service.flows.supersede_session import supersede_session
-from service.flows.withdraw_service import withdraw_service
-from service.flows.withdraw_session import withdraw_session
-from service.records.decision import Verdict
-from service.records.event import NewService
-from service.records.received import Replaced
-from service.records.session import Receipt, StoredSession
-from service.records.state import RecordKind, RecordState
+from service.flags.store import Flags
+from service.fleet.store import Fleet
+from service.kit.arriving_files import Replaced
+from service.outlook.store import Outlooks
+from service.records.changes import accept_session, choose_reference, record_service, withdraw_service, withdraw_session
+from service.records.supersede import supersede_session
+from service.sessions.decision import Verdict
+from service.sessions.records import Receipt, StoredSession
+from service.sessions.states import RecordKind, RecordState
+from service.sessions.states_store import States
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.units.records import NewService
+from service.units.store import Units
 from tests.estimator.test_reading_csv import csv_of
 from tests.service.dated import upload_and_date as upload
 from tests.service.records import NOW, state_of, step, way
@@ -37,13 +39,13 @@ def measured(storage: Storage, month: int, moved: float = 0.0, replaces: Replace
 
 def stored(storage: Storage, id: str) -> StoredSession:
     with storage.database.reading() as store:
-        return store.sessions.get(id)
+        return Sessions(store).get(id)
 
 
 def references(storage: Storage) -> list[int]:
     """Months of the reference sessions."""
     with storage.database.reading() as store:
-        return [s.started_at.month for s in store.sessions.of_unit(UNIT) if s.is_reference]
+        return [s.started_at.month for s in Sessions(store).of_unit(UNIT) if s.is_reference]
 
 
 def test_a_service_entered_after_its_as_left_session_takes_the_fail_back(storage: Storage) -> None:
@@ -53,8 +55,8 @@ def test_a_service_entered_after_its_as_left_session_takes_the_fail_back(storage
     record_service(storage, UNIT, NewService("repair", APRIL), NOW)
     assert stored(storage, left.id).is_reference
     with storage.database.reading() as store:
-        assert store.sessions.decisions(left.id) == () or stored(storage, left.id).verdict is Verdict.UNDECIDABLE
-        outlook = store.outlooks.of_unit(UNIT)
+        assert Sessions(store).decisions(left.id) == () or stored(storage, left.id).verdict is Verdict.UNDECIDABLE
+        outlook = Outlooks(store).of_unit(UNIT)
     assert outlook is not None
     assert outlook.due == datetime(2027, 5, 1, 9, tzinfo=UTC)
 
@@ -75,7 +77,7 @@ def test_a_corrected_file_stands_for_the_first_and_counts_once(storage: Storage)
     known = stored(storage, wrong.id)
     assert (known.state, known.superseded_by) == (RecordState.SUPERSEDED, right.id)
     with storage.database.reading() as store:
-        condition = store.fleet.unit(UNIT)
+        condition = Fleet(store).unit(UNIT)
     assert condition is not None
     assert (condition.sessions, condition.verdict) == (2, Verdict.PASS)
 
@@ -115,7 +117,7 @@ def test_a_withdrawn_session_says_by_whom_and_why_and_comes_back_as_it_was(stora
     before = state_of(storage, UNIT)
     withdraw_session(storage, way(storage), id, step("cable"))
     with storage.database.reading() as store:
-        [line] = store.states.of(RecordKind.SESSION, id)
+        [line] = States(store).of(RecordKind.SESSION, id)
     assert (line.state, line.who, line.why, line.at) == (RecordState.WITHDRAWN, "K. Ito", "cable", NOW)
     accept_session(storage, way(storage), id, step("it was not the cable"))
     assert state_of(storage, UNIT) == before
@@ -125,11 +127,11 @@ def test_a_unit_without_an_accepted_session_is_in_no_fleet_and_still_there(stora
     id = measured(storage, 3).id
     withdraw_session(storage, way(storage), id, step())
     with storage.database.reading() as store:
-        assert store.fleet.condition().units == 0
-        unit = store.fleet.unit(UNIT)
+        assert Fleet(store).condition().units == 0
+        unit = Fleet(store).unit(UNIT)
         assert unit is not None
         assert (unit.verdict, unit.sessions) == (None, 0)
-        assert store.outlooks.of_unit(UNIT) is None
+        assert Outlooks(store).of_unit(UNIT) is None
 
 
 def test_a_withdrawn_service_is_no_break_and_counts_again_once_it_is_recorded_again(storage: Storage) -> None:
@@ -162,7 +164,7 @@ def test_a_flag_goes_with_the_session_that_raised_it(storage: Storage) -> None:
     id = measured(storage, 5, 90.0).id
     withdraw_session(storage, way(storage), id, step())
     with storage.database.reading() as store:
-        assert store.flags.open_of(store.units.key(UNIT)) == ()
+        assert Flags(store).open_of(Units(store).key(UNIT)) == ()
 
 
 def test_what_does_not_fit_the_state_is_refused(storage: Storage) -> None:

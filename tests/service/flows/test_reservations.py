@@ -9,17 +9,19 @@ import pytest
 
 from benchmarks.study.degrees_of_freedom import measured
 from estimator.writing import session_document
-from service.flows.accept_model import accept_model
-from service.flows.choose_reference import choose_reference
-from service.flows.diagnose import diagnose
-from service.flows.recalibrate import recalibrate
-from service.flows.receive import upload
 from service.judging.reservations import UNCHECKED
-from service.records.decision import Verdict
-from service.records.model import NewModel, Scope
-from service.records.reservation import Doubt, Reservation, Reservations
+from service.models.records import NewModel, Scope
+from service.records.changes import choose_reference
+from service.records.diagnose import diagnose
+from service.records.models import accept_model
+from service.records.recalibrate import recalibrate
+from service.sessions.decision import Verdict
+from service.sessions.doubt import DoubtKind as Doubt
+from service.sessions.doubt import Reservation, Reservations
+from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.files import content_hash
+from service.uploads.receive import upload
 from tests.databases import one_engine
 from tests.service.diagnosed import boasting, swaying_stand
 from tests.service.doubtful import CLAUSE, JUMPED, MISTAKEN, REFERENCE, SLIGHTLY, jumped
@@ -32,7 +34,7 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 def stored(storage: Storage, id: str) -> tuple[Verdict, Reservations]:
     """What is kept of a session's verdict."""
     with storage.database.reading() as store:
-        session = store.sessions.get(id)
+        session = Sessions(store).get(id)
     return session.verdict, session.reservations
 
 

@@ -4,12 +4,13 @@ import json
 
 import pytest
 
-from service.flows.receive import upload
-from service.flows.supersede_session import successor_of, supersede_session
-from service.records.received import Replaced
-from service.records.session import Receipt
-from service.records.state import RecordState
+from service.kit.arriving_files import Replaced
+from service.records.supersede import successor_of, supersede_session
+from service.sessions.records import Receipt
+from service.sessions.states import RecordState
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.databases import one_engine
 from tests.service.records import NOW, state_of, way
@@ -46,9 +47,9 @@ def test_one_that_stands_for_the_other_counts_as_if_it_had_said_so(storage: Stor
     assert successor_of(storage, wrong) == right
     supersede_session(storage, way(storage), Replaced(wrong, "K. Ito", "read off wrongly"), right)
     with storage.database.reading() as store:
-        assert store.sessions.get(right).state is RecordState.ACCEPTED
-        assert store.sessions.get(wrong).superseded_by == right
-        assert [s.id for s in store.sessions.of_unit(UNIT) if s.state is RecordState.ACCEPTED][1:] == [right]
+        assert Sessions(store).get(right).state is RecordState.ACCEPTED
+        assert Sessions(store).get(wrong).superseded_by == right
+        assert [s.id for s in Sessions(store).of_unit(UNIT) if s.state is RecordState.ACCEPTED][1:] == [right]
 
 
 @one_engine
@@ -68,7 +69,7 @@ def test_what_is_doubted_for_more_stays_questioned(storage: Storage) -> None:
     right = sent(storage, json.dumps(document).encode()).id
     supersede_session(storage, way(storage), Replaced(wrong, "K. Ito", "read off wrongly"), right)
     with storage.database.reading() as store:
-        assert store.sessions.get(right).state is RecordState.QUESTIONED
+        assert Sessions(store).get(right).state is RecordState.QUESTIONED
 
 
 @one_engine

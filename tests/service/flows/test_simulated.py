@@ -3,14 +3,15 @@
 import pytest
 
 from service.errors import ConflictError, RefusedError
-from service.flows.accept_session import accept_session
-from service.flows.issue_certificate import Statement
-from service.flows.receive import upload
-from service.flows.sign_certificate import Rules, Signing, signature_of
-from service.flows.withdraw_session import withdraw_session
-from service.judging.stand_health import stand_health
-from service.records.signature import Meaning
+from service.fleet.store import Fleet
+from service.groups.store import Groups
+from service.papers.changes import Rules, Signing, Statement, signature_of
+from service.papers.records import Meaning
+from service.records.changes import accept_session, withdraw_session
+from service.stands.health import stand_health
+from service.stands.store import Stands
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.databases import one_engine
 from tests.service.records import NOW, step, way
 from tests.service.sessions import session_bytes
@@ -37,7 +38,7 @@ def test_a_unit_is_measured_once_what_was_simulated_is_withdrawn(storage: Storag
     withdraw_session(storage, way(storage), simulated, step("a trial"))
     sent(storage, month=4)
     with storage.database.reading() as store:
-        assert store.fleet.condition().simulated == 0
+        assert Fleet(store).condition().simulated == 0
     with pytest.raises(ConflictError, match="has been measured since"):
         accept_session(storage, way(storage), simulated, step("a slip"))
 
@@ -50,13 +51,15 @@ def test_a_file_that_says_measured_is_the_one_that_says_nothing(storage: Storage
 def test_a_simulated_unit_tells_nothing_of_a_stand_with_measured_ones(storage: Storage) -> None:
     sent(storage, unit="SIM-1", **SIMULATED)
     with storage.database.reading() as store:
-        assert {motion.unit for motion in store.stands.motions()} == {"SIM-1"}
+        assert {motion.unit for motion in Stands(store).motions()} == {"SIM-1"}
         assert stand_health(store)
     sent(storage)
     with storage.database.reading() as store:
-        assert {motion.unit for motion in store.stands.motions()} == {"BA-017"}
-        of_type = store.groups.of_unit("SIM-1")[1:]
-        assert {member.unit for group in of_type for member in store.groups.members(group, None).sessions} == {"BA-017"}
+        assert {motion.unit for motion in Stands(store).motions()} == {"BA-017"}
+        of_type = Groups(store).of_unit("SIM-1")[1:]
+        assert {member.unit for group in of_type for member in Groups(store).members(group, None).sessions} == {
+            "BA-017"
+        }
 
 
 @one_engine

@@ -6,10 +6,13 @@ from datetime import UTC, datetime
 
 from sqlalchemy import Engine, event
 
-from service.flows.recalibrate import recalibrate
-from service.flows.receive import upload
-from service.records.model import Evidence, ModelRevision, Scope
+from service.models.records import Evidence, ModelRevision, Scope
+from service.models.store import Models
+from service.records.recalibrate import recalibrate
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.store import Sessions
 from service.storage import Files, Storage
+from service.uploads.receive import upload
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -59,10 +62,10 @@ def test_recomputing_a_unit_asks_no_more_for_more_sessions(storage: Storage) -> 
 def accept(storage: Storage, sensor: str) -> None:
     """A cause that every session of the unit is computed again for."""
     with storage.database.writing() as store:
-        session = store.sessions.of_unit(UNIT)[0].id
+        session = Sessions(store).of_unit(UNIT)[0].id
         own = {"subject": UNIT, "cause": "cubic-nonlinearity", "sensors": (sensor,), "session": session}
         given = {"evidence": EVIDENCE, "accepted_by": "K. Ito", "note": "", "accepted_at": NOW}
-        store.models.add(ModelRevision(id=0, scope=Scope.UNIT, **own, **given))
+        Models(store).add(ModelRevision(id=0, scope=Scope.UNIT, **own, **given))
 
 
 def test_a_session_is_judged_by_what_came_in_while_it_waited(storage: Storage) -> None:
@@ -78,8 +81,8 @@ def test_a_session_is_judged_by_what_came_in_while_it_waited(storage: Storage) -
     late = Late(storage.files.folder)
     found = upload(Storage(storage.database, late), content(4), "a.json", NOW)
     with storage.database.reading() as store:
-        first = store.sessions.of_unit(UNIT)[0]
-        decided = store.sessions.decisions(found.id)[0]
-        known = store.calibrations.get(first.id).sensors[0]
+        first = Sessions(store).of_unit(UNIT)[0]
+        decided = Sessions(store).decisions(found.id)[0]
+        known = Calibrations(store).get(first.id).sensors[0]
     assert first.is_reference
     assert (decided.parameter, decided.reference) == ("scale", known.scale.value)

@@ -4,10 +4,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
-from service.flows.identity.accounts import add_account
-from service.flows.identity.links import Chosen, make_link, use_link
-from service.flows.identity.tokens import make_token
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people.changes import Chosen, add_account, make_link, make_token, use_link
 from service.storage import Storage
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)

@@ -7,14 +7,14 @@ import httpx
 import pytest
 from fastapi.routing import iter_route_contexts
 
-from service.admission import SIGN_IN_FIRST
 from service.app import create_app
-from service.flows.receive import upload
-from service.identity.access import NEEDED, Route
-from service.records.identity import Role
-from service.records.received import DEMONSTRATION
+from service.kit.arriving_files import DEMONSTRATION
+from service.kit.person import Role
+from service.people.access import NEEDED, Route
+from service.people.admission import SIGN_IN_FIRST
 from service.settings import Settings
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.databases import one_engine
 from tests.service.identity.staff import NOW, Staff, staffed
 from tests.service.sessions import session_bytes

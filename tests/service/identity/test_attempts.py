@@ -11,9 +11,9 @@ import pytest
 
 from service.app import create_app
 from service.errors import SignInError, TooOftenError
-from service.flows.identity.attempts import A_DAY, BY_ADDRESS, BY_LOGIN, FROM_EVERYWHERE, Attempt, attempting
-from service.identity.client_address import counted_address
-from service.identity.known_browser import browser_of, cookie_of
+from service.people.changes import A_DAY, BY_ADDRESS, BY_LOGIN, FROM_EVERYWHERE, Attempt, attempting
+from service.people.client_address import counted_address
+from service.people.known_browser import browser_of, cookie_of
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine

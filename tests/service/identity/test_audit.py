@@ -7,6 +7,7 @@ import pytest
 from sqlalchemy import Connection, text
 
 from service.storage import Storage
+from service.storage.audit import Audit
 from tests.service.identity.staff import NOW
 
 
@@ -14,12 +15,12 @@ def write(storage: Storage, *subjects: str) -> None:
     """A transaction for each line."""
     for subject in subjects:
         with storage.database.acting("k.ito").writing() as store:
-            store.audit.write(NOW, "K. Ito", "note", subject, {"text": "ü", "size": 1e22, "none": None})
+            Audit(store).write(NOW, "K. Ito", "note", subject, {"text": "ü", "size": 1e22, "none": None})
 
 
 def broken(storage: Storage) -> int | None:
     with storage.database.reading() as store:
-        return store.audit.check().broken
+        return Audit(store).check().broken
 
 
 def tampered(storage: Storage, statement: str) -> None:
@@ -40,7 +41,7 @@ def _unguard(connection: Connection) -> None:
 def test_a_whole_trail_is_whole(storage: Storage) -> None:
     write(storage, "a", "b", "c")
     with storage.database.reading() as store:
-        check, lines = store.audit.check(), store.audit.page(10)
+        check, lines = Audit(store).check(), Audit(store).page(10)
     assert (check.lines, check.broken, check.last) == (3, None, lines[0].hash)
     assert [(line.subject, line.account) for line in lines] == [("c", "k.ito"), ("b", "k.ito"), ("a", "k.ito")]
 
@@ -63,26 +64,26 @@ def test_a_changed_trail_names_the_line(storage: Storage, statement: str, number
 def test_lines_that_were_cut_off_show_by_the_last_hash(storage: Storage) -> None:
     write(storage, "a", "b")
     with storage.database.reading() as store:
-        before = store.audit.check().last
+        before = Audit(store).check().last
     tampered(storage, "DELETE FROM audit WHERE id = 2")
     with storage.database.reading() as store:
-        assert store.audit.check().last != before
+        assert Audit(store).check().last != before
 
 
 def test_writers_at_once_make_one_chain(storage: Storage) -> None:
     with ThreadPoolExecutor(6) as pool:
         list(pool.map(lambda k: write(storage, *(f"{k}-{n}" for n in range(5))), range(6)))
     with storage.database.reading() as store:
-        assert (store.audit.check().lines, store.audit.check().broken) == (30, None)
+        assert (Audit(store).check().lines, Audit(store).check().broken) == (30, None)
 
 
 def test_what_is_undone_leaves_no_line(storage: Storage) -> None:
     def failing() -> Any:
         with storage.database.writing() as store:
-            store.audit.write(NOW, "K. Ito", "note", "a", {})
+            Audit(store).write(NOW, "K. Ito", "note", "a", {})
             raise RuntimeError
 
     with pytest.raises(RuntimeError):
         failing()
     with storage.database.reading() as store:
-        assert store.audit.check().lines == 0
+        assert Audit(store).check().lines == 0

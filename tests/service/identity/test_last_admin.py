@@ -10,12 +10,12 @@ import pytest
 from sqlalchemy import Connection
 
 from service.app import create_app
-from service.flows.identity.accounts import AccountChange, change_account
-from service.flows.identity.tokens import make_token
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people.changes import AccountChange, change_account, make_token
+from service.people.store import Accounts, Tokens
 from service.settings import Settings
 from service.storage import Storage
-from service.storage.queries.audit import LOCK
+from service.storage.audit import LOCK
 from tests.databases import Databases, PostgresDatabases
 from tests.service.identity.staff import NOW, Staff, staffed
 from tests.serving import http_client
@@ -35,7 +35,7 @@ def admin_headers(storage: Storage, login: str) -> dict[str, str]:
     """Of a new token that may do everything; it was used already, so that showing it writes nothing."""
     token, secret = make_token(storage, login, "bench", Role.ADMIN, NOW, lasts=timedelta(days=1), who="test")
     with storage.database.writing() as store:
-        store.tokens.used(token.id, NOW)
+        Tokens(store).used(token.id, NOW)
     return {"Authorization": f"Bearer {secret}"}
 
 
@@ -67,4 +67,4 @@ def test_of_two_administrators_who_demote_each_other_one_is_left(
                 assert not any(one.done() for one in answers), "one ended although nobody can commit"
         assert sorted(one.result() for one in answers) == [200, 409]
     with storage.database.reading() as store:
-        assert store.accounts.admins() == 1
+        assert Accounts(store).admins() == 1

@@ -8,8 +8,8 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.flows.identity.links import make_link
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people.changes import make_link
 from service.settings import Settings
 from service.storage import Storage
 from tests.service.identity.staff import NOW, PASSWORD, Staff, staffed, with_password

@@ -13,10 +13,11 @@ import pytest
 
 from service.app import create_app
 from service.errors import ServiceError
-from service.flows.identity.accounts import AccountChange, change_account
-from service.flows.identity.sign_in_elsewhere import connect
+from service.people.changes import AccountChange, change_account
+from service.people.sign_in_elsewhere import connect
 from service.settings import Settings
 from service.storage import Storage
+from service.storage.audit import Audit
 from tests.databases import ENGINES
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.identity.provider import CLIENT, SECRET, OpenId, made_key, plain64, provider
@@ -82,7 +83,7 @@ def test_somebody_signs_in_and_out_and_in_again_as_the_same(http: httpx.Client, 
         assert http.post("/sign-out").status_code == 303
         assert http.get("/flags").status_code == 303
     with storage.database.reading() as store:
-        lines = [(line.action, line.subject) for line in store.audit.page(5)]
+        lines = [(line.action, line.subject) for line in Audit(store).page(5)]
     assert lines == [(action, "k.ito") for action in ("sign out", "sign in", "sign out", "sign in", "add account")]
 
 
@@ -244,7 +245,7 @@ def test_the_provider_s_groups_give_the_role_at_every_sign_in(
         openid.person["groups"] = ["something else"]
         assert entered(http).status_code == 403
     with storage.database.reading() as store:
-        assert store.audit.page(2)[1].details["before"] == {"role": "engineer"}
+        assert Audit(store).page(2)[1].details["before"] == {"role": "engineer"}
 
 
 def test_where_everybody_may_have_an_account_one_without_a_role_is_a_viewer(

@@ -9,10 +9,9 @@ import pytest
 
 from service.app import create_app
 from service.errors import SignInError
-from service.flows.identity.accounts import AccountChange, change_account, change_password
-from service.flows.identity.links import Chosen, make_link, use_link
-from service.flows.identity.sign_in import sign_in
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people.changes import AccountChange, Chosen, change_account, change_password, make_link, sign_in, use_link
+from service.people.store import Accounts
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
@@ -147,7 +146,7 @@ def test_the_first_link_makes_the_first_account_and_no_second(settings: Settings
     links = [make_link(storage, None, NOW, "start") for _ in range(2)]
     use_link(storage, links[0], Chosen("K.Ito", "K. Ito", PASSWORD), NOW)
     with storage.database.reading() as store:
-        (account,) = store.accounts.every()
+        (account,) = Accounts(store).every()
     assert (account.login, account.name, account.role, account.has_password) == ("k.ito", "K. Ito", Role.ADMIN, True)
     with pytest.raises(SignInError, match="used already"):
         use_link(storage, links[1], Chosen("mallory", "", PASSWORD), NOW)

@@ -7,9 +7,8 @@ import pytest
 
 from service.app import create_app
 from service.errors import ConflictError, RefusedError
-from service.flows.identity.accounts import AccountChange, change_account
-from service.flows.identity.tokens import make_token, revoke_token
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people.changes import AccountChange, change_account, make_token, revoke_token
 from service.settings import Settings
 from service.storage import Storage
 from tests.service.identity.staff import NOW, Staff, staffed

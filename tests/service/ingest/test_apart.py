@@ -16,8 +16,9 @@ import pytest
 from estimator.errors import FormatError
 from estimator.reading import read_session
 from service.errors import BusyError
-from service.ingest import LONG, apart, limits, read_upload
+from service.ingest import LONG, apart, read_upload
 from service.ingest.exchange import DAMAGED, pack, unpack
+from service.kit import limits
 from tests import builders
 from tests.estimator.test_reading_csv import csv_of, same
 from tests.patience import LONG as VERY_LONG

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from estimator.errors import FormatError, SessionError
-from service.ingest import limits, look_at, read_upload
+from service.ingest import look_at, read_upload
 from service.ingest.logs import LogTable, log_of
+from service.kit import limits
 from tests.service.ingest import flight_logs as made
 
 FOUND = made.imus(orientations=4)

@@ -15,7 +15,8 @@ from scipy.io import savemat
 
 from benchmarks.files.hostile import HOSTILE, Hostile
 from estimator.errors import FormatError, SessionError
-from service.ingest import limits, read_upload
+from service.ingest import read_upload
+from service.kit import limits
 from tests import builders
 from tests.service.ingest.test_formats import WRITERS, metadata, parquet_bytes, xlsx_bytes
 

@@ -7,7 +7,8 @@ import pytest
 
 from benchmarks.files.long import write_csv, write_parquet
 from estimator.errors import FormatError
-from service.ingest import limits, read_upload
+from service.ingest import read_upload
+from service.kit import limits
 
 MEBIBYTE = 1024**2
 

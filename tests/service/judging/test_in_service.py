@@ -7,11 +7,13 @@ import httpx
 import pytest
 
 from service.errors import RefusedError
-from service.flows.receive import upload
-from service.flows.record_service import record_service
-from service.records.decision import Verdict
-from service.records.event import NewService
+from service.records.changes import record_service
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.decision import Verdict
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.units.records import NewService
+from service.uploads.receive import upload
 from tests.builders import gyro_block
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.estimator.parity.test_gyros import gyros
@@ -41,8 +43,8 @@ def test_a_drifted_sensor_is_found_and_named(storage: Storage) -> None:
     assert receipt.verdict is Verdict.FAIL
     assert receipt.reason.startswith("A3 has changed since the calibration: bias +4")
     with storage.database.reading() as store:
-        failed = [(d.sensor, d.parameter) for d in store.sessions.decisions(receipt.id) if d.verdict is Verdict.FAIL]
-        stored = store.calibrations.get(receipt.id)
+        failed = [(d.sensor, d.parameter) for d in Sessions(store).decisions(receipt.id) if d.verdict is Verdict.FAIL]
+        stored = Calibrations(store).get(receipt.id)
     assert failed == [("A3", "bias")]
     assert stored.parity is not None
     assert stored.parity["isolated"] == "A3"
@@ -70,7 +72,7 @@ def test_a_recording_never_becomes_a_reference(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
     id = upload(storage, recording_bytes(), "flight.json", NOW).id
     with storage.database.reading() as store:
-        assert not store.sessions.get(id).is_reference
+        assert not Sessions(store).get(id).is_reference
 
 
 def test_three_sensors_are_told_that_they_have_no_redundancy(storage: Storage) -> None:

@@ -4,8 +4,8 @@ import numpy as np
 
 from estimator.results import ARCSEC
 from service.judging.judge import decisions_of, judge
-from service.records.decision import Verdict
-from service.records.unit import Tolerances, UnitType
+from service.sessions.decision import Verdict
+from service.types.records import Tolerances, UnitType
 from tests.estimator.health.cases import block
 from tests.estimator.test_rotations import unit_vectors
 

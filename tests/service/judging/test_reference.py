@@ -3,11 +3,12 @@
 from datetime import UTC, datetime
 
 from estimator.session import ACCELEROMETER, IN_SERVICE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
-from service.flows.receive import upload
-from service.flows.record_service import record_service
 from service.judging.reference import Reference, reference_of
-from service.records.event import NewService
+from service.records.changes import record_service
 from service.storage import Storage
+from service.units.records import NewService
+from service.units.store import Units
+from service.uploads.receive import upload
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -28,7 +29,7 @@ def serviced(storage: Storage, at: datetime) -> None:
 def chosen(storage: Storage, at: datetime, programme: str = TWO_AXIS_STAND) -> Reference:
     """What a session measured at a time would be judged against."""
     with storage.database.reading() as store:
-        return reference_of(store, store.units.key("BA-017"), ACCELEROMETER, programme, at)
+        return reference_of(store, Units(store).key("BA-017"), ACCELEROMETER, programme, at)
 
 
 def test_the_session_that_was_measured_first_is_the_reference_whenever_it_came_in(storage: Storage) -> None:

@@ -6,11 +6,11 @@ from functools import cache
 from estimator.diagnosis import Diagnosis, diagnose
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
+from service.diagnosis.words.causes import UNKNOWN_CAUSE
 from service.ingest.checked import as_checked
 from service.judging.standing import MOST_ALTERNATIVES, Basis, verdicts_under_alternatives
-from service.judging.tolerances import type_of
-from service.records.decision import Verdict
-from service.words.causes import UNKNOWN_CAUSE
+from service.sessions.decision import Verdict
+from service.types.rules import type_of
 from tests.service.diagnosed import ALIASES, drawn
 from tests.service.pages.records import NOON
 

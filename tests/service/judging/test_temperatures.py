@@ -8,9 +8,9 @@ import pytest
 
 from estimator.results import Residuals
 from service.judging.temperatures import Covered, covered_by, worth_of
-from service.records.decision import Verdict
-from service.records.session import StoredSession
-from service.storage.queries.outlooks import ChangeRow, ReferenceRow
+from service.outlook.store import ChangeRow, ReferenceRow
+from service.sessions.decision import Verdict
+from service.sessions.records import StoredSession
 
 START = datetime(2024, 1, 10, tzinfo=UTC)
 STAND = "two-axis-stand"

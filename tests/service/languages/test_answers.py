@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from service.pages import in_language
+from service.web import in_language
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 
 HTML = {"Accept": "text/html"}

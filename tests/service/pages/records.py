@@ -6,14 +6,13 @@ from datetime import UTC, datetime, timedelta
 from estimator.calibration import calibrate
 from estimator.reading import read_session
 from estimator.results import Calibration
+from service.fleet.condition import UnitSummary
 from service.ingest.checked import as_checked
 from service.judging.judge import judge
-from service.judging.tolerances import type_of
-from service.records.decision import Verdict
-from service.records.history import HistoryPoint
-from service.records.session import StoredSession
-from service.records.session_report import SessionReport
-from service.records.unit import UnitSummary
+from service.papers.session_report import SessionReport
+from service.sessions.decision import Verdict
+from service.sessions.records import HistoryPoint, StoredSession
+from service.types.rules import type_of
 from tests.builders import Document, accelerometer_block
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)

@@ -5,7 +5,7 @@ import re
 import httpx
 import pytest
 
-from service.pages.arrivals import ArrivalsAsked, arrivals_query
+from service.pages.uploads.arrivals import ArrivalsAsked, arrivals_query
 from tests.service.sessions import session_bytes, session_id
 
 

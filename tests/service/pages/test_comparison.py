@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from estimator.results import Calibration
-from service.flows.receive import upload
-from service.records.event import Service
+from service.pages.session.comparison import compare, in_common
 from service.storage import Storage
-from service.views.comparison import compare
-from service.words.comparison import in_common
+from service.units.records import Service
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block, true_sensors
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it

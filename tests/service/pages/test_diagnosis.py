@@ -8,6 +8,7 @@ import pytest
 from sqlalchemy import text as sql
 
 from service.app import create_app
+from service.diagnosis.store import Diagnoses
 from service.storage import Storage
 from tests.conftest import Holding, SettingsHolding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
@@ -148,7 +149,7 @@ def test_a_cause_that_this_version_does_not_know_is_shown_by_its_identifier(sett
 def rename_cause(storage: Storage, id: str, old: str, new: str) -> None:
     """Makes a stored diagnosis one of a version that called a cause otherwise."""
     with storage.database.reading() as store:
-        stored = store.diagnoses.get(id)
+        stored = Diagnoses(store).get(id)
     assert stored is not None
     assert stored.document is not None
     changed = zlib.compress(stored.document.replace(f'"{old}"', f'"{new}"').encode())

@@ -7,10 +7,10 @@ import httpx
 import pytest
 
 from service.app import create_app
+from service.pages.help import WORDS
 from service.pages.reference import reference_page
 from service.pages.settings import settings_page
 from service.settings import Origin, Settings
-from service.words.help import WORDS
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.project.source import ROOT
 

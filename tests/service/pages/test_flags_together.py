@@ -4,8 +4,9 @@ import httpx
 import pytest
 from lxml import html
 
-from service.pages import flags, flags_view
-from service.pages.flags_view import FlagsAsked, FlagsView
+from service.flags import view as flags_view
+from service.flags.view import FlagsAsked, FlagsView
+from service.pages import flags
 from tests.conftest import Holding
 from tests.service.sessions import session_bytes
 

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from service.pages.fleet import fleet_page, margin_of
-from service.pages.fleet_view import PAGE_SIZE, FleetView
-from service.records.decision import Verdict
-from service.records.unit import FleetCondition
+from service.fleet.condition import FleetCondition
+from service.pages.fleet.pages import fleet_page, margin_of
+from service.pages.fleet.view import PAGE_SIZE, FleetView
+from service.sessions.decision import Verdict
 from tests.service.pages.records import NOON, unit_summary
 
 CONDITION = FleetCondition(units=120, verdicts={v: 20 + 2 * v.severity for v in Verdict}, simulated=0)

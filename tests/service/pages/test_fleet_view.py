@@ -3,8 +3,8 @@
 import httpx
 import pytest
 
-from service.pages.fleet_view import FleetAsked, FleetView
-from service.records.fleet import Order
+from service.fleet.records import Order
+from service.pages.fleet.view import FleetAsked, FleetView
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.pages.records import NOON
 from tests.service.sessions import session_bytes

@@ -7,11 +7,12 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.background.work import LEASE
-from service.flows.receive import upload
-from service.pages.follow import LATEST, SOONEST, follow_seconds
-from service.records.work import WorkKind
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.settings import Settings
+from service.uploads.receive import upload
+from service.web.follow import LATEST, SOONEST, follow_seconds
+from service.work.loop import LEASE
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.pages.test_http import HTML
@@ -50,11 +51,11 @@ def test_session_and_card_follow_until_the_diagnosis_is_there(settings: Settings
     with stores(settings) as storage:
         upload(storage, CONTENT, "a.json", NOW)
         with storage.database.writing() as store:
-            store.work(WorkKind.DIAGNOSIS).claim(ID, NOW, NOW + LEASE)
+            WorkQueue(store, WorkKind.DIAGNOSIS).claim(ID, NOW, NOW + LEASE)
         with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)) as client:
             page, card = shown(client, f"/sessions/{ID}"), shown(client, f"/sessions/{ID}/outcome")
             with storage.database.writing() as store:
-                store.work(WorkKind.DIAGNOSIS).put_off(ID, None)
+                WorkQueue(store, WorkKind.DIAGNOSIS).put_off(ID, None)
             client.get(f"/api/v1/sessions/{ID}/diagnosis").raise_for_status()
             later = shown(client, f"/sessions/{ID}/outcome")
     assert f'http-equiv="refresh" content="{SOONEST}"' in page
@@ -72,8 +73,8 @@ def test_a_part_of_the_page_follows_with_scripts_and_the_page_without(settings: 
     with stores(settings) as storage:
         upload(storage, CONTENT, "a.json", NOW)
         with storage.database.writing() as store:
-            store.work(WorkKind.DIAGNOSIS).claim(ID, NOW, NOW + LEASE)
-            store.work(WorkKind.OUTLOOK).claim("BA-017", NOW, NOW + LEASE)
+            WorkQueue(store, WorkKind.DIAGNOSIS).claim(ID, NOW, NOW + LEASE)
+            WorkQueue(store, WorkKind.OUTLOOK).claim("BA-017", NOW, NOW + LEASE)
         with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)) as client:
             text = shown(client, PENDING[page])
     assert re.search(r'<script type="module" src="[^"]*follow', text)

@@ -7,9 +7,9 @@ from estimator.diagnosis.results import Gain, Score
 from estimator.reading import read_session
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import MEASURES
-from service.pages.gain import gain_view
-from service.records.decision import Verdict
+from service.diagnosis.gain import gain_view
+from service.kit.measures import MEASURES
+from service.sessions.decision import Verdict
 from tests.builders import accelerometer_block
 
 MICRO_G, DEGREE_AN_HOUR = (1 / MEASURES[kind, "bias"].factor for kind in (ACCELEROMETER, GYROSCOPE))

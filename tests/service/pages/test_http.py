@@ -12,8 +12,8 @@ from fastapi import FastAPI
 from sqlalchemy import event
 
 from service.app import create_app
-from service.pages.assets import asset_url
 from service.settings import Settings
+from service.web.assets import asset_url
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes
 from tests.serving import http_client, limited_client, running

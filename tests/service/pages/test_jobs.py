@@ -6,12 +6,12 @@ from datetime import UTC, datetime, timedelta
 import httpx
 import pytest
 
-from service.flows.ask_job import ask_job
-from service.pages.jobs import LATEST, job_page
-from service.records.identity import EVERYBODY, LOOKING
-from service.records.job import Job, JobFailure, JobKind, JobState, NewJob
-from service.records.model import Scope
+from service.jobs.changes import ask_job
+from service.jobs.records import Job, JobFailure, JobKind, JobState, NewJob
+from service.kit.person import EVERYBODY, LOOKING
+from service.models.records import Scope
 from service.storage import Storage
+from service.work.pages import LATEST, job_page
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)

@@ -5,14 +5,10 @@ from datetime import timedelta
 
 import pytest
 
-from service.charts.history import history_charts
-from service.charts.tracks import tracks_of
-from service.judging.populations import populations
-from service.judging.standouts import Standout, standouts
-from service.pages.fleet import fleet_page
-from service.pages.fleet_view import FleetView
-from service.records.decision import Verdict
-from service.records.outlook import (
+from service.fleet.condition import FleetCondition
+from service.outlook.charts import history_charts
+from service.outlook.populations_store import FarOut
+from service.outlook.records import (
     Action,
     FanPoint,
     FoundChange,
@@ -22,9 +18,13 @@ from service.records.outlook import (
     TemperatureCoefficient,
     UnitOutlook,
 )
-from service.records.unit import FleetCondition
-from service.storage.queries.populations import FarOut
-from service.words.outlook import next_calibration
+from service.outlook.rules.populations import populations
+from service.outlook.rules.standouts import Standout, standouts
+from service.outlook.tracks import tracks_of
+from service.outlook.words.outlook import next_calibration
+from service.pages.fleet.pages import fleet_page
+from service.pages.fleet.view import FleetView
+from service.sessions.decision import Verdict
 from tests.service.pages.records import NOON, bias_point, unit_summary
 
 MICRO_G = 9.80665e-6

@@ -5,10 +5,11 @@ from datetime import UTC, datetime
 
 import httpx
 
-from service.flows.correct_session import remedies_of
-from service.flows.receive import upload
-from service.records.state import RecordKind
+from service.sessions.states import RecordKind
+from service.sessions.states_store import States
 from service.storage import Storage
+from service.uploads.correct import remedies_of
+from service.uploads.receive import upload
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -53,7 +54,7 @@ def test_programs_have_it_corrected_too(client: httpx.Client) -> None:
 def test_what_would_put_it_right_is_kept_as_its_file_tells_it(storage: Storage) -> None:
     id = upload(storage, in_mv(), "a.json", NOW).id
     with storage.database.reading() as store:
-        life = store.states.of(RecordKind.SESSION, id)
+        life = States(store).of(RecordKind.SESSION, id)
     assert remedies_of(storage, id, life) == remedies_of(storage, id, ())
     for file in storage.files.folder.rglob("*"):
         if file.is_file():

@@ -9,9 +9,9 @@ import httpx
 import pytest
 from sqlalchemy import Engine, event
 
-from service.flows.diagnose import diagnose
-from service.flows.receive import upload
+from service.records.diagnose import diagnose
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.service.pages.test_questioned import in_mv
 from tests.service.sessions import session_bytes
 

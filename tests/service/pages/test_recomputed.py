@@ -2,9 +2,9 @@
 
 import httpx
 
-from service.judging.model_in_force import model_as_of
-from service.pages.session import session_page
-from service.records.model import ModelRevision, Scope
+from service.models.records import ModelRevision, Scope
+from service.models.rules import model_as_of
+from service.pages.session.pages import session_page
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.pages.records import NOON, session_report

@@ -5,10 +5,10 @@ import re
 from fastapi import Request
 
 from estimator.errors import Problem
-from service.pages.render import TEMPLATES, embed, render
-from service.pages.session import session_page
-from service.pages.upload import Outcome, upload_page
+from service.pages.session.pages import session_page
 from service.settings import Settings
+from service.uploads.upload_pages import Outcome, upload_page
+from service.web.render import TEMPLATES, embed, render
 from tests.service.pages.records import session_report
 
 

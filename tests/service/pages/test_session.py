@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from estimator.results import KnownCombination
-from service.pages.session import session_page
-from service.words.fit import fit_in_words
-from service.words.known import combination_in_words
+from service.pages.session.pages import session_page
+from service.sessions.words.fit import fit_in_words
+from service.sessions.words.known import combination_in_words
 from tests.builders import Document, accelerometer_block, gyro_block
 from tests.service.pages.records import session_report
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 import httpx
 import pytest
 
+from service.fleet.records import FleetChoices
+from service.kit.person import EVERYBODY
 from service.pages.saved import saved
-from service.pages.sessions import sessions_page
-from service.pages.sessions_view import PAGE_SIZE, SessionsAsked, SessionsView
-from service.records.decision import Verdict
-from service.records.fleet import FleetChoices
-from service.records.identity import EVERYBODY
-from service.records.saved_view import ListPage
-from service.records.session import StoredSession
+from service.pages.session.list_pages import sessions_page
+from service.pages.session.view import PAGE_SIZE, SessionsAsked, SessionsView
+from service.people.views import ListPage
+from service.sessions.decision import Verdict
+from service.sessions.records import StoredSession
 from tests.databases import one_engine
 from tests.service.pages.records import session_report
 from tests.service.sessions import FAILED, session_id

@@ -5,10 +5,10 @@ from datetime import date
 
 import httpx
 
-from service.pages.stands import stand_page, stands_page
-from service.records.paper import StandCertificate
-from service.records.stand import StandCondition, StandEvidence, StandSeating, StandUse
-from service.views.stand_report import StandLine, StandReport
+from service.pages.stand.pages import stand_page, stands_page
+from service.pages.stand.report import StandLine, StandReport
+from service.stands.paper_records import StandCertificate
+from service.stands.records import StandCondition, StandEvidence, StandSeating, StandUse
 from tests.service.pages.records import NOON
 from tests.service.reports.laboratory import STAND
 

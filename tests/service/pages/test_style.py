@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from service.pages.assets import STATIC
+from service.web.assets import STATIC
 
 TONES = (
     "ink",

@@ -6,10 +6,10 @@ from dataclasses import replace
 import httpx
 import pytest
 
-from service.pages.unit_types import type_page, types_page
-from service.records.decision import Verdict
-from service.records.unit import ToleranceRevision, Tolerances, TypeUse, UnitType
-from service.views.type_report import TypeLine, TypeReport
+from service.pages.type.pages import type_page, types_page
+from service.pages.type.report import TypeLine, TypeReport
+from service.sessions.decision import Verdict
+from service.types.records import ToleranceRevision, Tolerances, TypeUse, UnitType
 from tests.builders import mixed_block
 from tests.conftest import Holding
 from tests.databases import one_engine

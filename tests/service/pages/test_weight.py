@@ -6,10 +6,11 @@ from datetime import timedelta
 
 from fastapi import Request
 
-from service.pages.render import render
-from service.pages.unit import unit_page
-from service.records.session import PARAMETERS
-from service.records.unit import Tolerances, UnitReport, UnitType
+from service.pages.unit.pages import unit_page
+from service.pages.unit.records import UnitReport
+from service.sessions.records import PARAMETERS
+from service.types.records import Tolerances, UnitType
+from service.web.render import render
 from tests.service.pages.records import NOON, bias_point, unit_summary
 
 SESSIONS, SENSORS = 200, 6

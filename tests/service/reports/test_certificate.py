@@ -8,9 +8,9 @@ import httpx
 import pytest
 
 from estimator.health.rule import RULE
-from service.flows.receive import upload
+from service.sessions.words.conditions import condition_of
 from service.storage import Storage
-from service.words.conditions import condition_of
+from service.uploads.receive import upload
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import ECCENTRIC, accepted, diagnosis_of, held

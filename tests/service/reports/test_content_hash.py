@@ -4,14 +4,14 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from service.flows.diagnose import diagnose
-from service.flows.receive import upload
-from service.flows.record_service import record_service
-from service.records.event import NewService
-from service.reports.certificate.content import statement_of
+from service.papers.certificate.content import statement_of
+from service.papers.certified import certified_session, laboratory_of
+from service.records.changes import record_service
+from service.records.diagnose import diagnose
 from service.settings import Settings
 from service.storage import Storage
-from service.views.certificate import certified_session, laboratory_of
+from service.units.records import NewService
+from service.uploads.receive import upload
 from tests.conftest import Filled
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes, session_id

@@ -7,11 +7,11 @@ import httpx
 import polars as pl
 import pytest
 
-from service.reports.fleet_paper import fleet_pdf
-from service.reports.fleet_workbook import MOST_HISTORY_ROWS, fleet_xlsx
+from service.papers.fleet.paper import fleet_pdf
+from service.papers.fleet.report import fleet_report
+from service.papers.fleet.workbook import MOST_HISTORY_ROWS, fleet_xlsx
 from service.storage import Storage
 from service.storage.store import Store
-from service.views.fleet_report import fleet_report
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.dated import upload_and_date
 from tests.service.reports.documents import pages_of, text_of
@@ -121,7 +121,7 @@ def test_queries_do_not_grow_with_the_fleet(storage: Storage) -> None:
 def test_histories_share_the_sheet_alike(storage: Storage, monkeypatch: pytest.MonkeyPatch) -> None:
     for month in range(1, 6):
         upload_and_date(storage, session_bytes(seed=month, month=month), "a.json", NOW)
-    monkeypatch.setattr("service.reports.fleet_workbook.MOST_HISTORY_ROWS", 24 * 2)
+    monkeypatch.setattr("service.papers.fleet.workbook.MOST_HISTORY_ROWS", 24 * 2)
     assert MOST_HISTORY_ROWS > 24 * 5
     with storage.database.reading() as store:
         content = fleet_xlsx(store, fleet_report(store, NOW))

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import typst
 
-from service.reports.pictures import PALETTE
-from service.reports.printable import RANGES, is_printable, printable
+from service.kit.printable import RANGES, is_printable, printable
+from service.papers.pictures import PALETTE
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.reports.documents import text_of
 

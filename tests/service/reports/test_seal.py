@@ -26,8 +26,8 @@ from pyhanko_certvalidator import ValidationContext
 
 from service.app import create_app
 from service.errors import ConflictError, ServiceError
-from service.records.identity import Role
-from service.reports.sealing import Seal, seal_of, seal_room
+from service.kit.person import Role
+from service.papers.sealing import Seal, seal_of, seal_room
 from service.settings import Settings
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.identity.staff import Staff

@@ -8,7 +8,7 @@ import polars as pl
 import pytest
 from lxml import etree
 
-from service.reports.sheets import Column, Kind, Workbook
+from service.papers.sheets import Column, Kind, Workbook
 
 NOW = datetime(2026, 11, 21, 12, 30, 30, tzinfo=UTC)
 COLUMNS = (

@@ -9,10 +9,11 @@ from lxml import etree
 from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
-from service.flows.identity.accounts import add_account
-from service.records.identity import Role
+from service.kit.person import Role
+from service.people.changes import add_account
 from service.settings import Settings
 from service.storage import Storage
+from service.storage.audit import Audit
 from service.storage.engine import open_engine
 from tests.conftest import SettingsHolding
 from tests.databases import ENGINES
@@ -109,8 +110,8 @@ def test_the_xml_names_them_and_stays_valid(http: httpx.Client, staff: Staff) ->
 def test_the_signature_stands_in_the_audit_trail(http: httpx.Client, staff: Staff, storage: Storage) -> None:
     signed(http, staff, Role.ENGINEER, "reviewed")
     with storage.database.reading() as store:
-        line = store.audit.page(1)[0]
-        assert store.audit.check().broken is None
+        line = Audit(store).page(1)[0]
+        assert Audit(store).check().broken is None
     assert (line.action, line.subject, line.who, line.account) == (
         "sign certificate", f"{ID}-0-1", "Engineer", "engineer, token bench",
     )  # fmt: skip

@@ -7,7 +7,7 @@ from pypdf import PdfReader, PdfWriter
 from pypdf.annotations import Rectangle
 from pypdf.generic import NameObject
 
-from service.reports.together import joined
+from service.papers.together import joined
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.reports.documents import pages_of

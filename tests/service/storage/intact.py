@@ -5,9 +5,11 @@ from hashlib import sha256
 
 from sqlalchemy import Connection, func, select
 
+from service.fleet.tables import ConditionRow
+from service.opening import open_database
+from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 from service.settings import Settings
-from service.storage import Database
-from service.storage.tables import AuditRow, CalibrationRow, ConditionRow, DecisionRow, ParameterRow, SessionRow
+from service.storage.audit_table import AuditRow
 from tests.service.storage.whole import files
 
 SENSORS = 4
@@ -21,7 +23,7 @@ def faults(settings: Settings, acknowledged: Collection[bytes], sent: Collection
 
     ``acknowledged`` are uploads whose answer was seen, ``sent`` all that were ever sent.
     """
-    database = Database(settings.database)
+    database = open_database(settings.database)
     with database.engine.connect() as connection:
         found = list(_faults(connection, settings, acknowledged, sent))
     database.close()

@@ -5,13 +5,15 @@ from collections.abc import Callable
 from datetime import datetime
 from uuid import uuid4
 
-from service.background.work import LEASE
-from service.flows.receive import Reception, upload
-from service.flows.take_in import ask_upload, take_in
-from service.metrics import Metrics
-from service.records.identity import EVERYBODY
-from service.records.received import SentFile
+from service.jobs.store import UploadJobs
+from service.kit.arriving_files import SentFile
+from service.kit.metrics import Metrics
+from service.kit.person import EVERYBODY
+from service.records.reception import Reception
 from service.storage import Storage
+from service.uploads.receive import upload
+from service.uploads.take_in import ask_upload, take_in
+from service.work.loop import LEASE
 
 Way = Callable[[Storage, bytes, datetime], None]
 
@@ -43,7 +45,7 @@ def by_a_job(storage: Storage, content: bytes, now: datetime) -> None:
 def go_on(storage: Storage, now: datetime) -> None:
     """What a service does that is started again: jobs that are open are taken up."""
     with storage.database.reading() as store:
-        waiting = store.upload_jobs.waiting(now + LEASE, 100)
+        waiting = UploadJobs(store).waiting(now + LEASE, 100)
     for id in waiting:
         take_in(Reception(storage, 2.0, Metrics(), lambda: None), id, now)
 

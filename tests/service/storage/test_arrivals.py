@@ -7,9 +7,10 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from service.errors import NotFoundError, RefusedError
-from service.flows.receive import upload
-from service.records.arrival import Arrival, ArrivalQuery
 from service.storage import Storage
+from service.uploads.receive import upload
+from service.uploads.records import Arrival, ArrivalQuery
+from service.uploads.store import Arrivals
 from tests.service.sessions import session_bytes
 
 NOON = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -38,7 +39,7 @@ def read_on(storage: Storage, at_once: int) -> Iterator[str]:
     query = ArrivalQuery(limit=at_once)
     while True:
         with storage.database.reading() as store:
-            found = store.arrivals.page(query)
+            found = Arrivals(store).page(query)
         if not found:
             return
         yield from map(letter, found)
@@ -58,17 +59,17 @@ def test_what_came_is_listed_newest_first_and_read_on_without_a_gap(stored: Stor
 
 def test_a_list_is_narrowed(stored: Storage) -> None:
     with stored.database.reading() as store:
-        refused = store.arrivals.page(ArrivalQuery(refused=True))
-        named = store.arrivals.page(ArrivalQuery(text="A.JSON"))
-        anew = store.arrivals.page(ArrivalQuery(after_session="none", limit=1))
+        refused = Arrivals(store).page(ArrivalQuery(refused=True))
+        named = Arrivals(store).page(ArrivalQuery(text="A.JSON"))
+        anew = Arrivals(store).page(ArrivalQuery(after_session="none", limit=1))
     assert ("".join(map(letter, refused)), "".join(map(letter, named)), letter(anew[0])) == ("fed", "a", "f")
 
 
 def test_a_refusal_keeps_its_problems(stored: Storage) -> None:
     with stored.database.reading() as store:
-        last = store.arrivals.page(ArrivalQuery(refused=True))[0].refusal
+        last = Arrivals(store).page(ArrivalQuery(refused=True))[0].refusal
         assert last is not None
-        assert store.arrivals.refusal(last.number) == last
+        assert Arrivals(store).refusal(last.number) == last
         assert last.problems
         with pytest.raises(NotFoundError):
-            store.arrivals.refusal(10**6)
+            Arrivals(store).refusal(10**6)

@@ -18,19 +18,22 @@ from sqlalchemy import text
 
 from service.app import create_app
 from service.errors import ConflictError, DamagedError, ServiceError
-from service.flows.identity.links import make_link
-from service.flows.identity.sign_in import sign_in
-from service.flows.keep_noise import keep_noise
-from service.flows.receive import Reception, upload
-from service.flows.take_in import ask_upload, take_in
-from service.metrics import Metrics
-from service.records.identity import EVERYBODY, Role
-from service.records.job import JobState
-from service.records.received import SentFile
+from service.jobs.records import JobState
+from service.jobs.store import Jobs
+from service.kit.arriving_files import SentFile
+from service.kit.metrics import Metrics
+from service.kit.person import EVERYBODY, Role
+from service.opening import open_database
+from service.people.changes import make_link, sign_in
+from service.records.keep_noise import keep_noise
+from service.records.reception import Reception
+from service.sessions.noise_store import Noises
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Files, Storage
 from service.storage.backup import restore, verified, write_backup
 from service.storage.schema import upgrade
+from service.uploads.receive import upload
+from service.uploads.take_in import ask_upload, take_in
 from tests.builders import raw_log
 from tests.conftest import SettingsFilled
 from tests.databases import ENGINES, Databases, one_engine
@@ -92,7 +95,7 @@ def test_noise_at_rest_is_restored_into_either_engine(
     restore(backup_of(settings, tmp_path), new.database, new.files, NOW)
     assert rows(new.database)["session_noise"] == rows(settings.database)["session_noise"] != []
     with stores(new) as restored, restored.database.reading() as store:
-        found = store.noises.get(id)
+        found = Noises(store).get(id)
     assert found is not None
     assert (found.rests, [sensor.name for sensor in found.sensors]) == (8, ["A1", "A2", "A3"])
 
@@ -214,7 +217,7 @@ def test_a_restore_that_fails_leaves_a_database_without_a_schema(
     (tmp_path / "place").write_text("no folder can be here")
     with pytest.raises(ServiceError):
         restore(backup, url, tmp_path / "place" / "files", NOW)
-    database = Database(url)
+    database = open_database(url)
     with pytest.raises(ServiceError, match="is at nothing"):
         database.require_ready()
     database.close()
@@ -292,7 +295,7 @@ def test_a_restore_that_is_killed_leaves_no_schema_and_can_be_started_again(
 ) -> None:
     url, backup, folder = databases.empty(), backup_of(full, tmp_path), tmp_path / "new" / "files"
     if killed_at(call, "restore", url, folder, backup):
-        database = Database(url)
+        database = open_database(url)
         with database.engine.connect() as connection:
             assert connection.dialect.get_table_names(connection) == []
         database.close()
@@ -308,7 +311,7 @@ def test_a_new_schema_holds_no_rows_that_a_restore_would_meet(databases: Databas
 def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_path: Path) -> None:
     url = other.empty()
     restore(backup_of(full, tmp_path), url, tmp_path / "new", NOW)
-    database = Database(url)
+    database = open_database(url)
     with database.engine.begin() as connection:
         insert = "INSERT INTO audit (at, who, action, subject, details) VALUES (:at, 'a', 'b', 'c', '{}') RETURNING id"
         assert connection.scalar(text(insert), {"at": "2026-01-01 00:00:00"}) == len(rows(full.database)["audit"]) + 1
@@ -350,5 +353,5 @@ def test_a_large_file_that_waits_to_be_read_is_restored_with_its_job(
     with stores(other) as storage:
         take_in(Reception(storage, 2.0, Metrics(), lambda: None), 1, NOW)
         with storage.database.reading() as store:
-            assert store.jobs.get(1).state is JobState.DONE
+            assert Jobs(store).get(1).state is JobState.DONE
     assert (len(manifest.files), manifest.lost) == (1, ())

@@ -10,15 +10,11 @@ import pytest
 from estimator import diagnose
 from estimator.diagnosis.results import Course, NoiseScale, Structure
 from estimator.reading import read_session
-from service.records.diagnosis import Diagnosed
-from service.storage.diagnosis_document import (
-    evidence_from_dict,
-    evidence_to_dict,
-    inapplicable_to_dict,
-    read_diagnosis,
-)
+from service.diagnosis.document import inapplicable_to_dict, read_diagnosis
+from service.diagnosis.records import Diagnosed
+from service.diagnosis.words.finding import since_together
+from service.models.evidence_document import evidence_from_dict, evidence_to_dict
 from service.storage.json_text import json_text
-from service.words.finding import since_together
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn
 from tests.service.findings import earlier_document
 

@@ -4,8 +4,9 @@ import pytest
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import IntegrityError
 
-from service.storage import Database
+from service.opening import open_database
 from service.storage.engine import WRITES
+from service.units.store import Units
 from tests.databases import Databases
 
 LATE = {
@@ -25,7 +26,7 @@ def refer_to_nothing(engine: Engine) -> None:
 
 
 def test_after_a_refused_commit_the_next_user_of_the_connection_finds_no_transaction(databases: Databases) -> None:
-    database = Database(databases.migrated())
+    database = open_database(databases.migrated())
     writing = database.engine.execution_options(**{WRITES: True})
     if database.engine.name == "postgresql":
         with writing.begin() as connection:
@@ -33,7 +34,7 @@ def test_after_a_refused_commit_the_next_user_of_the_connection_finds_no_transac
     with pytest.raises(IntegrityError):
         refer_to_nothing(writing)
     with database.writing() as store:
-        assert not store.units.exists("BA-017")
+        assert not Units(store).exists("BA-017")
     with database.engine.connect() as connection:
         assert connection.scalar(text("SELECT count(*) FROM note_withdrawals")) == 0
     database.close()

@@ -5,7 +5,7 @@ import pytest
 
 from estimator.health.error_laws import FREEDOMS
 from estimator.health.pooled import Evidence
-from service.storage.history_document import EARLIEST, SHAPE, WARM, packed, unpacked
+from service.outlook.document import EARLIEST, SHAPE, WARM, packed, unpacked
 
 RNG = np.random.default_rng(1)
 TOLD = [Evidence(1.5 + i, -RNG.exponential(size=SHAPE), -RNG.exponential(size=len(FREEDOMS))) for i in range(17)]

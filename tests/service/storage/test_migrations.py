@@ -9,12 +9,16 @@ from sqlalchemy import inspect, text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import AwayError
-from service.flows.receive import upload
-from service.records.work import WorkKind
-from service.storage import Database, Storage
+from service.jobs.failures_store import Failures
+from service.opening import open_database
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.sessions.store import Sessions
+from service.storage import Storage
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, head_revision, stored_revision, upgrade
 from service.storage.tables import Base
+from service.uploads.receive import upload
 from tests.databases import Databases
 from tests.service.sessions import session_bytes
 
@@ -38,7 +42,7 @@ def test_upgrading_twice_is_upgrading_once(databases: Databases) -> None:
 
 
 def test_an_empty_database_is_not_ready_and_says_what_to_do(databases: Databases) -> None:
-    database = Database(databases.empty())
+    database = open_database(databases.empty())
     with pytest.raises(AwayError, match="imu-health db upgrade"):
         database.require_ready()
     database.close()
@@ -61,13 +65,13 @@ def test_decisions_outlive_the_split_into_common_and_own_parts(store_url: str, s
     upload(storage, session_bytes(), "a.json", now)
     id = upload(storage, session_bytes(seed=2, month=5), "b.json", now).id
     with storage.database.reading() as store:
-        before, motions = store.sessions.decisions(id), store.sessions.motions(id)
+        before, motions = Sessions(store).decisions(id), Sessions(store).motions(id)
     assert {(m.quantity, m.state) for m in motions} == {("axes", "separated"), ("scales", "separated")}
     storage.database.close()
     downgrade(store_url, "0002")
     upgrade(store_url)
     with storage.database.reading() as store:
-        after, gone = store.sessions.decisions(id), store.sessions.motions(id)
+        after, gone = Sessions(store).decisions(id), Sessions(store).motions(id)
     assert [(d.verdict, d.deviation) for d in after] == [(d.verdict, d.deviation) for d in before]
     assert all(d.change is not None for d in before)
     assert all(d.change is None for d in after)
@@ -91,20 +95,23 @@ def test_what_waits_is_carried_over_with_why_it_failed(store_url: str, storage: 
     now = datetime(2026, 11, 21, tzinfo=UTC)
     id = upload(storage, session_bytes(), "a.json", now, is_dated_later=True).id
     with storage.database.writing() as store:
-        store.work(WorkKind.OUTLOOK).give_up("BA-017", "no numbers")
-        store.work(WorkKind.DERIVATION).keep_failed("BA-017", "no reference", now)
-        store.work(WorkKind.DIAGNOSIS).put_off(id, now)
+        WorkQueue(store, WorkKind.OUTLOOK).give_up("BA-017", "no numbers")
+        WorkQueue(store, WorkKind.DERIVATION).keep_failed("BA-017", "no reference", now)
+        WorkQueue(store, WorkKind.DIAGNOSIS).put_off(id, now)
     with storage.database.reading() as store:
-        places = store.work(WorkKind.GROUP).waiting(now, 10)
-        before = (store.work(WorkKind.DIAGNOSIS).get(id), store.work(WorkKind.OUTLOOK).get("BA-017"))
-        listed = store.failures.listed(now, 10)
+        places = WorkQueue(store, WorkKind.GROUP).waiting(now, 10)
+        before = (WorkQueue(store, WorkKind.DIAGNOSIS).get(id), WorkQueue(store, WorkKind.OUTLOOK).get("BA-017"))
+        listed = Failures(store).listed(now, 10)
     storage.database.close()
     downgrade(store_url, "0030")
     upgrade(store_url)
     with storage.database.reading() as store:
-        assert before == (store.work(WorkKind.DIAGNOSIS).get(id), store.work(WorkKind.OUTLOOK).get("BA-017"))
-        assert set(store.work(WorkKind.GROUP).waiting(now, 10)) == set(places)
-        assert store.work(WorkKind.OUTLOOK).waiting(now, 10) == ()
-        assert store.failures.listed(now, 10) == listed
+        assert before == (
+            WorkQueue(store, WorkKind.DIAGNOSIS).get(id),
+            WorkQueue(store, WorkKind.OUTLOOK).get("BA-017"),
+        )
+        assert set(WorkQueue(store, WorkKind.GROUP).waiting(now, 10)) == set(places)
+        assert WorkQueue(store, WorkKind.OUTLOOK).waiting(now, 10) == ()
+        assert Failures(store).listed(now, 10) == listed
     assert len(places) == 3
     assert len(listed) == 2

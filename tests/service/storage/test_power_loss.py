@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from service.opening import open_database
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Files, Storage
 from service.storage.schema import upgrade
 from service.storage.waiting import FOLDER as WAITING
 from tests.service.sessions import session_bytes
@@ -30,7 +31,7 @@ from service.settings import Settings
 from service.storage import Database, Files, Storage
 from tests.service.storage.sending import WAYS, go_on
 settings = Settings(data_folder=Path(sys.argv[1]))
-storage = Storage(Database(settings.database), Files(settings.files))
+storage = Storage(open_database(settings.database), Files(settings.files))
 WAYS[sys.argv[2]](storage, sys.stdin.buffer.read(), datetime.now(UTC))
 os.write(1, b"acknowledged")
 go_on(storage, datetime.now(UTC))
@@ -88,7 +89,7 @@ def test_whenever_the_power_is_cut_nothing_acknowledged_is_lost(
         place.mkdir()
         disk.write_to(place, names_kept=names_kept)
         settings = Settings(data_folder=place)
-        database = Database(settings.database)
+        database = open_database(settings.database)
         storage = Storage(database, Files(settings.files))
         go_on(storage, NOW)
         assert faults(settings, [SESSION] if number >= end else [], [SESSION]) == [], (number, done[number - 1])

@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 
 import pytest
 
-from service.storage.queries.services import epoch
+from service.units.store import epoch
 
 MARCH, JUNE, SEPTEMBER = (datetime(2026, month, 1, tzinfo=UTC) for month in (3, 6, 9))
 EPOCHS = {

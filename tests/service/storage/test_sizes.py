@@ -6,12 +6,14 @@ from pathlib import Path
 import pytest
 
 from service.errors import RefusedError
-from service.flows.receive import upload
-from service.records.arrival import ArrivalQuery
-from service.records.received import Landed
+from service.kit.arriving_files import Landed
+from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.files import content_hash
 from service.storage.schema import downgrade, upgrade
+from service.uploads.receive import upload
+from service.uploads.records import ArrivalQuery
+from service.uploads.store import Arrivals
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, tzinfo=UTC)
@@ -30,7 +32,7 @@ def test_sessions_and_refusals_keep_sizes_beyond_32_bits(storage: Storage, tmp_p
     with pytest.raises(RefusedError):
         upload(storage, as_long(b"{}", tmp_path), "b.json", NOW)
     with storage.database.reading() as store:
-        found = store.arrivals.page(ArrivalQuery(limit=3))
+        found = Arrivals(store).page(ArrivalQuery(limit=3))
     assert [file.size for one in found for file in (one.session, one.refusal) if file is not None] == [LONG, LONG]
 
 
@@ -43,4 +45,4 @@ def test_a_schema_without_room_for_it_keeps_the_largest_size_that_it_can(
     downgrade(store_url, "0027")
     upgrade(store_url)
     with storage.database.reading() as store:
-        assert store.sessions.get(id).size == 2**31 - 1
+        assert Sessions(store).get(id).size == 2**31 - 1

@@ -4,12 +4,15 @@ from datetime import UTC, datetime
 
 from sqlalchemy import text
 
-from service.flows.diagnose import diagnose
-from service.flows.handle_flag import resolve_flag
-from service.flows.withdraw_session import withdraw_session
-from service.records.work import WorkKind
+from service.flags.changes import resolve_flag
+from service.flags.store import Flags
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.changes import withdraw_session
+from service.records.diagnose import diagnose
 from service.storage import Storage
 from service.storage.schema import downgrade, upgrade
+from service.units.store import Units
 from tests.service.dated import upload_and_date
 from tests.service.records import step, way
 from tests.service.sessions import session_bytes
@@ -59,7 +62,7 @@ def test_counts_follow_every_change_of_the_records(storage: Storage) -> None:
     assert seen[0] == answers(storage, COUNTED)
     diagnose(storage, last, NOW, 2.0)
     with storage.database.reading() as store:
-        [flag] = store.flags.open_of(store.units.key("A"))
+        [flag] = Flags(store).open_of(Units(store).key("A"))
     resolve_flag(storage, flag.id, "K. Ito", "adjusted", NOW)
     assert answers(storage, KEPT) == answers(storage, COUNTED)
     seen.append(answers(storage, KEPT))
@@ -79,4 +82,4 @@ def test_a_store_from_before_is_counted_when_it_is_brought_up_to_date(storage: S
     assert answers(storage, KEPT) == kept
     assert answers(storage, rates) == before
     with storage.database.reading() as store:
-        assert store.work(WorkKind.SUMMARY).count()
+        assert WorkQueue(store, WorkKind.SUMMARY).count()

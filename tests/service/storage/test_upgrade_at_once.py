@@ -7,7 +7,7 @@ import pytest
 from sqlalchemy import text
 
 from service.errors import ServiceError
-from service.storage import Database
+from service.opening import open_database
 from service.storage.schema import upgrade
 from tests.databases import Databases
 from tests.patience import LONG
@@ -36,13 +36,13 @@ def test_processes_that_upgrade_an_empty_database_together_all_succeed(databases
     command = [sys.executable, "-c", SCRIPT, url]
     done = subprocess.run(command, capture_output=True, text=True, timeout=LONG, check=True)
     assert (done.stdout.split(), done.stderr) == (["0"] * 4, "")
-    database = Database(url)
+    database = open_database(url)
     database.require_ready()
     database.close()
 
 
 def test_a_schema_of_a_newer_version_is_said_in_words_and_left_alone(databases: Databases) -> None:
-    database = Database(databases.migrated())
+    database = open_database(databases.migrated())
     with database.engine.begin() as connection:
         connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
     with pytest.raises(ServiceError, match="a newer version made it"):

@@ -13,6 +13,7 @@ from sqlalchemy import make_url, text
 
 from service.app import create_app
 from service.errors import AwayError
+from service.opening import open_database
 from service.settings import Settings
 from service.storage import Database, waits
 from service.storage.faults import database_faults
@@ -40,7 +41,7 @@ def given_up() -> Iterator[None]:
 @contextmanager
 def impatient(url: str) -> Iterator[Database]:
     """A database whose waits are short."""
-    database = Database(url, SHORT)
+    database = open_database(url, SHORT)
     yield database
     database.close()
 

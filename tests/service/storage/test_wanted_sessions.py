@@ -6,12 +6,13 @@ from itertools import product
 
 import pytest
 
-from service.flows.receive import upload
-from service.flows.withdraw_session import withdraw_session
-from service.records.decision import Verdict
-from service.records.session_list import SessionOrder, SessionQuery
-from service.records.state import RecordState
+from service.records.changes import withdraw_session
+from service.sessions.decision import Verdict
+from service.sessions.records import SessionOrder, SessionQuery
+from service.sessions.states import RecordState
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.conftest import Filled
 from tests.service.records import step, way
 from tests.service.sessions import session_bytes
@@ -42,12 +43,12 @@ def stored(filled: Filled) -> Storage:
 def listed(stored: Storage, wanted: SessionQuery) -> str:
     """The months."""
     with stored.database.reading() as store:
-        return "".join(str(found.started_at.month) for found in store.sessions.wanted(wanted))
+        return "".join(str(found.started_at.month) for found in Sessions(store).wanted(wanted))
 
 
 def id_of(stored: Storage, month: int) -> str:
     with stored.database.reading() as store:
-        return next(s.id for s in store.sessions.page(None, 0, 100) if s.started_at.month == month)
+        return next(s.id for s in Sessions(store).page(None, 0, 100) if s.started_at.month == month)
 
 
 def test_sessions_are_listed_in_the_order_asked_for(stored: Storage) -> None:

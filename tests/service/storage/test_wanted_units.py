@@ -5,8 +5,9 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from service.flows.set_lot import set_lot
-from service.records.fleet import FleetChoices, FleetQuery, Order
+from service.fleet.records import FleetChoices, FleetQuery, Order
+from service.fleet.store import Fleet
+from service.records.unit_changes import set_lot
 from service.storage import Storage
 from tests.conftest import Filled
 from tests.service.dated import upload_and_date
@@ -33,7 +34,7 @@ def fleet(filled: Filled) -> Storage:
 def listed(fleet: Storage, wanted: FleetQuery) -> str:
     """The letters of the serial numbers."""
     with fleet.database.reading() as store:
-        return "".join(unit.serial[0] for unit in store.fleet.units(wanted))
+        return "".join(unit.serial[0] for unit in Fleet(store).units(wanted))
 
 
 @pytest.mark.parametrize(
@@ -65,7 +66,7 @@ def test_a_list_is_narrowed(fleet: Storage, wanted: dict[str, object], letters: 
 
 def test_what_a_list_can_be_narrowed_to(fleet: Storage) -> None:
     with fleet.database.reading() as store:
-        found = store.fleet.choices()
+        found = Fleet(store).choices()
     assert found == FleetChoices(types=found.types, stands=("ODG-1", "S-2"), lots=("L7",))
     assert len(found.types) == 1
 

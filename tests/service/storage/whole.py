@@ -5,14 +5,14 @@ from typing import Any
 
 from sqlalchemy import select
 
-from service.storage import Database
+from service.opening import open_database
 from service.storage.tables import Base
 from service.storage.waiting import FOLDER
 
 
 def rows(url: str) -> dict[str, list[tuple[Any, ...]]]:
     """Every row of every table, by primary key."""
-    database = Database(url)
+    database = open_database(url)
     with database.engine.connect() as connection:
         found = {
             table.name: [tuple(row) for row in connection.execute(select(table).order_by(*table.primary_key.columns))]

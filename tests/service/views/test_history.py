@@ -4,10 +4,10 @@ from datetime import UTC, datetime
 
 import pytest
 
-from service.flows.receive import upload
-from service.records.history import HistoryPoint
+from service.papers.session_report import recent_history
+from service.sessions.records import HistoryPoint
 from service.storage import Storage
-from service.views.history import recent_history
+from service.uploads.receive import upload
 from tests.builders import ARCSEC
 from tests.service.sessions import session_bytes
 from tests.service.views.test_stands import measured_on

@@ -5,12 +5,12 @@ from datetime import UTC, datetime, timedelta
 import httpx
 import pytest
 
-from service.flows.record_service import record_service
-from service.flows.summarise import summarise_all
-from service.records.event import NewService
-from service.records.outlook import UnitOutlook
+from service.fleet.changes import summarise_all
+from service.outlook.reading import outlook_of
+from service.outlook.records import UnitOutlook
+from service.records.changes import record_service
 from service.storage import Storage
-from service.views.outlook import outlook_of
+from service.units.records import NewService
 from tests.databases import one_engine
 from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes

@@ -7,43 +7,49 @@ from datetime import UTC, datetime
 import pytest
 from sqlalchemy import event
 
-from service.flows.receive import upload
-from service.judging.standouts import fleet_standouts
-from service.records.arrival import ArrivalQuery
-from service.records.fleet import FleetQuery
-from service.records.session_list import SessionQuery
+from service.flags.store import FlagQuery, Flags
+from service.fleet.records import FleetQuery
+from service.fleet.store import Fleet
+from service.outlook.reading import outlook_of
+from service.outlook.rules.standouts import fleet_standouts
+from service.outlook.store import Outlooks
+from service.pages.stand.report import every_stand, stand_report
+from service.pages.type.report import every_type, type_report
+from service.pages.unit.report import unit_report
+from service.papers.session_report import session_report
+from service.sessions.history_store import History, HistoryQuery
+from service.sessions.records import SessionQuery
+from service.sessions.store import Sessions
+from service.stands.conditions import stand_conditions
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
-from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
-from service.views.outlook import outlook_of
-from service.views.session_report import session_report
-from service.views.stand_report import every_stand, stand_report
-from service.views.stands import stand_conditions
-from service.views.type_report import every_type, type_report
-from service.views.unit_report import unit_report
+from service.types.store import UnitTypes
+from service.units.store import Units
+from service.uploads.receive import upload
+from service.uploads.records import ArrivalQuery
+from service.uploads.store import Arrivals
 from tests.conftest import Filled
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 Page = Callable[[Store], object]
 PAGES: dict[str, tuple[int, Page]] = {
-    "fleet": (1, lambda store: store.fleet.units(FleetQuery())),
-    "condition": (1, lambda store: store.fleet.condition()),
-    "history": (2, lambda store: store.history.points(store.units.key("BA-000"), HistoryQuery())),
+    "fleet": (1, lambda store: Fleet(store).units(FleetQuery())),
+    "condition": (1, lambda store: Fleet(store).condition()),
+    "history": (2, lambda store: History(store).points(Units(store).key("BA-000"), HistoryQuery())),
     "unit": (3, lambda store: unit_report(store, "BA-000", NOW)),
-    "sessions": (1, lambda store: store.sessions.page(None, 0, 100)),
-    "flags": (1, lambda store: store.flags.page(FlagQuery())),
-    "flags of a unit": (1, lambda store: store.flags.page(FlagQuery("BA-000"))),
+    "sessions": (1, lambda store: Sessions(store).page(None, 0, 100)),
+    "flags": (1, lambda store: Flags(store).page(FlagQuery())),
+    "flags of a unit": (1, lambda store: Flags(store).page(FlagQuery("BA-000"))),
     "outlook": (4, lambda store: outlook_of(store, "BA-000", NOW)),
-    "due dates": (1, lambda store: store.outlooks.due(100)),
+    "due dates": (1, lambda store: Outlooks(store).due(100)),
     "standouts": (1, lambda store: fleet_standouts(store, 6)),
     "stands": (1, stand_conditions),
-    "types": (1, lambda store: store.unit_types.page(0, 100)),
-    "list of sessions": (1, lambda store: store.sessions.wanted(SessionQuery())),
+    "types": (1, lambda store: UnitTypes(store).page(0, 100)),
+    "list of sessions": (1, lambda store: Sessions(store).wanted(SessionQuery())),
     "list of stands": (3, every_stand),
     "stand": (6, lambda store: stand_report(store, "ODG-1")),
-    "uploads": (2, lambda store: store.arrivals.page(ArrivalQuery())),
+    "uploads": (2, lambda store: Arrivals(store).page(ArrivalQuery())),
     "list of types": (2, every_type),
     "type": (8, lambda store: type_report(store, "accelerometer × 6, V")),
 }

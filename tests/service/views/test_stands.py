@@ -7,12 +7,12 @@ import httpx
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from service.background.flag_shifted_stands import flag_shifted_stands
-from service.flows.handle_flag import resolve_flag
-from service.flows.receive import upload
-from service.records.flag import Matter
+from service.flags.changes import resolve_flag
+from service.flags.records import Matter
+from service.flags.store import FlagQuery, Flags
+from service.records.flagging.shifted_stands import flag_shifted_stands
 from service.storage import Storage
-from service.storage.queries.flags import FlagQuery
+from service.uploads.receive import upload
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.databases import one_engine
@@ -72,13 +72,13 @@ def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(stor
 
     def flagged() -> list[tuple[str, str, str]]:
         with storage.database.reading() as store:
-            found = [flag for flag in store.flags.page(FlagQuery()) if flag.matter is Matter.SHIFTED]
+            found = [flag for flag in Flags(store).page(FlagQuery()) if flag.matter is Matter.SHIFTED]
         return sorted((flag.unit, flag.place, flag.state.value) for flag in found)
 
     flag_shifted_stands(storage, NOW)
     assert flagged() == [(f"BA-{number}", "S2", "raised") for number in range(3)]
     with storage.database.reading() as store:
-        first = next(flag.id for flag in store.flags.page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED)
+        first = next(flag.id for flag in Flags(store).page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED)
     resolve_flag(storage, first, "K. Ito", "seat of S2 mended", NOW)
     flag_shifted_stands(storage, NOW)
     assert flagged()[0] == ("BA-0", "S2", "resolved")
@@ -92,5 +92,5 @@ def test_an_open_flag_whose_shift_is_dated_anew_stays_one_flag(storage: Storage)
     for day in (datetime(2026, 6, 15, tzinfo=UTC), NOW, NOW):
         flag_shifted_stands(storage, day)
     with storage.database.reading() as store:
-        found = [flag for flag in store.flags.page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED]
+        found = [flag for flag in Flags(store).page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED]
     assert [flag.state.value for flag in found] == ["raised"]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from estimator.planning import Missing
-from service.records.outlook import DueBasis, DueRule
-from service.words.due import reason_of
-from service.words.missing import missing_in_words
+from service.outlook.records import DueBasis, DueRule
+from service.outlook.words.due import reason_of
+from service.planning.words.missing import missing_in_words
 
 
 @pytest.mark.parametrize(("done", "said"), [(1, "1 position is done, 2 still"), (3, "3 positions are done, 2 still")])

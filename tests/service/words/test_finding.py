@@ -7,10 +7,10 @@ import pytest
 
 from estimator.diagnosis.explanation.findings import nonlinear
 from estimator.diagnosis.results import Rival
-from service.measures import THIN
-from service.words.amplitudes import amplitudes_of, shape_of
-from service.words.causes import cause_name, cause_on, what_is_wrong
-from service.words.finding import evidence, finding_view
+from service.diagnosis.words.amplitudes import amplitudes_of, shape_of
+from service.diagnosis.words.causes import cause_name, cause_on, what_is_wrong
+from service.diagnosis.words.finding import evidence, finding_view
+from service.kit.measures import THIN
 from tests.service.findings import JUMP
 
 NAMED = replace(JUMP, alternatives=())

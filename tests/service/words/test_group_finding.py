@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.words.group_finding import with_days
+from service.groups.words.group_finding import with_days
 
 
 @pytest.mark.parametrize("moment", ["2026-05-03T09:00:00Z", "2026-05-03T09:00:00+00:00", "2026-05-03T09:00:00.5+03:00"])

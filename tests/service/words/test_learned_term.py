@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import radians
 
 from estimator.groups.results import EmpiricalTerm, GroupGain
-from service.words.learned_term import gain_in_words, term_view
+from service.groups.words.learned_term import gain_in_words, term_view
 
 ARCSEC = radians(1) / 3600
 TERM = EmpiricalTerm(

@@ -3,8 +3,8 @@
 from estimator.causes import CATALOGUE
 from estimator.diagnosis.results import Limit
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.words.amplitude_measures import AMPLITUDE_MEASURES, amplitude_measure
-from service.words.limits import BlindCauses, SeenCause, blind_causes, seen_causes
+from service.diagnosis.words.amplitude_measures import AMPLITUDE_MEASURES, amplitude_measure
+from service.diagnosis.words.limits import BlindCauses, SeenCause, blind_causes, seen_causes
 
 RAMP = Limit("bias-ramp", (1e-8,), ("m/s²/s",), "")
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.records.history import HistoryPoint
-from service.words.noise import NOT_DECIDED, grown, size_in_words
+from service.sessions.records import HistoryPoint
+from service.sessions.words.noise import NOT_DECIDED, grown, size_in_words
 from tests.service.pages.records import bias_point
 
 SENSORS, FREEDOM = 6, 500.0

@@ -6,7 +6,7 @@ import pytest
 
 from estimator.diagnosis.results import NoiseScale
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.words.noise_claims import but_wrong_errors, wrong_errors
+from service.sessions.words.noise_claims import but_wrong_errors, wrong_errors
 
 
 @pytest.mark.parametrize(

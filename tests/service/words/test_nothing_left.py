@@ -4,8 +4,9 @@ import numpy as np
 
 from benchmarks.study.degrees_of_freedom import measured
 from estimator import diagnose
-from service.records.diagnosis import DiagnosisState, state_of
-from service.words.diagnosis import headline, summary_of, what_to_do
+from service.diagnosis.records import state_of
+from service.diagnosis.words.diagnosis import headline, summary_of, what_to_do
+from service.sessions.records import DiagnosisState
 
 
 def test_where_nothing_is_left_to_judge_by_nothing_is_called_right() -> None:

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from estimator.diagnosis.results import Course, Rival, Structure
-from service.records.decision import Verdict
-from service.records.reservation import Doubt, Reservation, Reservations
-from service.words.conditions import FIT, REFERENCE, UNDECIDED, said_with
-from service.words.reservation import named, otherwise, size_in_words, unexplained
-from service.words.verdict import verdict_in_words
+from service.judging.words import named, otherwise, size_in_words, unexplained, verdict_in_words
+from service.sessions.decision import Verdict
+from service.sessions.doubt import DoubtKind as Doubt
+from service.sessions.doubt import Reservation, Reservations
+from service.sessions.words.conditions import FIT, REFERENCE, UNDECIDED, said_with
 from tests.service.findings import JUMP
 
 JUMPED = Reservation(Doubt.CAUSE, "the zero of A2 jumps once and stays", "repeat the session", share=1.0)

@@ -4,9 +4,9 @@ from datetime import UTC, date, datetime, timedelta
 
 import pytest
 
-from service.records.paper import StandCertificate
-from service.records.stand import StandCondition
-from service.words.stand_use import (
+from service.stands.paper_records import StandCertificate
+from service.stands.records import StandCondition
+from service.stands.words import (
     CHECK,
     EXPIRED_TODAY,
     NOT_STATED,

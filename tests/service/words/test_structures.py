@@ -3,7 +3,7 @@
 import pytest
 
 from estimator.diagnosis.results import Course, Structure
-from service.words.structures import course_in_words, headline_of, summed_up, told, what_to_do_about
+from service.diagnosis.words.structures import course_in_words, headline_of, summed_up, told, what_to_do_about
 
 OWN = Structure("harmonic 3 of β", ("A2",), 1e-9, 9.0)
 COURSE = Structure("of the stand", (), 1e-9, 9.0, Course("β", ("α",), ((1e-5,), (-1e-5,))))

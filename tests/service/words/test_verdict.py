@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from estimator.applied_vector import STANDARD_GRAVITY
-from service.measures import in_words
-from service.records.decision import Decision, Verdict, worst_of
-from service.words.verdict import reason
+from service.judging.words import reason
+from service.kit.measures import in_words
+from service.sessions.decision import Decision, Verdict, worst_of
 
 MICRO_G = 1e-6 * STANDARD_GRAVITY
 BIAS = Decision(

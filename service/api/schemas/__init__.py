@@ -1,1 +1,0 @@
-"""The shapes of the API's requests and answers. SI units throughout."""

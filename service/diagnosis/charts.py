@@ -1,0 +1,273 @@
+"""Residuals before and after the causes are named, and the course of the applied vector."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import altair as alt
+import numpy as np
+
+from estimator.diagnosis.results import Course
+from estimator.results import Residuals, SensorCalibration
+from estimator.session import ACCELEROMETER
+from service.diagnosis.words.structures import SIZE, component_in_words
+from service.kit.measures import THIN, Measure, decimals, deviation_measure, number
+from service.sessions.charts import (
+    DATA_FORM,
+    HIGH,
+    LEFT,
+    LOW,
+    RIGHT,
+    UNIT,
+    ChartSet,
+    Panel,
+    filled,
+    padded,
+    specification,
+)
+from service.sessions.charts.across import (
+    BETA,
+    BETA_RANGE,
+    HEIGHT,
+    RUNS,
+    SHAPES,
+    Across,
+    by_angle,
+    in_order,
+    largest_edge,
+    scatter_in_words,
+    ticks,
+    zero_line,
+)
+from service.sessions.charts.noise import Noise, edges
+
+MOST_PANELS = 9
+"""Sensors that are drawn one way of looking, three rows of three; the page says how many are left out."""
+MODELS = ("before", "after")
+"""Names of the models in the data, without the named causes and with them."""
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Residuals of all sensors under both models; after is None where nothing was named."""
+
+    sensors: tuple[SensorCalibration, ...]
+    before: Residuals
+    after: Residuals | None
+    noise: Noise
+
+
+def diagnosis_charts(sides: Sides, named: Sequence[str]) -> tuple[ChartSet, ...]:
+    """One set a way of looking and kind of sensor; the named sensors stand first, and of many only some are drawn.
+
+    A sensor without residuals, as a gyro of an alignment, is not drawn.
+    """
+    drawn = np.flatnonzero(np.isfinite(sides.before.value).any(axis=0)).tolist()
+    order = sorted(drawn, key=lambda i: (sides.sensors[i].name not in named, i))
+    kinds = dict.fromkeys(sides.sensors[i].kind for i in order)
+    return tuple(
+        _chart_set(sides, across, [i for i in order if sides.sensors[i].kind == kind][:MOST_PANELS], len(kinds) > 1)
+        for across in _ways(sides.before)
+        for kind in kinds
+    )
+
+
+def _ways(residuals: Residuals) -> list[Across]:
+    angle, time, temperature = by_angle(residuals), residuals.time, residuals.temperature
+    found = [] if angle is None else [angle]
+    found.append(in_order(residuals) if time is None else Across("time", "By time", "h", time / 3600))
+    if temperature is not None and float(np.ptp(temperature)) > 0:
+        found.append(Across("temperature", "By temperature", "°C", temperature))
+    return found
+
+
+def _chart_set(sides: Sides, across: Across, columns: list[int], several: bool) -> ChartSet:
+    kind = sides.sensors[columns[0]].kind
+    noise = sides.noise
+    largest = largest_edge(sides.before.value[:, columns], noise.stated[:, columns], noise.found[:, columns])
+    measure = deviation_measure(kind, "bias", largest)
+    return ChartSet(
+        name=f"diagnosis-{kind}-{across.name}",
+        heading=f"{across.heading}, {kind}s" if several else across.heading,
+        spec=_spec(across, measure, largest * measure.factor, wider=noise.times is not None),
+        panels=tuple(_panel(sides, i, across, measure) for i in columns),
+    )
+
+
+def _panel(sides: Sides, column: int, across: Across, measure: Measure) -> Panel:
+    shown = [_rms(side, column, measure) for side in (sides.before, sides.after) if side is not None]
+    return Panel(
+        title=sides.sensors[column].name,
+        description=f"rms {' → '.join(shown)}{THIN}{measure.label}",
+        condition=None,
+        datasets={DATA_FORM: _points(sides, column, across, measure)},
+    )
+
+
+def _rms(side: Residuals, column: int, measure: Measure) -> str:
+    value = side.value[:, column][np.isfinite(side.value[:, column])]
+    return scatter_in_words(float(np.sqrt(np.mean(value**2))) if len(value) else 0.0, measure)
+
+
+def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list[dict[str, Any]]:
+    both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
+    flipped = sides.before.flipped
+    return [
+        {
+            "x": float(f"{across.values[row]:.6g}"),
+            "y": float(f"{side.value[row, column] * measure.factor:.5g}"),
+            "band": float(f"{2 * sides.noise.stated[row, column] * measure.factor:.4g}"),
+            "found": sides.noise.edge(row, column, measure.factor),
+            "run": RUNS[int(flipped[row])] if flipped is not None else RUNS[0],
+            "model": model,
+            "row": row + 1,
+        }
+        for model, side in both
+        for row in range(min(len(across.values), len(side.value)))
+        if np.isfinite(side.value[row, column]) and np.isfinite(sides.noise.stated[row, column])
+    ]
+
+
+def _spec(across: Across, measure: Measure, largest: float, *, wider: bool) -> dict[str, Any]:
+    domain = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
+    axis, scale = alt.Axis(**ticks(across.name)), alt.Scale(domain=domain, nice=False, zero=False)
+    x = alt.X("x:Q", title=across.title, axis=axis, scale=scale)
+    y_scale = alt.Scale(domain=padded(-largest, largest))
+    y = alt.Y("y:Q", title=measure.label, axis=alt.Axis(tickCount=5), scale=y_scale)
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--muted)", opacity=0.1)
+    return specification(
+        [
+            band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
+            *(edges(base, y_scale, "var(--muted)") if wider else ()),
+            zero_line(),
+            _marks(base, y, measure, MODELS[0]),
+            _marks(base, y, measure, MODELS[1]),
+        ],
+        HEIGHT,
+    )
+
+
+def _marks(base: alt.Chart, y: alt.Y, measure: Measure, model: str) -> alt.Chart:
+    """Before as empty marks, after as full ones; direct round, flipped pointed."""
+    first = model == MODELS[0]
+    colour = "var(--second)" if first else "var(--accent)"
+    empty, full = {"filled": False, "strokeWidth": 1.4}, {"filled": True, "stroke": "var(--card)", "strokeWidth": 0.5}
+    style = empty if first else full
+    chart: alt.Chart = (
+        base.transform_filter(alt.datum.model == model)
+        .mark_point(color=colour, opacity=1, size=38, **style)
+        .encode(
+            y=y,
+            shape=alt.Shape("run:N", legend=None, scale=SHAPES),
+            tooltip=[
+                alt.Tooltip("row:Q", title="row"),
+                alt.Tooltip("run:N", title="run"),
+                alt.Tooltip("model:N", title="model"),
+                alt.Tooltip("y:Q", title=f"measured − simulated, {measure.label}"),
+            ],
+        )
+    )
+    return chart
+
+
+CHANGE = "{change}"
+"""Blank: the name of the tooltip's number, with its unit."""
+
+
+def course_charts(course: Course, residuals: Residuals, name: str) -> tuple[ChartSet, ...]:
+    """One set a unit: angles share one, the size has its own; none where the whole vector changed once."""
+    across = across_of(course, residuals)
+    angles = [k for k, component in enumerate(course.components) if component != SIZE]
+    sizes = [k for k, component in enumerate(course.components) if component == SIZE]
+    kinds = [(f"{name}-{label}", columns) for label, columns in (("angle", angles), ("size", sizes)) if columns]
+    return tuple(_course_chart_set(course, residuals, across, label, columns) for label, columns in kinds)
+
+
+def across_of(course: Course, residuals: Residuals) -> Across:
+    """Along β where the course is smooth along it, else in the order measured."""
+    angle = by_angle(residuals) if course.order.startswith("β") else None
+    return in_order(residuals) if angle is None else angle
+
+
+def measure_of(course: Course, component: str) -> Measure:
+    """Of what changes: an angle, or relative; components of one unit share it."""
+    is_size = component == SIZE
+    values = [
+        abs(row[k]) for row in course.values for k, one in enumerate(course.components) if (one == SIZE) == is_size
+    ]
+    return deviation_measure(ACCELEROMETER, "scale" if is_size else "axis", max(values, default=0.0))
+
+
+def _course_chart_set(course: Course, residuals: Residuals, across: Across, name: str, columns: list[int]) -> ChartSet:
+    measure = measure_of(course, course.components[columns[0]])
+    value = np.array(course.values)[:, columns] * measure.factor
+    largest = float(np.max(np.abs(value), initial=0.0, where=np.isfinite(value)))
+    is_joined = not course.order.startswith("no order")
+    return ChartSet(
+        name=name,
+        heading=across.heading,
+        spec=_filled(across, measure, largest, is_joined=is_joined),
+        panels=tuple(
+            _course_panel(course.components[k], value[:, place], residuals, across, measure)
+            for place, k in enumerate(columns)
+        ),
+    )
+
+
+def _course_panel(component: str, value: np.ndarray, residuals: Residuals, across: Across, measure: Measure) -> Panel:
+    known = value[np.isfinite(value)]
+    reach = float(np.abs(known).max(initial=0.0))
+    return Panel(
+        title=component,
+        description=f"{component_in_words(component)}, up to {number(reach, decimals(reach))}{THIN}{measure.label}",
+        condition=None,
+        datasets={DATA_FORM: _course_points(value, residuals, across)},
+    )
+
+
+def _course_points(value: np.ndarray, residuals: Residuals, across: Across) -> list[dict[str, Any]]:
+    flipped = residuals.flipped
+    return [
+        {
+            "x": float(f"{across.values[row]:.6g}"),
+            "y": float(f"{value[row]:.5g}"),
+            "run": RUNS[0] if flipped is None else RUNS[int(flipped[row])],
+            "row": row + 1,
+        }
+        for row in range(min(len(value), len(across.values)))
+        if np.isfinite(value[row])
+    ]
+
+
+def _filled(across: Across, measure: Measure, largest: float, *, is_joined: bool) -> dict[str, Any]:
+    left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
+    low, high = padded(-largest, largest)
+    blanks = {LEFT: left, RIGHT: right, LOW: low, HIGH: high, UNIT: measure.label}
+    spec = _course_spec(across.name, across.title, is_joined=is_joined)
+    found: dict[str, Any] = filled(spec, {**blanks, CHANGE: f"off by, {measure.label}"})
+    return found
+
+
+@cache
+def _course_spec(name: str, title: str, *, is_joined: bool) -> dict[str, Any]:
+    """With blanks for the unit and the ranges; ``is_joined``: neighbours are joined by a line."""
+    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LOW, HIGH]))
+    colour = alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"]))
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x, y=y, color=colour)
+    lines = [base.mark_line(strokeWidth=1, opacity=0.6)] if is_joined else []
+    return specification([zero_line(), *lines, _course_marks(base)], HEIGHT)
+
+
+def _course_marks(base: alt.Chart) -> alt.Chart:
+    chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
+        shape=alt.Shape("run:N", legend=None, scale=SHAPES),
+        tooltip=[
+            alt.Tooltip("row:Q", title="row"),
+            alt.Tooltip("run:N", title="run"),
+            alt.Tooltip("y:Q", title=CHANGE),
+        ],
+    )
+    return chart

@@ -1,0 +1,74 @@
+"""What the simulation gets wrong about a stored session, and a diagnosis that is still to be made."""
+
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from estimator.codec import Document
+from estimator.diagnosis import Diagnosis, Finding
+from estimator.diagnosis.results import Gain, Limit, NoiseScale, Structure
+from estimator.results import Calibration, Residuals
+from service.models.records import ModelRevision
+from service.sessions.decision import Verdict
+from service.sessions.doubt import Reservation
+from service.sessions.records import DiagnosisState, StoredSession
+
+
+def state_of(diagnosis: Diagnosis) -> DiagnosisState:
+    """What people hear first: a name, a choice, structure without a name, or nothing; undecided where no reading is
+    left over to judge by."""
+    if diagnosis.findings:
+        return DiagnosisState.UNDECIDED if diagnosis.findings[0].alternatives else DiagnosisState.NAMED
+    if diagnosis.unexplained:
+        return DiagnosisState.UNEXPLAINED
+    return DiagnosisState.UNDECIDED if diagnosis.calibration.fit.is_exact else DiagnosisState.NOTHING
+
+
+@dataclass(frozen=True)
+class Diagnosed(Document, earlier=lambda old: {"structures": [], "noise": [], "notes": []} | old):
+    """What imu-diagnosis/1 says; a number that is null there, because it was not finite, is NaN."""
+
+    findings: tuple[Finding, ...]
+    structures: tuple[Structure, ...]
+    gain: Gain
+    limits: tuple[Limit, ...]
+    noise: tuple[NoiseScale, ...]
+    """Kinds of sensor whose stated standard errors the readings contradict."""
+    notes: tuple[str, ...]
+    calibration: Calibration = field(compare=False)
+    """With the named causes in the model."""
+    residuals_before: Residuals = field(compare=False)
+    """Measured minus simulated under the baseline model."""
+
+
+@dataclass(frozen=True)
+class StoredDiagnosis:
+    """What the simulation gets wrong about a session."""
+
+    session: str
+    model_revision: int
+    """In force when it was made."""
+    state: DiagnosisState
+    summary: str
+    found: Diagnosed | None
+    """None where the session could not be diagnosed, or where no causes are looked for."""
+    document: str | None
+    """imu-diagnosis/1, JSON as it was written: what the API hands out; None where there was nothing to write."""
+    verdict_after: Verdict | None
+    """That the session would have with the named causes in the model; None where nothing was judged or named."""
+    estimator_version: str
+    created_at: datetime
+    reservations: tuple[Reservation, ...] = ()
+    """What the session's verdict is said with."""
+
+
+@dataclass(frozen=True)
+class DiagnosisReport:
+    """Everything a session's diagnosis page shows."""
+
+    session: StoredSession
+    diagnosis: StoredDiagnosis | None
+    """None while it is being made."""
+    calibration: Calibration
+    """In force."""
+    revisions: tuple[ModelRevision, ...]
+    """That concern the session, oldest first."""

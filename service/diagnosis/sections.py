@@ -1,0 +1,73 @@
+"""A diagnosis in one line, and the course of the applied vector, as sections of a page."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.diagnosis.results import Course, Structure
+from estimator.results import Residuals
+from service.diagnosis.charts import course_charts, measure_of
+from service.diagnosis.words.structures import course_in_words
+from service.kit.failure_words import session_failed
+from service.sessions.charts import ChartSet
+from service.sessions.records import DiagnosisState, DiagnosisSummary
+from service.sessions.residual_table import ResidualTable, rows_of
+
+PENDING = "Still being examined"
+TONES = {
+    DiagnosisState.NOTHING: "pass",
+    DiagnosisState.NAMED: "conditional-fail",
+    DiagnosisState.UNDECIDED: "undecidable",
+    DiagnosisState.UNEXPLAINED: "undecidable",
+    DiagnosisState.FAILED: "none",
+    DiagnosisState.NOT_APPLICABLE: "none",
+}
+"""Style and icon, in the tones of the verdicts: how much it asks for attention."""
+
+
+@dataclass(frozen=True)
+class DiagnosisLine:
+    """What the simulation gets wrong, in one line."""
+
+    tone: str
+    text: str
+
+
+def diagnosis_line(found: DiagnosisSummary | None, failed: str = "") -> DiagnosisLine:
+    """What is known; None while it is still being examined, or where that ``failed``."""
+    if found is None and failed:
+        return DiagnosisLine(TONES[DiagnosisState.FAILED], session_failed(failed))
+    return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)
+
+
+@dataclass(frozen=True)
+class CourseView:
+    """One course, for people."""
+
+    words: str
+    runs: bool
+    """Whether the session has two runs to tell apart."""
+    charts: tuple[ChartSet, ...]
+    table: ResidualTable
+
+
+def course_views(structures: Sequence[Structure], residuals: Residuals) -> tuple[CourseView, ...]:
+    """Every course that can be drawn; one without components is told in words alone."""
+    courses = [s.course for s in structures if s.course is not None and s.course.components]
+    return tuple(_view(course, residuals, f"course-{number}") for number, course in enumerate(courses, 1))
+
+
+def _view(course: Course, residuals: Residuals, name: str) -> CourseView:
+    measures = [measure_of(course, component) for component in course.components]
+    shown = np.array(course.values) * [measure.factor for measure in measures]
+    return CourseView(
+        words=course_in_words(course),
+        runs=residuals.flipped is not None,
+        charts=course_charts(course, residuals, name),
+        table=ResidualTable(
+            heads=tuple(f"{c}, {m.label}" for c, m in zip(course.components, measures, strict=True)),
+            beta=residuals.beta is not None,
+            rows=rows_of(shown, residuals),
+        ),
+    )

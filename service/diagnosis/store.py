@@ -1,0 +1,90 @@
+"""Diagnoses as they were made, and those still to be made."""
+
+import zlib
+from collections.abc import Sequence
+
+from sqlalchemy import delete, select, update
+
+from service.diagnosis.document import read_diagnosis
+from service.diagnosis.records import StoredDiagnosis
+from service.diagnosis.tables import DiagnosisRow
+from service.sessions.decision import Verdict
+from service.sessions.doubt import Reservation
+from service.sessions.records import DiagnosisState, DiagnosisSummary
+from service.sessions.reservation_document import reservations_from_list, reservations_to_list
+from service.sessions.tables import SessionRow
+from service.storage.queries import Queries
+
+
+class Diagnoses(Queries):
+    """Diagnoses by session."""
+
+    def add_once(self, found: StoredDiagnosis) -> bool:
+        """Stores the diagnosis of a session, and returns whether it is new.
+
+        The first one stays, unless another version of the program failed to make it.
+        """
+        failed = DiagnosisRow.state == DiagnosisState.FAILED
+        outdated = DiagnosisRow.estimator_version != found.estimator_version
+        self._session.execute(delete(DiagnosisRow).where(DiagnosisRow.session_id == found.session, failed, outdated))
+        self._touch(found.session)
+        return self.insert_once(
+            DiagnosisRow,
+            session_id=found.session,
+            model_revision=found.model_revision,
+            state=found.state,
+            summary=found.summary,
+            document=None if found.document is None else zlib.compress(found.document.encode()),
+            verdict_after=found.verdict_after,
+            estimator_version=found.estimator_version,
+            created_at=found.created_at,
+            reservations=reservations_to_list(found.reservations),
+        )
+
+    def put_reservations(self, session: str, reservations: Sequence[Reservation]) -> None:
+        """Says anew what a verdict is said with, because the verdict or its model changed."""
+        own = DiagnosisRow.session_id == session
+        written = reservations_to_list(reservations)
+        self._touch(session)
+        self._session.execute(update(DiagnosisRow).where(own).values(reservations=written))
+        self._session.expire_all()
+
+    def get(self, session: str) -> StoredDiagnosis | None:
+        """The diagnosis of a session; None while it is still to be made."""
+        row = self._session.get(DiagnosisRow, session)
+        if row is None:
+            return None
+        document = None if row.document is None else zlib.decompress(row.document).decode()
+        return StoredDiagnosis(
+            session=row.session_id,
+            model_revision=row.model_revision,
+            state=DiagnosisState(row.state),
+            summary=row.summary,
+            found=None if document is None else read_diagnosis(document),
+            document=document,
+            verdict_after=None if row.verdict_after is None else Verdict(row.verdict_after),
+            estimator_version=row.estimator_version,
+            created_at=row.created_at,
+            reservations=reservations_from_list(row.session_id, row.reservations) or (),
+        )
+
+    def summary(self, session: str) -> DiagnosisSummary | None:
+        """The diagnosis of a session in one line; None while it is still to be made."""
+        query = select(DiagnosisRow.state, DiagnosisRow.summary).where(DiagnosisRow.session_id == session)
+        row = self._session.execute(query).one_or_none()
+        return None if row is None else DiagnosisSummary(DiagnosisState(row[0]), row[1])
+
+    def has_failed(self, session: str) -> bool:
+        """Whether a session could not be diagnosed."""
+        found = self.summary(session)
+        return found is not None and found.state is DiagnosisState.FAILED
+
+    def _touch(self, session: str) -> None:
+        """The unit's verdict may be said with a reservation now, or without."""
+        unit = self._session.scalar(select(SessionRow.unit_id).where(SessionRow.id == session))
+        if unit is not None:
+            self.touch(unit)
+
+    def exists(self, session: str) -> bool:
+        """Whether a session was diagnosed."""
+        return self.summary(session) is not None

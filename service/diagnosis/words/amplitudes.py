@@ -1,0 +1,108 @@
+"""How large a cause is, and where it sits, in people's measures."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite, nan
+from typing import Protocol
+
+from estimator.causes import find
+from estimator.diagnosis import Finding
+from service.diagnosis.words.amplitude_measures import amplitude_measure
+from service.kit.measures import COVERAGE, HARD, THIN, decimals, measured, number
+
+NUMBERED = re.compile(r" \d+$")
+"""What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
+
+
+FINE = 0.01
+"""Of a measure: an uncertainty below it is read in a finer one, where there is one."""
+
+
+class Sized(Protocol):
+    """What has amplitudes: a finding of a session or of a group."""
+
+    @property
+    def cause(self) -> str: ...
+    @property
+    def sensors(self) -> tuple[str, ...]: ...
+    @property
+    def amplitude(self) -> tuple[float, ...]: ...
+    @property
+    def sigma(self) -> Sequence[float | None]: ...
+    @property
+    def units(self) -> tuple[str, ...]: ...
+
+
+@dataclass(frozen=True)
+class Amounts:
+    """Amplitudes alone."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    amplitude: tuple[float, ...]
+    sigma: tuple[float, ...]
+    units: tuple[str, ...]
+
+
+def amplitudes_of(finding: Sized) -> Iterator[str]:
+    """Every amplitude ± U; named by sensor where several share the cause."""
+    each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
+    stated = zip(finding.amplitude, finding.sigma, finding.units, strict=False)
+    for k, (value, known, si_unit) in enumerate(stated):
+        sigma = nan if known is None else known
+        if not _is_stated(value) and not _is_stated(sigma):
+            continue
+        expanded = COVERAGE * sigma
+        who = f"{finding.sensors[k // each]}: " if len(finding.sensors) > 1 else ""
+        which = f"{part_of(finding.cause, k % each)} " if each > 1 else ""
+        yield f"{who}{which}{_size(finding.cause, si_unit, value, expanded)}"
+
+
+def _size(cause: str, si_unit: str, value: float, expanded: float) -> str:
+    """``12.3 ± 1.4 µg``; what is known far better than its own measure shows has its ± in the finer one:
+    ``42.66433° ± 1.2 arcsec``."""
+    largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, expanded))
+    measure, finer = amplitude_measure(cause, si_unit, largest), amplitude_measure(cause, si_unit, expanded)
+    if measure == finer or not isfinite(expanded) or expanded * measure.factor >= FINE:
+        return measured(value, expanded, measure)
+    shown = number(value * measure.factor, decimals(expanded * measure.factor))
+    spread = expanded * finer.factor
+    return f"{shown}{THIN}{measure.label}{HARD}±{HARD}{number(spread, decimals(spread))}{THIN}{finer.label}"
+
+
+def _is_stated(value: float) -> bool:
+    """Whether a number says anything: an amplitude that took no part is 0 ± 0."""
+    return isfinite(value) and value != 0
+
+
+def part_of(cause: str, k: int) -> str:
+    """What one of several amplitudes is."""
+    known = find(cause)
+    return known.amplitude_words[k] if known and known.amplitude_words else f"k{k + 1} ="
+
+
+def shape_of(finding: Finding) -> str:
+    """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ."""
+    each = finding.nonlinear_each
+    if len(each) < 2 or all(one == each[0] for one in each):
+        return _shape(finding.cause, finding.nonlinear)
+    shapes = (_shape(finding.cause, one) for one in each)
+    return "; ".join(f"{who}: {shape}" for who, shape in zip(finding.sensors, shapes, strict=False) if shape)
+
+
+def _shape(cause: str, nonlinear: dict[str, float]) -> str:
+    text = " and ".join(filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
+    known = find(cause)
+    return f"{known.shape_words if known else ''} {text}".strip() if text else ""
+
+
+def _place(cause: str, name: str, value: float) -> str:
+    """One nonlinear parameter: a row, a side of the range, or a quantity; two of one unit are numbered."""
+    si_unit = NUMBERED.sub("", name)
+    if si_unit == "row":
+        return f"row {number(value, 0)}"
+    if si_unit == "side":
+        return "upper side" if value > 0 else "lower side" if value < 0 else ""
+    measure = amplitude_measure(cause, si_unit, value)
+    return f"{number(value * measure.factor)}{THIN}{measure.label}"

@@ -1,0 +1,143 @@
+"""What causes are called: one alone, one on its sensors, and several that a session cannot distinguish."""
+
+from collections.abc import Sequence
+
+from estimator.causes import find
+from estimator.diagnosis import Finding
+from estimator.groups.fixed import EMPIRICAL
+from estimator.groups.layout import EVERY
+from service.kit.measures import HARD, number
+from service.kit.names import spaced
+
+UNKNOWN_CAUSE = "unexplained"
+"""Stands among the alternatives of a finding that a cause which is not in the catalogue explains as well."""
+EVERY_SENSOR = "every sensor of its kind"
+"""Where what a group shows acts on all of them."""
+LEARNED = "empirical term"
+"""What a term is called that was learned, in place of a cause."""
+ONE_NOT_KNOWN = "one that is not in the catalogue"
+COMPARABLE = 3.0
+"""Times that one share of probability may be another's and both still pass for equally likely: evidence below that is
+not worth a mention (Jeffreys)."""
+SHOWN_SHARE = 5e-4
+"""Share of probability that is still shown: what rounds to a tenth of a per cent."""
+MOST_NAMES = 3
+"""Causes that a sentence lists before it counts the rest: more than three are no longer read."""
+
+
+def cause_name(identifier: str) -> str:
+    """``bias temperature``; a cause that this version does not know is called by its identifier."""
+    if identifier == UNKNOWN_CAUSE:
+        return ONE_NOT_KNOWN
+    if identifier == EMPIRICAL:
+        return LEARNED
+    known = find(identifier)
+    return spaced(identifier) if known is None else known.name
+
+
+def cause_on(identifier: str, sensors: Sequence[str]) -> str:
+    """``bias temperature (A5)``."""
+    return cause_name(identifier) + _on(sensors)
+
+
+def is_lone(finding: Finding) -> bool:
+    """Whether it is the only known cause that fits, beside one that is not in the catalogue."""
+    return finding.alternatives == (UNKNOWN_CAUSE,)
+
+
+def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
+    """What is wrong in a sentence; of several causes their names: ``Cannot tell which: ramp or warm up (A3).``
+
+    ``findings``: all of the diagnosis. A sensor with two names has two causes at once, or one that nobody knows.
+    """
+    if not finding.alternatives:
+        return finding.sentence
+    at_once = at_once_with(finding, findings)
+    if at_once:
+        count, names = "Two" if len(at_once) == 2 else "Several", " and ".join(map(cause_name, at_once))
+        return f"{count} causes at once, or {ONE_NOT_KNOWN}{_on(finding.sensors)}: {names}."
+    likely, unlikely = by_share(finding)
+    if len(likely) > 1 or not unlikely:
+        less = f"; {_less(unlikely, finding)}" if unlikely else ""
+        return f"Cannot tell which: {_listed(_with_unknown(likely, finding))}{_on(finding.sensors)}{less}."
+    first, unknown = likely[0], f", or {ONE_NOT_KNOWN}" if UNKNOWN_CAUSE in finding.alternatives else ""
+    return (
+        f"Likely {cause_on(first, finding.sensors)}, {share_of(first, finding)}; {_less(unlikely, finding)}{unknown}."
+    )
+
+
+def choice_of(finding: Finding) -> str:
+    """The causes that a finding leaves standing, as one thing that acts: ``ramp or warm up acts on A3``."""
+    likely, unlikely = by_share(finding)
+    on = f" on {' and '.join(dict.fromkeys(finding.sensors))}" if finding.sensors else ""
+    less = f" (less likely {_listed(unlikely)})" if unlikely else ""
+    return f"{_listed(_with_unknown(likely, finding))}{less} acts{on}"
+
+
+def by_share(finding: Finding) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The known causes of a choice, likeliest first: those that are about equally likely, and those that are less."""
+    names = [name for name in (finding.cause, *finding.alternatives) if name != UNKNOWN_CAUSE]
+    shares = {name: _share(name, finding) for name in names}
+    names.sort(key=lambda name: -shares[name])
+    likely = tuple(name for name in names if COMPARABLE * shares[name] >= shares[names[0]])
+    return likely, tuple(name for name in names if name not in likely)
+
+
+def is_level(finding: Finding) -> bool:
+    """Whether the causes of a choice are about equally likely."""
+    return not by_share(finding)[1]
+
+
+def share_of(name: str, finding: Finding) -> str:
+    """``98 %``: of a cause on any sensors, among all known ones."""
+    return percent(_share(name, finding))
+
+
+def _share(name: str, finding: Finding) -> float:
+    return sum(rival.probability for rival in finding.ranking if rival.cause == name)
+
+
+def percent(share: float) -> str:
+    """A share of probability as people read it."""
+    if share > 1 - SHOWN_SHARE:
+        return f"over 99.9{HARD}%"
+    return f"{number(100 * share, 1)}{HARD}%" if share > SHOWN_SHARE else f"under 0.1{HARD}%"
+
+
+def _less(unlikely: Sequence[str], finding: Finding) -> str:
+    """``less likely odd quadratic, 5.3 %``; a share that the ranking does not show is none to state."""
+    ranked = {rival.cause for rival in finding.ranking}
+    shown = [
+        f"{cause_name(name)}{f', {share_of(name, finding)}' if name in ranked else ''}"
+        for name in unlikely[:MOST_NAMES]
+    ]
+    more = len(unlikely) - MOST_NAMES
+    return "less likely " + "; ".join((*shown, *([f"{more} more"] if more > 0 else [])))
+
+
+def _with_unknown(names: Sequence[str], finding: Finding) -> tuple[str, ...]:
+    return (*names, *(name for name in finding.alternatives if name == UNKNOWN_CAUSE))
+
+
+def at_once_with(finding: Finding, findings: Sequence[Finding]) -> tuple[str, ...]:
+    """The causes, strongest first, that act together where an unknown one alone would do; empty where none do."""
+    if not (is_lone(finding) and finding.sensors):
+        return ()
+    causes = tuple(f.cause for f in findings if f.sensors == finding.sensors)
+    return causes if len(causes) > 1 else ()
+
+
+def _on(sensors: Sequence[str]) -> str:
+    names = (EVERY_SENSOR if sensor == EVERY else sensor for sensor in dict.fromkeys(sensors))
+    return f" ({', '.join(names)})" if sensors else ""
+
+
+def _listed(causes: Sequence[str]) -> str:
+    """``a, b or c``; of many only the first three, and always that it may be an unknown one."""
+    names = [cause_name(identifier) for identifier in causes if identifier != UNKNOWN_CAUSE]
+    shown, more = names[:MOST_NAMES], len(names) - MOST_NAMES
+    shown += [f"{more} more"] if more > 0 else []
+    shown += [ONE_NOT_KNOWN] if UNKNOWN_CAUSE in causes else []
+    if len(shown) == 1:
+        return shown[0]
+    return f"{', '.join(shown[:-1])} or {shown[-1]}"

@@ -1,0 +1,120 @@
+"""Flags over HTTP."""
+
+from dataclasses import replace
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.flags.assigned import assignee_meant
+from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, resolve_flag
+from service.flags.records import Flag, FlagState
+from service.flags.store import FlagQuery, Flags
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.storage.store import Store
+from service.units.store import Units
+from service.web.dependencies import Now, Reading
+from service.web.fields import LongText, Name, Number, Paged, Reason, Text, Window, WindowOf
+from service.web.problem_document import errors
+
+FlagNumber = Annotated[int, Field(ge=1, le=2_000_000_000)]
+
+
+class FlagPage(Paged):
+    """One page of flags: open ones first, newest first."""
+
+    flags: tuple[Flag, ...] = Field(description="The flags of this page.")
+
+
+class Assigning(BaseModel):
+    """Who is to look after a flag."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"to": "k.ito", "by": "K. Ito", "why": "knows the stand"}}
+    )
+
+    to: Text = Field(description="Login or name of an account, any name where there are none; empty for nobody.")
+    by: Name = Field(description="Who says so.")
+    why: LongText = Field(default="", description="Why.")
+
+
+class AssigningSeveral(Assigning):
+    """Who is to look after several flags."""
+
+    flags: list[FlagNumber] = Field(min_length=1, max_length=200, description="Numbers of the flags.")
+
+
+class Assigned(BaseModel):
+    """What became of several flags."""
+
+    changed: int = Field(description="How many have another assignee now; resolved ones are left alone.")
+
+
+class Handling(BaseModel):
+    """Who does something, and why."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"by": "K. Ito", "why": "replacement sensor ordered"}}
+    )
+
+    by: Name = Field(description="Who does it.")
+    why: Reason = Field(description="Why; what was found or done.")
+
+
+router = APIRouter(prefix="/flags", tags=["flags"])
+WantedState = Annotated[FlagState | None, Query(description="Only flags in this state.")]
+
+ASSIGNED = "Only flags of this login or name; `me`: of whoever asks; `nobody`: of nobody in particular."
+
+
+def flag_page(store: Store, wanted: FlagQuery, window: Window) -> FlagPage:
+    """One page of flags as the API answers it; NotFoundError for a unit that there is not."""
+    if wanted.unit is not None:
+        Units(store).key(wanted.unit)
+    found = Flags(store).page(replace(wanted, offset=window.offset, limit=window.limit))
+    return FlagPage(flags=found, **window.place(len(found)))
+
+
+@router.get("", responses=errors(404, 422))
+def list_flags(
+    store: Reading,
+    window: WindowOf,
+    state: WantedState = None,
+    unit: Annotated[Text | None, Query(description="Only flags of this serial number.")] = None,
+    after: Annotated[
+        int | None, Query(ge=1, le=2_000_000_000, description="Only those that come after this one.")
+    ] = None,
+    assigned: Annotated[Text | None, Query(description=ASSIGNED)] = None,
+    *,
+    person: PersonOf,
+) -> FlagPage:
+    """Flags with their lives, open ones first."""
+    assignee = assignee_meant(store, assigned or "", person)
+    return flag_page(store, FlagQuery(unit, state, after=after, assignee=assignee), window)
+
+
+@router.post("/assign", responses=errors(400, 404, 422))
+def assign_several(given: AssigningSeveral, storage: StorageOf, now: Now, person: PersonOf) -> Assigned:
+    """Give several flags to somebody, all or none."""
+    said = Assignment(given.to, person.signs(given.by), given.why)
+    return Assigned(changed=assign_flags(storage, given.flags, said, now))
+
+
+@router.post("/{id}/assign", responses=errors(400, 404, 409, 422))
+def assign(id: Number, given: Assigning, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
+    """Say who is to look after the flag."""
+    said = Assignment(given.to, person.signs(given.by), given.why)
+    return assign_flag(storage, id, said, now)
+
+
+@router.post("/{id}/acknowledge", responses=errors(400, 404, 409, 422))
+def acknowledge(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
+    """Say that somebody looks after the flag, and why it can stay for now."""
+    return acknowledge_flag(storage, id, person.signs(handling.by), handling.why, now)
+
+
+@router.post("/{id}/resolve", responses=errors(400, 404, 409, 422))
+def resolve(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
+    """Say that the matter is settled, and how."""
+    return resolve_flag(storage, id, person.signs(handling.by), handling.why, now)

@@ -1,0 +1,145 @@
+"""Flags are assigned, acknowledged and resolved; each keeps who did it, when and why."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.errors import Problem
+from service.errors import ConflictError, RefusedError
+from service.flags.records import NOBODY, Assignee, Flag, FlagState, NoticeKind
+from service.flags.store import Flags, Notices
+from service.fleet.store import Fleet
+from service.people.store import Accounts
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.store import Store
+from service.units.store import Units
+
+UNKNOWN = "is the login or the name of no account that may sign in; leave it empty for nobody"
+SEVERAL = "is the name of several accounts; say the login"
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """What somebody says of flags."""
+
+    to: str
+    """Login or name; empty for nobody in particular. Where there are no accounts, any name."""
+    who: str
+    why: str = ""
+
+
+def assign_flag(storage: Storage, id: int, said: Assignment, now: datetime) -> Flag:
+    """Gives one flag to somebody; ConflictError where it is resolved."""
+    with storage.database.writing() as store:
+        unit, assignee = Units(store).hold(Flags(store).unit_of(id)), assignee_of(store, said.to)
+        flag = Flags(store).get(id)
+        if flag.state is FlagState.RESOLVED:
+            raise ConflictError(f"Flag {id} is resolved already, so nobody has to look after it.")
+        _put(store, flag, unit, assignee, said=said, now=now)
+        return Flags(store).get(id)
+
+
+def assign_flags(storage: Storage, ids: Collection[int], said: Assignment, now: datetime) -> int:
+    """The same of several, all or none; how many it changed. Those that were resolved meanwhile are left alone."""
+    with storage.database.writing() as store:
+        assignee = assignee_of(store, said.to)
+        units, changed = {id: Flags(store).unit_of(id) for id in ids}, 0
+        for id in sorted(units, key=lambda id: (units[id], id)):
+            unit, flag = Units(store).hold(units[id]), Flags(store).get(id)
+            if flag.state is not FlagState.RESOLVED:
+                changed += _put(store, flag, unit, assignee, said=said, now=now)
+        return changed
+
+
+def assignee_of(store: Store, said: str) -> Assignee:
+    """Whom a login or a name means; RefusedError where that is nobody, or several."""
+    meant = said.strip()
+    if not meant:
+        return NOBODY
+    accounts = [account for account in Accounts(store).every() if account.is_active]
+    if not Accounts(store).any():
+        return Assignee(meant)
+    by_login = [one for one in accounts if one.login == meant.lower()]
+    found = by_login or [one for one in accounts if one.name == meant]
+    if len(found) != 1:
+        fault = SEVERAL if found else UNKNOWN
+        raise RefusedError("The flag cannot be assigned.", (Problem("to", fault),))
+    return Assignee(found[0].name or found[0].login, found[0].login)
+
+
+def _put(store: Store, flag: Flag, unit: int, assignee: Assignee, *, said: Assignment, now: datetime) -> bool:
+    """Whether that is new."""
+    if Flags(store).assignee_of(flag.id) == assignee:
+        return False
+    Flags(store).put(flag.id, now, assignee=assignee.name, assignee_login=assignee.login)
+    text = f"To {assignee.name}." if assignee.name else "To nobody in particular."
+    Notices(store).add(unit, NoticeKind.ASSIGNED, now, said.who, f"{text} {said.why}".strip(), flag=flag.id)
+    details = {"flag": flag.id, "to": assignee.name, "login": assignee.login, "why": said.why}
+    Audit(store).write(now, said.who, NoticeKind.ASSIGNED, flag.unit, details)
+    return True
+
+
+DONE = {FlagState.ACKNOWLEDGED: NoticeKind.ACKNOWLEDGED, FlagState.RESOLVED: NoticeKind.RESOLVED}
+"""What the flag's life keeps of each."""
+POSSIBLE = {
+    FlagState.ACKNOWLEDGED: (FlagState.RAISED,),
+    FlagState.RESOLVED: (FlagState.RAISED, FlagState.ACKNOWLEDGED),
+}
+"""From which states a flag can be brought into which."""
+
+
+def acknowledge_flag(storage: Storage, id: int, who: str, why: str, now: datetime) -> Flag:
+    """Somebody has seen the flag and looks after it; ConflictError where that was said before."""
+    return _bring(storage, id, FlagState.ACKNOWLEDGED, who=who, why=why, now=now)
+
+
+def resolve_flag(storage: Storage, id: int, who: str, why: str, now: datetime) -> Flag:
+    """The matter is settled; ConflictError where it was before. Shown again by a later session it is a new flag."""
+    return _bring(storage, id, FlagState.RESOLVED, who=who, why=why, now=now)
+
+
+def bring_flags(storage: Storage, ids: Collection[int], state: FlagState, who: str, why: str, now: datetime) -> int:
+    """The same said of several flags at once, all or none; how many it changed.
+
+    Those of which somebody else has said so in the meantime are left alone.
+    """
+    with storage.database.writing() as store:
+        units = {id: Flags(store).unit_of(id) for id in ids}
+        changed = 0
+        for id in sorted(units, key=lambda id: (units[id], id)):
+            unit = Units(store).hold(units[id])
+            if Flags(store).get(id).state in POSSIBLE[state]:
+                _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
+                changed += 1
+        return changed
+
+
+@dataclass(frozen=True)
+class Handled:
+    """What somebody says of one flag."""
+
+    id: int
+    unit: int
+    state: FlagState
+    who: str
+    why: str
+    at: datetime
+
+
+def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, now: datetime) -> Flag:
+    with storage.database.writing() as store:
+        unit = Units(store).hold(Flags(store).unit_of(id))
+        flag = Flags(store).get(id)
+        if flag.state not in POSSIBLE[state]:
+            raise ConflictError(f"Flag {id} is {flag.state.value} already, so it cannot be {state.value} now.")
+        return _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
+
+
+def _keep(store: Store, said: Handled) -> Flag:
+    Flags(store).put(said.id, said.at, state=said.state)
+    Notices(store).add(said.unit, DONE[said.state], said.at, said.who, said.why, flag=said.id)
+    Fleet(store).count_flags(said.unit)
+    flag = Flags(store).get(said.id)
+    Audit(store).write(said.at, said.who, DONE[said.state], flag.unit, {"flag": said.id, "why": said.why})
+    return flag

@@ -1,0 +1,202 @@
+"""Work beside the requests: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
+
+An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent
+again under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the
+service waiting, the others get theirs, and a service that stops waits for none.
+"""
+
+import asyncio
+import hashlib
+import hmac
+import json
+from collections.abc import AsyncIterator, Callable, Collection, Sequence
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from threading import Event
+
+import httpx
+
+from service.flags.records import DeliveryState, Outgoing
+from service.flags.webhooks import fault_of
+from service.flags.webhooks_store import Webhooks
+from service.kit.guard import Guard
+from service.kit.metrics import Metrics
+from service.storage import Storage
+
+AT_A_TIME = 20
+"""Messages that are claimed together: few enough that a claim outlasts them, were they all for one receiver."""
+CLAIM = timedelta(minutes=10)
+"""Longer than `AT_A_TIME` attempts that all time out."""
+LONGEST_ATTEMPT = 10.0
+"""Seconds, all together: a receiver that takes longer should accept first and work after."""
+TIMEOUT = httpx.Timeout(LONGEST_ATTEMPT, connect=5.0)
+MOST_AT_ONCE = 16
+"""Receivers that are sent to at once; one that holds its connection open holds a socket, and no more."""
+FIRST_PAUSE, LONGEST_PAUSE = timedelta(seconds=10), timedelta(hours=1)
+"""A restart of the receiver is waited for, and an hour after it is back at most everything has been told."""
+MOST_ATTEMPTS = 30
+"""Over about 21 hours."""
+LOOK_EVERY = 1.0
+"""Seconds between two looks into the outbox."""
+LONGEST_WAIT = 60.0
+"""Seconds between two looks while they fail, as when the database is away: after a minute at most it goes on."""
+SIGNATURE, KEY = "X-Imu-Health-Signature", "Idempotency-Key"
+"""Header of the HMAC; header of the message's key (IETF draft idempotency-key-header)."""
+
+
+def deliver_until(
+    storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], metrics: Metrics, stop: Event
+) -> None:
+    """Empties the outbox until ``stop`` is set, with longer pauses while that fails."""
+    asyncio.run(_deliver_until(Outbox(storage, hosts, clock), Guard(metrics), stop))
+
+
+async def _deliver_until(outbox: "Outbox", guard: Guard, stop: Event) -> None:
+    pause = LOOK_EVERY
+    async with turns_of(outbox, guard) as turns:
+        while not await asyncio.to_thread(stop.wait, pause):
+            failed = guard.failed
+            with guard.alone("outbox", ""):
+                while await turns.begin() == AT_A_TIME and not stop.is_set():
+                    pass
+            pause = LOOK_EVERY if guard.failed == failed else min(2 * pause, LONGEST_WAIT)
+
+
+def deliver_due(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], metrics: Metrics) -> int:
+    """Attempts what is due, waits for every receiver, and returns how much that was."""
+
+    async def once() -> int:
+        async with turns_of(Outbox(storage, hosts, clock), Guard(metrics)) as turns:
+            count = await turns.begin()
+            await turns.done()
+            return count
+
+    return asyncio.run(once())
+
+
+@dataclass(frozen=True)
+class Outbox:
+    """What is to be sent, and where it may go."""
+
+    storage: Storage
+    hosts: tuple[str, ...]
+    clock: Callable[[], datetime]
+
+    def claim(self, busy: Collection[int]) -> tuple[Outgoing, ...]:
+        """What is due, oldest first, but for receivers that have their turn."""
+        now = self.clock()
+        with self.storage.database.reading() as store:
+            if not Webhooks(store).is_due(now, busy):
+                return ()
+        with self.storage.database.writing() as store:
+            return Webhooks(store).claim(now, now + CLAIM, AT_A_TIME, busy)
+
+    def put(self, outgoing: Outgoing, outcome: str, *, accepted: bool) -> None:
+        """Keeps what became of an attempt."""
+        state, next_at = _after(outgoing, accepted, self.clock())
+        with self.storage.database.writing() as store:
+            Webhooks(store).put(outgoing.delivery, state, outcome, next_at)
+
+
+class Turns:
+    """Receivers that are being sent to: each in a turn of its own, so that a slow one keeps none of the others."""
+
+    def __init__(self, outbox: Outbox, guard: Guard, http: httpx.AsyncClient) -> None:
+        self._outbox, self._guard, self._http = outbox, guard, http
+        self._running: dict[int, asyncio.Task[None]] = {}
+
+    async def begin(self) -> int:
+        """Starts the turns of receivers that have something due and are at no turn; how many messages that is."""
+        self._running = {id: turn for id, turn in self._running.items() if not turn.done()}
+        if len(self._running) >= MOST_AT_ONCE:
+            return 0
+        claimed = await asyncio.to_thread(self._outbox.claim, tuple(self._running))
+        for id in dict.fromkeys(one.webhook.id for one in claimed):
+            own = [one for one in claimed if one.webhook.id == id]
+            self._running[id] = asyncio.create_task(self._turn(own))
+        return len(claimed)
+
+    async def done(self) -> None:
+        """Waits until every turn has ended."""
+        await asyncio.gather(*self._running.values())
+
+    async def cancel(self) -> None:
+        """Ends every turn now; what it has claimed is sent again once the claim has run out."""
+        for turn in self._running.values():
+            turn.cancel()
+        await asyncio.gather(*self._running.values(), return_exceptions=True)
+
+    async def _turn(self, own: Sequence[Outgoing]) -> None:
+        """The messages of one receiver, one after another, oldest first."""
+        for outgoing in own:
+            with self._guard.alone("outbox", outgoing.webhook.url):
+                accepted, outcome = await _attempt(outgoing, self._outbox.hosts, self._http)
+                await asyncio.to_thread(self._outbox.put, outgoing, outcome, accepted=accepted)
+
+
+@asynccontextmanager
+async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[Turns]:
+    """Turns, which are cancelled at the end."""
+    async with httpx.AsyncClient(timeout=TIMEOUT, follow_redirects=False, trust_env=False) as http:
+        turns = Turns(outbox, guard, http)
+        try:
+            yield turns
+        finally:
+            await turns.cancel()
+
+
+async def _attempt(outgoing: Outgoing, hosts: tuple[str, ...], http: httpx.AsyncClient) -> tuple[bool, str]:
+    """Whether the receiver accepted, and what it said; its answer's body is never read."""
+    fault = fault_of(outgoing.webhook.url, hosts)
+    if fault:
+        return False, f"the address {fault}"
+    body = payload(outgoing)
+    headers = {
+        "Content-Type": "application/json",
+        "User-Agent": "imu-health",
+        KEY: outgoing.notice.key,
+        SIGNATURE: f"sha256={signature(outgoing.webhook.secret, body)}",
+    }
+    try:
+        async with asyncio.timeout(LONGEST_ATTEMPT):
+            async with http.stream("POST", outgoing.webhook.url, content=body, headers=headers) as answer:
+                return answer.is_success, f"{answer.status_code} {answer.reason_phrase}".strip()
+    except TimeoutError:
+        return False, f"no answer within {LONGEST_ATTEMPT:g} s"
+    except (httpx.HTTPError, httpx.InvalidURL) as problem:
+        return False, f"{type(problem).__name__}: {problem}"
+
+
+def _after(outgoing: Outgoing, accepted: bool, now: datetime) -> tuple[DeliveryState, datetime]:
+    """Pauses double from one attempt to the next."""
+    if accepted:
+        return DeliveryState.DELIVERED, now
+    if outgoing.attempt >= MOST_ATTEMPTS:
+        return DeliveryState.FAILED, now
+    doubled = FIRST_PAUSE * 2 ** min(outgoing.attempt - 1, 10)
+    return DeliveryState.WAITING, now + min(doubled, LONGEST_PAUSE)
+
+
+def payload(outgoing: Outgoing) -> bytes:
+    """The message, the same at every attempt."""
+    notice = outgoing.notice
+    flag = None
+    if notice.flag is not None and outgoing.matter is not None:
+        flag = {"id": notice.flag, "matter": outgoing.matter.value, "place": outgoing.place}
+    content = {
+        "id": notice.key,
+        "type": notice.kind.value,
+        "at": notice.at.isoformat(),
+        "unit": notice.unit,
+        "text": notice.text,
+        "who": notice.who,
+        "flag": flag,
+        "session": notice.session,
+    }
+    return json.dumps(content, ensure_ascii=False).encode()
+
+
+def signature(secret: str, body: bytes) -> str:
+    """HMAC-SHA256 of the body under the webhook's secret, 64 hexadecimal digits."""
+    return hmac.new(secret.encode(), body, hashlib.sha256).hexdigest()

@@ -1,0 +1,217 @@
+"""Flags, the notices of their lives, and the addresses that are told."""
+
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
+from uuid import NAMESPACE_URL, uuid5
+
+from service.kit.answer import Hidden, answer
+from service.models.records import Scope
+
+
+class Matter(StrEnum):
+    """What a flag is about."""
+
+    TOLERANCE = "out-of-tolerance"
+    """A sensor is judged fail or conditional fail."""
+    CAUSE = "cause"
+    """A diagnosis names a cause that acts on a sensor."""
+    UNEXPLAINED = "unexplained"
+    """A diagnosis finds structure that no known cause explains."""
+    STAND = "stand"
+    """A diagnosis finds the stand or the fixture at fault."""
+    SHIFTED = "stand-shifted"
+    """The units measured on a stand show that it has shifted."""
+    JUMP = "jump"
+    """A parameter of a sensor within tolerance has jumped between two sessions."""
+    DRIFT = "drift"
+    """A parameter of a sensor within tolerance drifts, ages or moves at no steady rate."""
+    LASTING = "lasting"
+    """What the sessions of a unit, a unit type or a stand show together."""
+    OVERDUE = "overdue"
+    """The unit's calibration is overdue."""
+
+
+AT_FAULT = (Matter.STAND, Matter.SHIFTED)
+"""Of flags on units that find a stand at fault; their place is its name."""
+
+
+class FlagState(StrEnum):
+    """Where a flag is in its life."""
+
+    RAISED = "raised"
+    ACKNOWLEDGED = "acknowledged"
+    RESOLVED = "resolved"
+
+
+class NoticeKind(StrEnum):
+    """What happened."""
+
+    RAISED = "flag.raised"
+    SEEN = "flag.seen"
+    """A later session shows the matter of an open flag again."""
+    CLEAR = "flag.clear"
+    """A later session no longer shows it: somebody may resolve the flag."""
+    ACKNOWLEDGED = "flag.acknowledged"
+    ASSIGNED = "flag.assigned"
+    """Somebody is to look after it, or nobody any more."""
+    RESOLVED = "flag.resolved"
+    VERDICT = "verdict.changed"
+
+
+@dataclass(frozen=True)
+class Assignee:
+    """Who is to look after flags."""
+
+    name: str
+    """As flags show it; empty for nobody."""
+    login: str = ""
+    """Account; empty where there are none."""
+
+
+NOBODY = Assignee("")
+
+
+@dataclass(frozen=True)
+class Concern:
+    """A reason to have an open flag."""
+
+    matter: Matter
+    place: str
+    """The sensor or the stand that it is about; empty for the unit as a whole."""
+    severity: int
+    """Of one matter: a larger one is worse."""
+    summary: str
+    scope: Scope = Scope.UNIT
+    """Whether it is about the unit, or about its whole type or a stand, which the unit only showed last."""
+    subject: str = ""
+    """Name of the type or the stand."""
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Of one matter at one place only one flag is open."""
+        return self.matter, self.place
+
+
+@answer
+@dataclass(frozen=True)
+class Notice:
+    """One change of a flag."""
+
+    id: Hidden[int]
+    unit: Hidden[str]
+    flag: Hidden[int | None]
+    kind: NoticeKind
+    """What happened."""
+    at: datetime
+    """When, UTC."""
+    who: str
+    """Through whom; `imu-health` for the service itself."""
+    text: str
+    """What was seen, or why it was done."""
+    session: str | None
+    """The session that it follows from, if one does."""
+
+    @property
+    def key(self) -> str:
+        """The same wherever and whenever it is told: by it a receiver knows what it has heard before."""
+        return str(uuid5(NAMESPACE_URL, f"imu-health/{self.unit}/{self.at.isoformat()}/{self.id}"))
+
+
+@answer
+@dataclass(frozen=True)
+class Flag:
+    """A matter that somebody must look after."""
+
+    id: int
+    """Number of the flag."""
+    unit: str
+    """Serial number of the unit; of another scope, of the unit that showed it last."""
+    matter: Matter
+    """What it is about."""
+    place: str
+    """The sensor or the stand that it is about; empty for the unit as a whole."""
+    state: FlagState
+    """`raised`, `acknowledged` or `resolved`."""
+    severity: Hidden[int]
+    summary: str
+    """The matter as the latest session shows it, in a sentence or two."""
+    proposal: str
+    """Why it could be resolved; empty while nothing speaks for it."""
+    session: str | None
+    """The latest session that showed it."""
+    raised_at: datetime
+    """When it was first raised, UTC."""
+    changed_at: datetime
+    """When it last changed, UTC."""
+    assignee: str = ""
+    """Who is to look after it; empty where nobody in particular is."""
+    scope: Scope = Scope.UNIT
+    """Whether it is about the unit, its whole unit type or a stand."""
+    subject: str = ""
+    """Name of the unit type or the stand; empty where it is about the unit."""
+    changes: tuple[Notice, ...] = ()
+    """Its life, oldest first; nothing of it is ever changed."""
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Of one matter at one place only one flag is open."""
+        return self.matter, self.place
+
+
+@answer
+@dataclass(frozen=True)
+class Webhook:
+    """An address that is told."""
+
+    id: int
+    """Number of the webhook."""
+    url: str
+    """Where messages are sent."""
+    secret: Hidden[str] = field(repr=False)
+    who: str
+    """Who registered it."""
+    created_at: datetime
+    """When, UTC."""
+
+
+class DeliveryState(StrEnum):
+    """How far a delivery has come."""
+
+    WAITING = "waiting"
+    DELIVERED = "delivered"
+    FAILED = "failed"
+    """Given up."""
+
+
+@answer
+@dataclass(frozen=True)
+class Delivery:
+    """One message to one address."""
+
+    id: int
+    """Number of the delivery."""
+    notice: Notice
+    """What the address is told."""
+    state: DeliveryState
+    """`waiting`, `delivered`, or `failed`: given up."""
+    attempts: int
+    """How often it was sent."""
+    next_at: datetime
+    """When it is sent next, UTC; of one that has ended, when it ended."""
+    outcome: str
+    """What the latest attempt came to."""
+
+
+@dataclass(frozen=True)
+class Outgoing:
+    """A delivery that is to be attempted now."""
+
+    delivery: int
+    attempt: int
+    """Counted from 1."""
+    webhook: Webhook
+    notice: Notice
+    matter: Matter | None
+    """Of the notice's flag; None where it is about no flag."""
+    place: str

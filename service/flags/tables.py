@@ -1,0 +1,107 @@
+"""The tables of flags, notices, webhooks and deliveries.
+
+`conditions`, `outlooks`, `flags`, `fleet_tables`, `jobs`, and of a session the revision in force, its verdict and its
+stage.
+
+unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
+    └──< units ──< services                   │
+           ├──< notes ──1 note_withdrawals    │
+           ├──< flags ──┐                     │
+           ├──< notices ┴──< deliveries >── webhooks
+           ├──1 conditions                    │
+           ├──1 outlooks, ──< histories
+           └──< sessions >────────────────────┘
+                   ├──< calibrations          refusals   what was turned away
+                   ├──< parameters            audit      who did what when, append-only
+                   ├──< decisions
+                   ├──< common_motions
+                   ├──1 diagnoses, session_statistics
+                   ├──< reference_choices     record_states   what became of sessions and services, append-only
+                   ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
+                   └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
+group_diagnoses                                what the sessions of a unit, a unit type or a stand show together
+saved_views                                    lists as people asked for them, under a name
+work                                           what is still to be done beside the requests, and who is at it
+jobs                                           long work that somebody asked for, and how far it has come
+accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
+"""
+
+from datetime import datetime
+
+from sqlalchemy import ForeignKey, Index, String, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
+
+from service.storage.columns import IS_FAILED, IS_OPEN, IS_WAITING, only_where
+from service.storage.tables import Base
+
+
+class FlagRow(Base):
+    """A matter that somebody must look after, as its notices left it; of one matter only one flag is open."""
+
+    __tablename__ = "flags"
+    __table_args__ = (
+        Index("ix_flags_unit_id", "unit_id", "id"),
+        Index("ix_flags_state", "state", "id"),
+        Index("ix_flags_open", "id", **only_where(IS_OPEN)),
+        Index("uq_flags_open", "unit_id", "matter", "place", unique=True, **only_where(IS_OPEN)),
+    )
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    matter: Mapped[str] = mapped_column(String(20))
+    place: Mapped[str] = mapped_column(String(200))
+    state: Mapped[str] = mapped_column(String(20))
+    severity: Mapped[int]
+    summary: Mapped[str]
+    proposal: Mapped[str]
+    session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"))
+    raised_at: Mapped[datetime]
+    changed_at: Mapped[datetime]
+    assignee: Mapped[str] = mapped_column(String(200), server_default="")
+    assignee_login: Mapped[str] = mapped_column(String(60), server_default="")
+    scope: Mapped[str] = mapped_column(String(10), server_default="unit")
+    subject: Mapped[str] = mapped_column(String(200), server_default="")
+
+
+class NoticeRow(Base):
+    """What happened to a flag or to a unit's verdict, when and through whom; append-only."""
+
+    __tablename__ = "notices"
+    __table_args__ = (Index("ix_notices_flag_id", "flag_id", "id"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    flag_id: Mapped[int | None] = mapped_column(ForeignKey("flags.id"))
+    kind: Mapped[str] = mapped_column(String(20))
+    at: Mapped[datetime]
+    who: Mapped[str]
+    text: Mapped[str]
+    session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"))
+
+
+class WebhookRow(Base):
+    """An address that is told of notices; one that was removed keeps its deliveries."""
+
+    __tablename__ = "webhooks"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    url: Mapped[str]
+    secret: Mapped[str]
+    who: Mapped[str]
+    created_at: Mapped[datetime]
+    removed_at: Mapped[datetime | None]
+
+
+class DeliveryRow(Base):
+    """One notice on its way to one address: the outbox."""
+
+    __tablename__ = "deliveries"
+    __table_args__ = (
+        UniqueConstraint("webhook_id", "notice_id"),
+        Index("ix_deliveries_next_at", "next_at", **only_where(IS_WAITING)),
+        Index("ix_deliveries_failed", "state", **only_where(IS_FAILED)),
+    )
+    id: Mapped[int] = mapped_column(primary_key=True)
+    notice_id: Mapped[int] = mapped_column(ForeignKey("notices.id"))
+    webhook_id: Mapped[int] = mapped_column(ForeignKey("webhooks.id"))
+    state: Mapped[str] = mapped_column(String(20))
+    attempts: Mapped[int]
+    next_at: Mapped[datetime]
+    outcome: Mapped[str]

@@ -1,0 +1,80 @@
+"""Webhooks over HTTP."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from service.flags.records import Delivery, Webhook
+from service.flags.webhooks import register_webhook as register
+from service.flags.webhooks import remove_webhook
+from service.flags.webhooks_store import Webhooks
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.web.dependencies import Now, Reading, SettingsOf
+from service.web.fields import Limit, Name, Number
+from service.web.problem_document import errors
+
+Url = Annotated[str, StringConstraints(pattern=r"^[!-~]+$", max_length=2000)]
+Secret = Annotated[str, StringConstraints(pattern=r"^[ -~]+$", min_length=16, max_length=200)]
+
+
+class NewWebhook(BaseModel):
+    """An address that is to be told."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {"url": "https://example.org/hook", "secret": "sixteen or more letters", "by": "K. Ito"}
+        },
+    )
+
+    url: Url = Field(
+        description="Where messages are sent; its host must be among those that the operator allows.",
+        json_schema_extra={"pattern": r"^https?://([A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?(/[!-~]*)?$"},
+    )
+    secret: Secret = Field(description="What messages are signed with, 16 characters or more; never shown again.")
+    by: Name = Field(description="Who registers it.")
+
+
+class WebhookList(BaseModel):
+    """All addresses that are told."""
+
+    webhooks: tuple[Webhook, ...] = Field(description="In the order in which they were registered.")
+
+
+class DeliveryList(BaseModel):
+    """The latest messages to one address."""
+
+    deliveries: tuple[Delivery, ...] = Field(description="Newest first.")
+
+
+router = APIRouter(prefix="/webhooks", tags=["webhooks"])
+
+
+@router.get("", responses=errors())
+def list_webhooks(store: Reading) -> WebhookList:
+    """Every address that is told; secrets are not shown."""
+    return WebhookList(webhooks=Webhooks(store).every())
+
+
+@router.post("", status_code=201, responses=errors(400, 422))
+def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf) -> Webhook:
+    """Tell an address of flags and verdicts from now on. Its host must be among those that the operator allows."""
+    webhook = register(storage, settings.webhook_hosts, new.url, new.secret, who=person.signs(new.by), now=now)
+    return webhook
+
+
+@router.get("/{id}/deliveries", responses=errors(404, 422))
+def list_deliveries(id: Number, store: Reading, limit: Limit = 100) -> DeliveryList:
+    """The latest messages to an address, and what became of them."""
+    found = Webhooks(store).deliveries(Webhooks(store).get(id).id, limit)
+    return DeliveryList(deliveries=found)
+
+
+@router.delete("/{id}", status_code=204, responses=errors(404, 422))
+def delete_webhook(
+    id: Number, storage: StorageOf, now: Now, by: Annotated[Name, Query(description="Who removes it.")]
+) -> None:
+    """Tell an address no more; what was on its way to it is given up."""
+    remove_webhook(storage, id, by, now)

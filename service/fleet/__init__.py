@@ -1,0 +1,1 @@
+"""The fleet at a glance, and the one question whether a unit may be used."""

@@ -1,0 +1,334 @@
+"""All units at a glance: one short row a unit, rewritten when a session of it is stored."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import (
+    BindParameter,
+    ScalarSelect,
+    Select,
+    bindparam,
+    delete,
+    func,
+    literal,
+    or_,
+    select,
+    union_all,
+    update,
+)
+from sqlalchemy.orm import aliased, load_only
+
+from estimator.session import PROGRAMMES
+from service.diagnosis.tables import DiagnosisRow
+from service.flags.tables import FlagRow
+from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
+from service.fleet.records import NOT_KNOWN, FleetChoices, FleetQuery, Tally
+from service.fleet.tables import ConditionRow, FleetTallyRow
+from service.fleet.wanted_store import Summaries, beyond, keys, matching
+from service.models.records import Scope
+from service.outlook.store import outlook_of
+from service.outlook.tables import OutlookRow
+from service.queue.records import WorkKind
+from service.queue.tables import WorkRow
+from service.sessions.decision import Verdict
+from service.sessions.doubt import Reservations
+from service.sessions.records import DiagnosisState, StoredSession
+from service.sessions.reservation_document import reservations_from_list
+from service.sessions.states import RecordState
+from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
+from service.sessions.store import is_waiting, session_record, session_rows
+from service.sessions.tables import SessionRow
+from service.stands.tables import StandRow
+from service.storage.columns import RESOLVED
+from service.storage.queries import Queries
+from service.types.store import unit_type_of
+from service.types.tables import ToleranceRow, UnitTypeRow
+from service.units.customer import Customer
+from service.units.tables import ServiceRow, UnitRow
+
+Other = aliased(SessionRow)
+"""A session of the unit, beside its latest one."""
+CHOICES = ("types", "stands", "lots")
+"""Of `FleetChoices`."""
+
+
+@dataclass(frozen=True)
+class Refreshed:
+    """A unit's row, and what it said before."""
+
+    latest: StoredSession | None
+    """None where the unit has no accepted session, and so no row."""
+    before: Verdict | None
+    """None where there was no row."""
+    was_reference: bool
+    """Whether the latest session was one that later ones are judged against, where its verdict was another."""
+
+
+OPEN_OF_GROUPS = select(func.count()).where(FlagRow.scope != Scope.UNIT, FlagRow.state != RESOLVED).scalar_subquery()
+"""Open flags of types and stands."""
+
+
+_UNIT: BindParameter[int] = bindparam("unit")
+_Was = aliased(SessionRow)
+"""The session that was the unit's latest."""
+_LATEST = (
+    session_rows()
+    .add_columns(
+        ConditionRow.severity,
+        ConditionRow.last_session,
+        _Was.is_reference,
+        select(func.count())
+        .select_from(Other)
+        .where(Other.unit_id == _UNIT, Other.state == RecordState.ACCEPTED)
+        .scalar_subquery(),
+    )
+    .outerjoin(ConditionRow, ConditionRow.unit_id == SessionRow.unit_id)
+    .outerjoin(_Was, _Was.id == ConditionRow.last_session)
+    .where(SessionRow.unit_id == _UNIT, IS_ACCEPTED)
+    .order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
+    .limit(1)
+)
+"""The latest accepted session of a unit, what was known of it, and how many there are."""
+
+
+class Fleet(Queries):
+    """All units at a glance."""
+
+    def refresh(self, unit: int) -> Refreshed:
+        """Rewrites a unit's row from its latest accepted session; without one it has none."""
+        self.touch(unit)
+        found = self._session.execute(_LATEST, {"unit": unit}).one_or_none()
+        if found is None:
+            self._session.execute(delete(ConditionRow).where(ConditionRow.unit_id == unit))
+            return Refreshed(None, None, was_reference=False)
+        *session, severity, was_last, was_reference, count = found
+        last, latest = session[0], session_record(*session)
+        values = {
+            "sessions": count, "last_session": last.id, "severity": latest.verdict.severity, "margin": last.margin,
+            "last_at": last.started_at, "stand_id": last.stand_id,
+        }  # fmt: skip
+        if was_last is None:
+            self.insert_many(ConditionRow, ({"unit_id": unit, "flags": 0, **values},))
+            return Refreshed(latest, None, was_reference=False)
+        self._session.execute(update(ConditionRow).where(ConditionRow.unit_id == unit).values(**values))
+        changed = severity != latest.verdict.severity
+        return Refreshed(latest, list(Verdict)[severity], was_reference=changed and was_reference)
+
+    def count_flags(self, unit: int) -> None:
+        """Rewrites how many flags of a unit are open; those of its type and of stands are not its own."""
+        self.touch(unit)
+        own = (FlagRow.unit_id == unit, FlagRow.scope == Scope.UNIT, FlagRow.state != RESOLVED)
+        opened = select(func.count()).where(*own)
+        self._session.execute(
+            update(ConditionRow).where(ConditionRow.unit_id == unit).values(flags=opened.scalar_subquery())
+        )
+
+    def units(self, wanted: FleetQuery) -> tuple[UnitSummary, ...]:
+        """The wanted units, worst first; one more query where the list goes on from a unit."""
+        place = self._place(wanted)
+        if place is None:
+            wanted = replace(wanted, after=None, before=None)
+        chosen = matching(_summaries().with_only_columns(UnitRow.id, maintain_column_froms=True), wanted)
+        if place is not None:
+            chosen = chosen.where(beyond(wanted, place))
+        ids = chosen.offset(wanted.offset).limit(wanted.limit).subquery()
+        query = _summaries().join(ids, ids.c.id == UnitRow.id).order_by(*(key.order for key in keys(wanted)))
+        found = tuple(_summary(row) for row in self._session.execute(query))
+        return found if wanted.before is None else found[::-1]
+
+    def _place(self, wanted: FleetQuery) -> Sequence[Any] | None:
+        """What a unit that a list goes on from is ordered by."""
+        named = wanted.after if wanted.before is None else wanted.before
+        if named is None:
+            return None
+        columns = [key.column for key in keys(wanted)]
+        query = _summaries().with_only_columns(*columns, maintain_column_froms=True)
+        return self._session.execute(query.where(UnitRow.serial == named)).one_or_none()
+
+    def choices(self) -> FleetChoices:
+        """Types, stands and lots that there are, in one query."""
+        types = select(literal("types"), UnitTypeRow.name)
+        stands = select(literal("stands"), StandRow.name)
+        lots = select(literal("lots"), UnitRow.lot).where(UnitRow.lot.is_not(None)).distinct()
+        rows: Sequence[Any] = self._session.execute(union_all(types, stands, lots)).all()
+        return FleetChoices(**{of: tuple(sorted(n for place, n in rows if place == of)) for of in CHOICES})
+
+    def unit(self, serial: str) -> UnitSummary | None:
+        """One unit."""
+        row = self._session.execute(_summaries(measured=False).where(UnitRow.serial == serial)).one_or_none()
+        return None if row is None else _summary(row)
+
+    def unit_known(self, serial: str, now: datetime) -> UnitKnown | None:
+        """One unit with what its page begins with, in one query."""
+        in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
+        query = _summaries(measured=False).add_columns(
+            _waiting(), _reference(now), OutlookRow, UnitTypeRow, ToleranceRow
+        )
+        row = self._session.execute(query.join(ToleranceRow, in_force).where(UnitRow.serial == serial)).one_or_none()
+        if row is None:
+            return None
+        self.remember_unit(serial, row[0].id)
+        unit_type, outlook = unit_type_of(*row[-2:]), row[-3]
+        return UnitKnown(
+            summary=_summary(row[:-5]),
+            unit_type=unit_type,
+            waiting=row[-5] or 0,
+            reference_session=row[-4],
+            outlook=None if outlook is None else outlook_of(outlook, row[0].lot, unit_type.name),
+        )
+
+    def condition(self) -> FleetCondition:
+        """How many units are in which condition."""
+        return _condition(self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS)).all())
+
+    def condition_at(self, now: datetime) -> FleetCondition:
+        """The same, and how many should have been calibrated by now, in one query."""
+        due = select(func.count()).select_from(OutlookRow).where(OutlookRow.due < now).scalar_subquery()
+        rows = self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS, due)).all()
+        return replace(_condition([row[:-1] for row in rows]), overdue=rows[0][-1] if rows else 0)
+
+    def tallies(self) -> tuple[Tally, ...]:
+        """Units with an accepted session, by their verdict and by how much of their tolerance they use."""
+        return tuple(map(_tally, self._session.execute(_tallies())))
+
+
+def _tallies() -> Select[int, bool, bool, int, int, int, int]:
+    row = FleetTallyRow
+    key = (row.severity, row.is_reference, row.is_simulated, row.bar)
+    counts = (func.sum(row.units), func.sum(row.flags), func.sum(row.reserved))
+    return select(*key, *counts).where(row.units > 0, row.severity != NOT_KNOWN).group_by(*key).order_by(*key)
+
+
+def _tally(row: Sequence[Any]) -> Tally:
+    return Tally(list(Verdict)[row[0]], *row[1:])
+
+
+def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
+    """Of tallies, each with the open flags of types and stands at its end."""
+    return FleetCondition.of([_tally(row[:-1]) for row in rows], rows[0][-1] if rows else 0)
+
+
+LAST = (
+    SessionRow.started_at,
+    SessionRow.verdict,
+    SessionRow.is_reference,
+    SessionRow.reason,
+    SessionRow.worst_sensor,
+    SessionRow.worst_parameter,
+    SessionRow.margin,
+)
+FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.reservations)
+"""What a line of the fleet tells of the latest session and of its diagnosis; the rest is long, and stays unread."""
+
+
+_Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
+"""What is still to be made of a unit."""
+
+
+def _summaries(*, measured: bool = True) -> Summaries:
+    """Units with their latest accepted session; those without one too where they need not be measured."""
+    return (
+        select(
+            UnitRow,
+            UnitTypeRow.name,
+            ConditionRow,
+            SessionRow,
+            DiagnosisRow,
+            OutlookRow.due,
+            _Outlook.ticket,
+            func.coalesce(_Outlook.failed, _Derivation.failed),
+            OutlookRow.reason,
+        )
+        .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
+        .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
+        .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
+        .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+        .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
+        .outerjoin(_Outlook, (_Outlook.kind == WorkKind.OUTLOOK) & (_Outlook.key == UnitRow.serial))
+        .outerjoin(_Derivation, (_Derivation.kind == WorkKind.DERIVATION) & (_Derivation.key == UnitRow.serial))
+    )
+
+
+def _waiting() -> ScalarSelect[int]:
+    """How many accepted sessions of a unit are to be judged or weighed."""
+    own = (Other.unit_id == UnitRow.id, is_waiting(Other.basis), Other.state == RecordState.ACCEPTED)
+    return select(func.count()).select_from(Other).where(*own).scalar_subquery()
+
+
+def _reference(now: datetime) -> ScalarSelect[str]:
+    """The session that a unit's next one will be judged against: of the epoch that now is in."""
+    known = (ServiceRow.unit_id == UnitRow.id, IS_BREAK)
+    since, until = (
+        select(bound).where(*known, side).correlate(UnitRow).scalar_subquery()
+        for bound, side in (
+            (func.max(ServiceRow.at), ServiceRow.at <= now),
+            (func.min(ServiceRow.at), ServiceRow.at > now),
+        )
+    )
+    own = (
+        Other.unit_id == UnitRow.id, Other.block == UnitTypeRow.block, Other.programme.in_(PROGRAMMES),
+        Other.is_reference, Other.state == RecordState.ACCEPTED,
+        or_(since.is_(None), Other.started_at >= since), or_(until.is_(None), Other.started_at < until),
+    )  # fmt: skip
+    return select(Other.id).where(*own).order_by(Other.started_at, Other.id).limit(1).scalar_subquery()
+
+
+def _summary(row: Sequence[Any]) -> UnitSummary:
+    unit, type_name, condition, last = row[0], row[1], row[2], row[3]
+    if condition is None:
+        return _unmeasured(unit, type_name)
+    return UnitSummary(
+        serial=unit.serial,
+        unit_type=type_name,
+        simulated=unit.simulated,
+        sessions=condition.sessions,
+        last_session=last.id,
+        last_at=last.started_at,
+        verdict=Verdict(last.verdict),
+        is_reference=last.is_reference,
+        reason=last.reason,
+        worst_sensor=last.worst_sensor,
+        worst_parameter=last.worst_parameter,
+        margin=last.margin,
+        diagnosis=_diagnosis(row[4]),
+        flags=condition.flags,
+        due=row[5],
+        lot=unit.lot,
+        reservations=_reservations(row[4]),
+        customer=Customer(unit.customer, unit.customer_address),
+        is_undated=row[6] is not None,
+        failed=row[7] or "",
+        due_reason=row[8] or "",
+    )
+
+
+def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
+    """A unit of which no session is accepted."""
+    return UnitSummary(
+        serial=unit.serial,
+        unit_type=type_name,
+        simulated=unit.simulated,
+        sessions=0,
+        last_session=None,
+        last_at=None,
+        verdict=None,
+        is_reference=False,
+        reason="No session of this unit is accepted, so nothing is known of it.",
+        worst_sensor=None,
+        worst_parameter=None,
+        margin=None,
+        lot=unit.lot,
+    )
+
+
+def _reservations(row: DiagnosisRow | None) -> Reservations:
+    """What the verdict is said with; None while causes are still being looked for."""
+    return None if row is None else reservations_from_list(row.session_id, row.reservations)
+
+
+def _diagnosis(row: DiagnosisRow | None) -> str:
+    """In one line, where something is wrong."""
+    return "" if row is None or not DiagnosisState(row.state).is_wrong else row.summary

@@ -1,0 +1,90 @@
+"""The tables of units' conditions and of counts of the fleet.
+
+`conditions`, `outlooks`, `flags`, `fleet_tables`, `jobs`, and of a session the revision in force, its verdict and its
+stage.
+
+unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
+    └──< units ──< services                   │
+           ├──< notes ──1 note_withdrawals    │
+           ├──< flags ──┐                     │
+           ├──< notices ┴──< deliveries >── webhooks
+           ├──1 conditions                    │
+           ├──1 outlooks, ──< histories
+           └──< sessions >────────────────────┘
+                   ├──< calibrations          refusals   what was turned away
+                   ├──< parameters            audit      who did what when, append-only
+                   ├──< decisions
+                   ├──< common_motions
+                   ├──1 diagnoses, session_statistics
+                   ├──< reference_choices     record_states   what became of sessions and services, append-only
+                   ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
+                   └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
+group_diagnoses                                what the sessions of a unit, a unit type or a stand show together
+saved_views                                    lists as people asked for them, under a name
+work                                           what is still to be done beside the requests, and who is at it
+jobs                                           long work that somebody asked for, and how far it has come
+accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
+
+transaction, and what types and stands show, which is asked for there and made beside the requests. All of it is a
+function of the other tables and can be made again.
+
+    tallied       ──> fleet_tallies     what every unit adds to the counts, and the counts
+    stand_units   ──> stand_tallies     the same by stand
+    work ──> populations, stand_conditions
+"""
+
+from datetime import datetime
+
+from sqlalchemy import ForeignKey, Index
+from sqlalchemy.orm import Mapped, mapped_column
+
+from service.storage.tables import Base
+
+
+class ConditionRow(Base):
+    """A unit's line on the fleet page: its latest session in short, rewritten with every upload."""
+
+    __tablename__ = "conditions"
+    __table_args__ = (
+        Index("ix_conditions_worst_first", "severity", "margin", "unit_id"),
+        Index("ix_conditions_stand_id_last_at", "stand_id", "last_at"),
+    )
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    sessions: Mapped[int]
+    last_session: Mapped[str] = mapped_column(ForeignKey("sessions.id"))
+    severity: Mapped[int]
+    margin: Mapped[float | None]
+    flags: Mapped[int]
+    last_at: Mapped[datetime | None] = mapped_column(index=True)
+    stand_id: Mapped[int | None]
+
+
+class TalliedRow(Base):
+    """What a unit adds to the counts of the fleet: it says what to take off when the unit changes."""
+
+    __tablename__ = "tallied"
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    unit_type_id: Mapped[int]
+    severity: Mapped[int]
+    is_reference: Mapped[bool]
+    is_simulated: Mapped[bool]
+    bar: Mapped[int]
+    flags: Mapped[int]
+    reserved: Mapped[int]
+
+
+class FleetTallyRow(Base):
+    """How many units of a type are in one condition and use so much of their tolerance; their open flags, and how many
+    of their verdicts are said with a reservation."""
+
+    __tablename__ = "fleet_tallies"
+    unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), primary_key=True, autoincrement=False)
+    severity: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    is_reference: Mapped[bool] = mapped_column(primary_key=True)
+    is_simulated: Mapped[bool] = mapped_column(primary_key=True)
+    bar: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    """Tenth of the tolerance that the worst parameter uses, U included; the last one holds all beyond, −1 those of
+    which nothing was judged."""
+    units: Mapped[int]
+    flags: Mapped[int]
+    reserved: Mapped[int]

@@ -1,1 +1,0 @@
-"""What changes the store, one verb a file; each reads as the list of its steps."""

@@ -1,1 +1,0 @@
-"""What changes who may sign in: accounts, passwords, links, tokens; one verb a file."""

@@ -1,0 +1,1 @@
+"""What the sessions of a unit, a unit type or a stand show together."""

@@ -1,0 +1,264 @@
+"""What sessions show together: each session's own amplitude beside the pooled one, and what all of them leave, without
+the effect and with it.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cache
+from math import degrees, isfinite
+from statistics import median
+from typing import Any
+
+import altair as alt
+
+from estimator.groups import GroupFinding
+from estimator.groups.layout import EVERY
+from estimator.groups.pictures import ANGLES
+from estimator.moments import moment
+from service.diagnosis.words.amplitude_measures import amplitude_measure
+from service.diagnosis.words.amplitudes import part_of
+from service.kit.measures import ARCSEC, COVERAGE, Measure, deviation_measure, measured, number
+from service.kit.names import day_of
+from service.sessions.charts import (
+    DATA_FORM,
+    HIGH,
+    LEFT,
+    LOW,
+    RIGHT,
+    UNIT,
+    ChartSet,
+    Panel,
+    filled,
+    padded,
+    specification,
+)
+from service.sessions.charts.across import BETA, ticks, zero_line
+
+HEIGHT = 150
+"""Pixels."""
+UNSURE = 3.0
+"""Times the usual session's U that another one's may be and still set the scale of the chart."""
+AIR = 0.04
+"""Share of the time that is left empty on either side, so that no mark is cut."""
+POOLED, VALUE = "pooled", "{value}"
+SIDES = ("without it", "with it")
+WHAT = {EVERY: "Every sensor", "δβ": "The angle β,", "δα": "The elevation α,"}
+"""What a picture is of, but for one sensor."""
+BY_ANGLE = "β"
+TITLES = {BY_ANGLE: "β, °", "(T − T̄)": "T − T̄, K", "(t − t̄)": "t − t̄, h", "a": "input, of the applied vector"}
+"""Of the axis that a picture is drawn over."""
+FACTORS = {BY_ANGLE: degrees(1.0), "(t − t̄)": 1 / 3600}
+"""From SI to what the axis shows."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """One amplitude of a finding: its place in the tuples, its name and what it is read in."""
+
+    number: int
+    name: str
+    measure: Measure
+
+
+def elements_of(finding: GroupFinding) -> Iterator[Element]:
+    """Those that the sessions see."""
+    each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
+    for k, (value, sigma) in enumerate(zip(finding.amplitude, finding.sigma, strict=True)):
+        if sigma is not None:
+            who = f"{finding.sensors[k // each]} " if len(finding.sensors) > 1 else ""
+            which = part_of(finding.cause, k % each) if each > 1 else ""
+            unit = finding.units[k % len(finding.units)]
+            largest = max(abs(value), COVERAGE * sigma)
+            yield Element(
+                k,
+                f"{who}{which.removesuffix(' =')}".strip() or "Amplitude",
+                amplitude_measure(finding.cause, unit, largest),
+            )
+
+
+def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
+    """A panel an amplitude; None where no session sees one, or none has a date."""
+    elements = list(elements_of(finding))
+    times = [moment(one.started_at) for one in finding.sessions if one.started_at]
+    if not elements or not times:
+        return None
+    span = [_iso(min(times)), _iso(max(times))]
+    reach = max(_reach(finding, element) for element in elements)
+    low, high = padded(-reach, reach)
+    air = (max(times) - min(times)) * AIR
+    ranges = {LEFT: _iso(min(times) - air), RIGHT: _iso(max(times) + air), LOW: low, HIGH: high}
+    return ChartSet(
+        name=f"{name}-forest",
+        heading="In each session",
+        spec=filled(_forest_spec(), {**ranges, UNIT: elements[0].measure.label}),
+        panels=tuple(_forest_panel(finding, element, span) for element in elements),
+    )
+
+
+def _spreads(finding: GroupFinding, element: Element) -> list[tuple[float, float]]:
+    """Every session's |amplitude| and U, as they are drawn."""
+    k, factor = element.number, element.measure.factor
+    own = ((one.amplitude[k], one.sigma[k]) for one in finding.sessions)
+    return [(abs(value) * factor, COVERAGE * sigma * factor) for value, sigma in own if sigma is not None]
+
+
+def _reach(finding: GroupFinding, element: Element) -> float:
+    """Up to where amplitudes are drawn: sessions that hardly see the effect would hide the others."""
+    every = _spreads(finding, element)
+    usual = median(u for _, u in every)
+    return max(value + u for value, u in every if u <= UNSURE * usual)
+
+
+def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> Panel:
+    k, factor, sigma = element.number, element.measure.factor, finding.sigma[element.number] or 0.0
+    value, spread = finding.amplitude[k], COVERAGE * sigma
+    since = finding.since if finding.form == "since" and finding.since else None
+    start = _iso(moment(since)) if since else span[0]
+    reach = _reach(finding, element)
+    beyond = sum(value > reach for value, _ in _spreads(finding, element))
+    left = f"; {beyond} too unsure to be drawn are in the table" if beyond else ""
+    return Panel(
+        title=element.name,
+        description=f"{measured(value, spread, element.measure)} together{left}",
+        condition=None,
+        datasets={
+            DATA_FORM: list(_session_points(finding, element)),
+            POOLED: [
+                {"t": t, "y": value * factor, "lo": (value - spread) * factor, "hi": (value + spread) * factor}
+                for t in (start, span[1])
+            ],
+        },
+    )
+
+
+def _session_points(finding: GroupFinding, element: Element) -> Iterator[dict[str, Any]]:
+    k, factor = element.number, element.measure.factor
+    for one in finding.sessions:
+        sigma = one.sigma[k]
+        if sigma is not None and one.started_at is not None:
+            at, value, spread = moment(one.started_at), one.amplitude[k], COVERAGE * sigma
+            yield {
+                "t": _iso(at),
+                "y": _short(value * factor),
+                "lo": _short((value - spread) * factor),
+                "hi": _short((value + spread) * factor),
+                "unit": one.unit,
+                "date": day_of(at),
+                "value": measured(value, spread, element.measure),
+            }
+
+
+@cache
+def _forest_spec() -> dict[str, Any]:
+    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
+    y_scale = alt.Scale(domain=[LOW, HIGH])
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
+    pooled = alt.Chart(alt.NamedData(name=POOLED)).encode(x=x)
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    marks = base.mark_point(
+        filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)", clip=True
+    ).encode(
+        y=y,
+        tooltip=[
+            alt.Tooltip("date:N", title="session"),
+            alt.Tooltip("unit:N", title="unit"),
+            alt.Tooltip("value:N", title="alone"),
+        ],
+    )
+    return specification(
+        [
+            pooled.mark_area(color="var(--second)", opacity=0.25).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
+            pooled.mark_line(color="var(--second)", strokeWidth=2).encode(y=y),
+            zero_line(),
+            base.mark_rule(color="var(--accent)", opacity=0.55, clip=True).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
+            marks,
+        ],
+        HEIGHT,
+    )
+
+
+def picture_chart(picture: dict[str, Any], kind: str, name: str) -> ChartSet:
+    """The pooled residual against its variable, without the effect and with it."""
+    measure, at, largest = _measure_of(picture, kind), _places(picture), _largest(picture)
+    low, high = padded(-largest * measure.factor, largest * measure.factor)
+    by_angle = picture["variable"] == BY_ANGLE
+    left, right = (0.0, 360.0) if by_angle else padded(min(at), max(at))
+    title = _title(picture)
+    blanks = {LEFT: left, RIGHT: right, LOW: low, HIGH: high, UNIT: measure.label, VALUE: f"mean, {measure.label}"}
+    return ChartSet(
+        name=f"{name}-picture",
+        heading="What all sessions leave",
+        spec=filled(_picture_spec(title, by_angle=by_angle), blanks),
+        panels=tuple(_picture_panel(picture, side, at, measure) for side in SIDES),
+    )
+
+
+def picture_table(picture: dict[str, Any], kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]:
+    """Head and rows of the same."""
+    measure = _measure_of(picture, kind)
+    head = (_title(picture), *SIDES)
+    rows = zip(_places(picture), picture["before"], picture["after"], picture["sigma"], strict=True)
+    return head, tuple(
+        (number(x), *(measured(v, COVERAGE * sigma, measure) for v in (before, after)))
+        for x, before, after, sigma in rows
+    )
+
+
+def _title(picture: dict[str, Any]) -> str:
+    variable: str = picture["variable"]
+    return TITLES.get(variable, variable)
+
+
+def _places(picture: dict[str, Any]) -> list[float]:
+    return [x * FACTORS.get(picture["variable"], 1.0) for x in picture["at"]]
+
+
+def _largest(picture: dict[str, Any]) -> float:
+    """|residual| or U of a bin, SI."""
+    values = [abs(v) for side in ("before", "after") for v in picture[side]]
+    return max((*values, *(COVERAGE * sigma for sigma in picture["sigma"])), default=0.0)
+
+
+def _measure_of(picture: dict[str, Any], kind: str) -> Measure:
+    if picture["of"] in ANGLES:
+        return ARCSEC
+    return deviation_measure(kind, "bias", _largest(picture))
+
+
+def _picture_panel(picture: dict[str, Any], side: str, at: Sequence[float], measure: Measure) -> Panel:
+    values = picture["before" if side == SIDES[0] else "after"]
+    outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture["sigma"], strict=True))
+    return Panel(
+        title=f"{WHAT.get(picture['of'], picture['of'])} {side}",
+        description=f"{outside} of {len(values)} outside ±2σ",
+        condition=None,
+        datasets={
+            DATA_FORM: [
+                {"x": _short(x), "y": _short(v * measure.factor), "band": _short(COVERAGE * s * measure.factor)}
+                for x, v, s in zip(at, values, picture["sigma"], strict=True)
+            ]
+        },
+    )
+
+
+@cache
+def _picture_spec(title: str, *, by_angle: bool) -> dict[str, Any]:
+    axis = alt.Axis(**ticks(BETA)) if by_angle else alt.Axis(tickCount=5)
+    x = alt.X("x:Q", title=title, axis=axis, scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
+    y_scale = alt.Scale(domain=[LOW, HIGH])
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=0.13)
+    marks = base.mark_point(filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)").encode(
+        y=alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale),
+        tooltip=[alt.Tooltip("x:Q", title=title), alt.Tooltip("y:Q", title=VALUE)],
+    )
+    return specification([band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q"), zero_line(), marks], HEIGHT)
+
+
+def _iso(at: datetime) -> str:
+    return f"{at:%Y-%m-%dT%H:%M:%SZ}"
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.5g}") if isfinite(value) else 0.0

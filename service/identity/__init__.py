@@ -1,1 +1,0 @@
-"""Who somebody is, and what a route needs: passwords, secrets, the table of rules."""

@@ -1,0 +1,57 @@
+"""The tables of long work, and of derivations that failed."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import JSON, Index, String, false
+from sqlalchemy.orm import Mapped, mapped_column
+
+from service.storage.columns import BYTES, IS_AT_WORK, IS_FAILED, only_where
+from service.storage.tables import Base
+
+
+class JobRow(Base):
+    """One job: what it is, how far it has come, who is at it, and what it made."""
+
+    __tablename__ = "jobs"
+    __table_args__ = (
+        Index("ix_jobs_open", "turn_at", "id", **only_where(IS_AT_WORK)),
+        Index("ix_jobs_failed", "state", **only_where(IS_FAILED)),
+    )
+    id: Mapped[int] = mapped_column(primary_key=True)
+    kind: Mapped[str] = mapped_column(String(20))
+    scope: Mapped[str] = mapped_column(String(20))
+    subject: Mapped[str] = mapped_column(String(200), index=True)
+    form: Mapped[str] = mapped_column(String(10))
+    language: Mapped[str] = mapped_column(String(10))
+    revision: Mapped[int]
+    who: Mapped[str]
+    account: Mapped[str] = mapped_column(String(200), index=True)
+    state: Mapped[str] = mapped_column(String(20))
+    asked_at: Mapped[datetime]
+    turn_at: Mapped[datetime]
+    """When it was last worked on, so that of several jobs each has its turn."""
+    begun_at: Mapped[datetime | None]
+    ended_at: Mapped[datetime | None]
+    cancelled_by: Mapped[str]
+    claimed_until: Mapped[datetime | None]
+    attempts: Mapped[int]
+    """Claims that ended without a word: the process died."""
+    done: Mapped[int]
+    total: Mapped[int]
+    cursor: Mapped[int]
+    recomputed: Mapped[int]
+    verdicts: Mapped[int]
+    failed: Mapped[int]
+    failures: Mapped[list[Any]]
+    held_up: Mapped[str]
+    filename: Mapped[str]
+    size: Mapped[int] = mapped_column(BYTES)
+    sha256: Mapped[str] = mapped_column(String(64))
+    kept_until: Mapped[datetime | None]
+    """Of the file that it made; None where there is none, or no longer."""
+    sent: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    """Of an upload: the file that waits, as `Sent`; its hash is in ``sha256``."""
+    is_storing: Mapped[bool] = mapped_column(server_default=false())
+    session: Mapped[str] = mapped_column(String(20), server_default="")
+    refusal: Mapped[int | None]

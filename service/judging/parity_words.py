@@ -1,0 +1,69 @@
+"""What a recording in service tells: how it agrees with the calibration, and what it never sees."""
+
+from collections.abc import Iterator
+
+from estimator.parity import ParityResult
+from service.judging.in_service_words import (
+    CHANGED,
+    MOST_CANDIDATES,
+    SAME,
+    TOO_MUCH_MOTION,
+    clipped_in_words,
+    stillness,
+)
+from service.kit.measures import number
+from service.sessions.words.fit import FitWords
+
+COMMON = (
+    "a bias common to all that some acceleration explains, all axes turned together, all scales by one factor, "
+    "and any stretch or shear of the space"
+)
+"""What the sensors' disagreement cannot show: any motion, and any linear map of it, explains it."""
+ONE_ORIENTATION = (
+    "The recording turns too little to tell a change of bias from one of scale or axis: record slow turns as well."
+)
+SMALLEST = 1e-4
+"""Probability below which its size tells nobody more."""
+PER_SENSOR = 4
+"""Numbers of a sensor that can change: scale, bias and two turns of its axis."""
+
+
+def agreement_in_words(result: ParityResult) -> FitWords:
+    """How the recording agrees with the calibration, and what to be careful of."""
+    chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
+    quiet = TOO_MUCH_MOTION if result.moving else SAME
+    return FitWords(
+        headline=f"{CHANGED if result.detected else quiet}.",
+        detail=f"χ² = {number(result.chi2, 1)} for {result.dof} numbers; an unchanged block gives this much or more "
+        f"in {chance} % of recordings.",
+        warnings=tuple(_warnings(result)),
+    )
+
+
+def _warnings(result: ParityResult) -> Iterator[str]:
+    can = PER_SENSOR * len(result.sensors)
+    yield f"Parity sees {result.dof} of {can} numbers that can change. It never sees {COMMON}."
+    if not result.complete:
+        yield ONE_ORIENTATION
+    if result.moving:
+        yield _suspicion(result)
+    yield from (f"{clipped_in_words(result, name)}." for name in result.clipped)
+    left = [f"{count} {_why(reason, result)}" for reason, count in result.left_out.items() if count]
+    if left:
+        yield f"Left out of {result.blocks} blocks: {', '.join(left)}."
+
+
+def _suspicion(result: ParityResult) -> str:
+    """What would be said if nothing moved, and how to know."""
+    suspects = list(dict.fromkeys(c.sensor for c in result.suspects))[:MOST_CANDIDATES]
+    act = stillness(result)
+    return (
+        f"If motion did nothing to sound sensors, χ² would be {number(result.chi2_unmoved, 1)} for {result.dof} "
+        f"numbers and {' or '.join(suspects)} would be suspected. {act[0].upper()}{act[1:]}."
+    )
+
+
+def _why(reason: str, result: ParityResult) -> str:
+    if reason == "saturated":
+        return f"in which {', '.join(result.saturated)} stood at the end of the range"
+    return "in which the block moved, because its sensors do not sit in one point"

@@ -1,0 +1,46 @@
+"""What a recording in service would have shown: from what size a change of one sensor is seen."""
+
+from dataclasses import dataclass
+
+from estimator.parity import ParityResult
+from estimator.parity.results import Sight
+from service.kit.measures import in_words
+
+PARAMETERS = ("bias", "scale", "axis")
+"""In the order of the table."""
+
+
+@dataclass(frozen=True)
+class SightRow:
+    """From what size a change of one sensor would have been seen."""
+
+    name: str
+    share: str
+    limits: tuple[tuple[str, str], ...]
+    """A parameter and the size."""
+
+
+@dataclass(frozen=True)
+class ParityView:
+    """What parity sees of a block."""
+
+    level: str
+    parameters: tuple[str, ...]
+    rows: tuple[SightRow, ...]
+
+
+def parity_view(result: ParityResult) -> ParityView:
+    """The table of a recording."""
+    rows = tuple(
+        SightRow(
+            name=sensor.name,
+            share=f"{100 * sensor.visible_share:.0f} %",
+            limits=tuple((name, _limit(result.kind, name, getattr(sensor, name))) for name in PARAMETERS),
+        )
+        for sensor in result.sensors
+    )
+    return ParityView(f"{100 * result.false_alarm:g} %", PARAMETERS, rows)
+
+
+def _limit(kind: str, parameter: str, sight: Sight) -> str:
+    return "not seen" if sight.detectable is None else in_words(kind, parameter, sight.detectable)

@@ -1,0 +1,274 @@
+"""What is derived of a unit's accepted sessions, and the records that it rests on."""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
+from typing import Any
+from uuid import uuid4
+
+from sqlalchemy import (
+    BindParameter,
+    CompoundSelect,
+    Select,
+    Table,
+    Update,
+    bindparam,
+    delete,
+    func,
+    literal_column,
+    null,
+    or_,
+    select,
+    union_all,
+    update,
+)
+from sqlalchemy.orm import Session
+
+from service.diagnosis.tables import DiagnosisRow
+from service.flags.records import Concern, FlagState, Matter, NoticeKind
+from service.flags.tables import FlagRow, NoticeRow
+from service.judging.records import Counted, Decided, Told, UnitRecords
+from service.queue.records import WorkKind
+from service.queue.tables import WorkRow
+from service.sessions.decision import Judged
+from service.sessions.records import UNWEIGHED
+from service.sessions.states import RecordState
+from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
+from service.sessions.store import NOT_JUDGED, is_waiting, worst_columns
+from service.sessions.tables import CalibrationRow, CommonMotionRow, DecisionRow, ReferenceChoiceRow, SessionRow
+from service.storage.queries import Queries
+from service.units.tables import ServiceRow, UnitRow
+
+UNIT: BindParameter[int] = bindparam("unit")
+SESSIONS: Select[*tuple[Any, ...]] = (
+    select(
+        literal_column("'session'").label("what"), SessionRow.id, SessionRow.block, SessionRow.programme,
+        SessionRow.started_at.label("at"), SessionRow.revision.label("number"), SessionRow.is_reference,
+        SessionRow.basis, SessionRow.state, DiagnosisRow.session_id.label("diagnosed"),
+        WorkRow.key.label("waiting"),
+    )
+    .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+    .outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS.value) & (WorkRow.key == SessionRow.id))
+    .where(SessionRow.unit_id == UNIT)
+)  # fmt: skip
+NOTHING = (null(),) * 5
+BREAKS: Select[*tuple[Any, ...]] = select(
+    literal_column("'break'"), null(), null(), null(), ServiceRow.at, null(), *NOTHING
+).where(ServiceRow.unit_id == UNIT, IS_BREAK)
+CHOICES: Select[*tuple[Any, ...]] = select(
+    literal_column("'choice'"), ReferenceChoiceRow.session_id, null(), null(), ReferenceChoiceRow.at,
+    ReferenceChoiceRow.id, *NOTHING,
+).where(ReferenceChoiceRow.unit_id == UNIT)  # fmt: skip
+ALL: CompoundSelect[*tuple[Any, ...]] = union_all(SESSIONS, BREAKS, CHOICES)
+
+
+def unit_records(transaction: Session, unit: int) -> UnitRecords:
+    """Read in one statement."""
+    rows = transaction.execute(ALL, {"unit": unit}).all()
+    sessions, breaks, choices = ([row for row in rows if row.what == what] for what in ("session", "break", "choice"))
+    accepted = (Counted(*row[1:8]) for row in sessions if row.state == RecordState.ACCEPTED)
+    return UnitRecords(
+        counted=tuple(sorted(accepted, key=lambda one: (one.at, one.id))),
+        breaks=tuple(sorted({row.at for row in breaks})),
+        choices=tuple(row.id for row in sorted(choices, key=lambda row: row.number)),
+        references=frozenset(row.id for row in sessions if row.is_reference),
+        diagnosed={row.id: row.at for row in sessions if row.diagnosed},
+        waiting={row.id: row.at for row in sessions if row.waiting},
+    )
+
+
+Key = tuple[str, str]
+"""Matter and place of a flag."""
+Moment = tuple[datetime, str]
+"""When a session was measured, and its id: the order of a unit's records."""
+
+
+class Derivations(Queries):
+    """The derived part of sessions."""
+
+    def counted(self, unit: int) -> tuple[Counted, ...]:
+        """The accepted sessions of a unit in order of time."""
+        query = select(
+            SessionRow.id, SessionRow.block, SessionRow.programme, SessionRow.started_at, SessionRow.revision,
+            SessionRow.is_reference, SessionRow.basis,
+        ).where(SessionRow.unit_id == unit, IS_ACCEPTED)  # fmt: skip
+        rows = self._session.execute(query.order_by(SessionRow.started_at, SessionRow.id))
+        return tuple(Counted(*row) for row in rows)
+
+    def records(self, unit: int) -> UnitRecords:
+        """Everything that the derived part of a unit rests on, in one statement."""
+        return unit_records(self._session, unit)
+
+    def computed_at(self, ids: Collection[str]) -> dict[str, datetime]:
+        """When the calibrations in force of some sessions were computed."""
+        if not ids:
+            return {}
+        in_force = (SessionRow.id == CalibrationRow.session_id) & (SessionRow.revision == CalibrationRow.revision)
+        query = select(SessionRow.id, CalibrationRow.computed_at).join(CalibrationRow, in_force)
+        rows = self._session.execute(query.where(SessionRow.id.in_(ids)))
+        return {id: at for id, at in rows}  # noqa: C416 - rows are no pairs
+
+    def put_references(self, unit: int, references: Iterable[str]) -> None:
+        """Says which of a unit's sessions others are judged against."""
+        wanted = SessionRow.id.in_(tuple(references))
+        own = (SessionRow.unit_id == unit, SessionRow.is_reference != wanted)
+        self._session.execute(update(SessionRow).where(*own).values(is_reference=wanted))
+        self._session.expire_all()
+
+    def put_revisions(self, revisions: Mapping[str, int]) -> None:
+        """Makes sessions speak for their calibrations of a revision; the ones before stay where they are."""
+        own = [{"session": id, "new_revision": revision, "new_basis": NOT_JUDGED} for id, revision in revisions.items()]
+        self._session.execute(_REVISED, own)
+        self._session.expire_all()
+
+    def wait(self, ids: Collection[str]) -> None:
+        """Leaves sessions to be judged later."""
+        if not ids:
+            return
+        self._session.execute(update(SessionRow).where(SessionRow.id.in_(tuple(ids))).values(basis=NOT_JUDGED))
+        self._session.expire_all()
+
+    def waiting(self) -> tuple[str, ...]:
+        """Serial numbers of units with accepted sessions that are to be judged or weighed."""
+        query = select(UnitRow.serial).join(SessionRow, SessionRow.unit_id == UnitRow.id)
+        query = query.where(is_waiting(SessionRow.basis), IS_ACCEPTED)
+        return tuple(self._session.scalars(query.distinct().order_by(UnitRow.serial)))
+
+    def waiting_of(self, serial: str) -> int:
+        """How many accepted sessions of a unit are to be judged or weighed."""
+        query = select(func.count()).select_from(SessionRow).join(UnitRow, UnitRow.id == SessionRow.unit_id)
+        own = (UnitRow.serial == serial, is_waiting(SessionRow.basis), IS_ACCEPTED)
+        return self._session.scalar(query.where(*own)) or 0
+
+    def put_weighed(self, ids: Collection[str]) -> None:
+        """Nothing more is to be done about the verdicts of sessions."""
+        own = SessionRow.id.in_(tuple(ids)), SessionRow.basis.startswith(UNWEIGHED)
+        weighed = func.substr(SessionRow.basis, len(UNWEIGHED) + 1)
+        self._session.execute(update(SessionRow).where(*own).values(basis=weighed))
+        self._session.expire_all()
+
+    def put_judged(self, decided: Sequence[Decided]) -> None:
+        """What was decided of sessions under their revisions, in place of what was; the calibrations stay."""
+        if not decided:
+            return
+        again = [one.session for one in decided if not one.is_first]
+        for table in (DecisionRow, CommonMotionRow) if again else ():
+            own = select(SessionRow.revision).where(SessionRow.id == table.session_id).scalar_subquery()
+            self._session.execute(delete(table).where(table.session_id.in_(again), table.revision == own))
+        self._session.execute(_JUDGED, [_judged(one) for one in decided])
+        self._session.execute(_JUDGED_UNDER, [_judged_under(one) for one in decided])
+        self.insert_many(DecisionRow, [row for one in decided for row in _decision_rows(one)])
+        self.insert_many(CommonMotionRow, [row for one in decided for row in _motion_rows(one)])
+        self._session.expire_all()
+
+    def tell(self, id: str, told: Told) -> None:
+        """Keeps what the diagnosis of a session tells."""
+        own = update(DiagnosisRow).where(DiagnosisRow.session_id == id)
+        self._session.execute(own.values(tells=told_to_dict(told)))
+        self._session.expire_all()
+
+    def told(self, unit: int) -> tuple[tuple[Moment, Told | None, Told | None, bool], ...]:
+        """What every accepted session of a unit tells, in order of time: by its verdict and by its diagnosis.
+
+        None where that was not kept or is not there; last whether the session was judged before it was kept.
+        """
+        return tuple(
+            ((at, id), _told(verdict), _told(diagnosis), basis is None)
+            for at, id, verdict, diagnosis, basis in self._session.execute(_TOLD, {"unit": unit})
+        )
+
+    def settled(self, unit: int, by_service: str) -> dict[Key, Moment]:
+        """The last session that a flag spoke of when a person resolved it, by matter and place."""
+        own = (FlagRow.unit_id == unit, FlagRow.state == FlagState.RESOLVED)
+        by_person = select(NoticeRow.flag_id).where(NoticeRow.kind == NoticeKind.RESOLVED, NoticeRow.who != by_service)
+        query = select(FlagRow.matter, FlagRow.place, SessionRow.started_at, SessionRow.id).join(
+            SessionRow, SessionRow.id == FlagRow.session_id
+        )
+        found: dict[Key, Moment] = {}
+        for matter, place, at, id in self._session.execute(query.where(*own, FlagRow.id.in_(by_person))):
+            found[matter, place] = max(found.get((matter, place), (at, id)), (at, id))
+        return found
+
+    def forget_diagnoses(self, unit: int, since: datetime, but: Iterable[str]) -> tuple[str, ...]:
+        """Diagnoses from a date on looked at what has changed since: they are to be made again; all but some."""
+        self.touch(unit)
+        later = select(SessionRow.id).where(
+            SessionRow.unit_id == unit, SessionRow.started_at >= since, SessionRow.id.not_in(tuple(but))
+        )
+        gone = delete(DiagnosisRow).where(DiagnosisRow.session_id.in_(later)).returning(DiagnosisRow.session_id)
+        return tuple(sorted(self._session.scalars(gone)))
+
+    def look_again(self, unit: int, since: datetime, judged: Collection[str]) -> None:
+        """Diagnoses that are being made, from a date on or of some sessions, are made again with what has changed."""
+        concerned = select(SessionRow.id).where(
+            SessionRow.unit_id == unit, or_(SessionRow.started_at >= since, SessionRow.id.in_(judged))
+        )
+        own = (WorkRow.kind == WorkKind.DIAGNOSIS, WorkRow.key.in_(concerned))
+        self._session.execute(update(WorkRow).where(*own).values(ticket=uuid4().hex))
+
+    def forget_diagnosis(self, id: str) -> tuple[str, ...]:
+        """The same of one session; none where it has none."""
+        gone = delete(DiagnosisRow).where(DiagnosisRow.session_id == id).returning(DiagnosisRow.session_id)
+        return tuple(self._session.scalars(gone))
+
+
+def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Update:
+    """An update of columns by parameters of their names."""
+    own = table.__table__
+    assert isinstance(own, Table)
+    return update(own).values({name: bindparam(f"new_{name}") for name in names})
+
+
+_TOLD = (
+    select(SessionRow.started_at, SessionRow.id, SessionRow.tells, DiagnosisRow.tells, SessionRow.basis)
+    .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+    .where(SessionRow.unit_id == bindparam("unit"), IS_ACCEPTED)
+    .order_by(SessionRow.started_at, SessionRow.id)
+)
+_SUMMARY = ("verdict", "reason", "worst_sensor", "worst_parameter", "margin")
+_JUDGED = _changed(SessionRow, *_SUMMARY, "basis", "tells").where(SessionRow.id == bindparam("session"))
+_REVISED = _changed(SessionRow, "revision", "basis").where(SessionRow.id == bindparam("session"))
+_JUDGED_UNDER = _changed(CalibrationRow, *_SUMMARY).where(
+    CalibrationRow.session_id == bindparam("session"), CalibrationRow.revision == bindparam("under")
+)
+
+
+def _summary(judged: Judged) -> dict[str, Any]:
+    own = {"verdict": judged.verdict, "reason": judged.reason, **worst_columns(judged.worst)}
+    return {f"new_{name}": value for name, value in own.items()}
+
+
+def _judged(one: Decided) -> dict[str, Any]:
+    tells = None if one.told is None else told_to_dict(one.told)
+    return {"session": one.session, "new_basis": one.basis, "new_tells": tells, **_summary(one.judged)}
+
+
+def _judged_under(one: Decided) -> dict[str, Any]:
+    return {"session": one.session, "under": one.revision, **_summary(one.judged)}
+
+
+def _decision_rows(one: Decided) -> Iterator[dict[str, Any]]:
+    own = {"session_id": one.session, "revision": one.revision}
+    for position, decision in enumerate(one.judged.decisions):
+        yield {**own, "position": position, "guard_band": decision.guard_band, **vars(decision)}
+
+
+def _motion_rows(one: Decided) -> Iterator[dict[str, Any]]:
+    for motion in one.judged.motions:
+        yield {"session_id": one.session, "revision": one.revision, **vars(motion)}
+
+
+def told_to_dict(told: Told) -> dict[str, list[list[str | int]]]:
+    """As the store keeps it."""
+    concerns: list[list[str | int]] = [[c.matter.value, c.place, c.severity, c.summary] for c in told.concerns]
+    return {"concerns": concerns, "clear": [list(line) for line in told.clear]}
+
+
+def _told(document: dict[str, list[list[str | int]]] | None) -> Told | None:
+    if document is None:
+        return None
+    concerns = tuple(
+        Concern(Matter(str(matter)), str(place), int(severity), str(summary))
+        for matter, place, severity, summary in document["concerns"]
+    )
+    clear = tuple((str(matter), str(place), str(why)) for matter, place, why in document["clear"])
+    return Told(concerns, clear)

@@ -1,0 +1,199 @@
+"""Why a verdict is what it is, and with which reservations, in words."""
+
+from collections.abc import Sequence
+
+from estimator.causes import find
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Structure
+from estimator.results import Calibration
+from service.diagnosis.words.causes import cause_on, choice_of
+from service.diagnosis.words.structures import MIXED_UP, UNEXPLAINED
+from service.fleet.condition import UnitSummary
+from service.kit.measures import COVERAGE, HARD, THIN, deviation_measure, in_measure, in_words, measured, number
+from service.kit.names import PARAMETER_NAMES
+from service.sessions.decision import Decision, Opening, Verdict, worst_of
+from service.sessions.doubt import Reservations
+from service.sessions.words.advice import left_open
+from service.sessions.words.conditions import Condition, condition_of
+from service.sessions.words.reservations import but
+
+REPEAT = "repeat the session"
+CORRECT = "correct the file and upload it again"
+STAND = "put the stand right and repeat the session"
+FIXTURE = "seat the block again and repeat the session"
+RESTATE = "state the errors that the readings have and upload the file again"
+ADD = "add positions"
+REPORT = "see what its diagnosis says"
+ADVICE = {"record": CORRECT, "stand": STAND, "fixture": FIXTURE}
+"""By what a cause is of; of a sensor, a session is repeated first."""
+TOO_FEW = "it was not checked for causes, because it has too few positions"
+AGAIN = "ask again in some seconds"
+FAILED = "it was not checked for causes"
+
+
+def advice_on_structure(structure: Structure) -> str:
+    """What to do about what no known cause explains: what all sensors show is none of theirs."""
+    return REPEAT if structure.sensors else STAND
+
+
+def advice_on(cause: str) -> str:
+    """What to do about a named cause, in a clause."""
+    known = find(cause)
+    return REPEAT if known is None else ADVICE.get(known.scope, REPEAT)
+
+
+def named(finding: Finding, size: str) -> str:
+    """``the zero of A2 jumps once and stays (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
+    what = choice_of(finding) if finding.alternatives else finding.sentence
+    return f"{within(what)}{f' ({size})' if size else ''}"
+
+
+def unexplained(structures: Sequence[Structure], size: str) -> str:
+    """``something is there in A3 that no known cause explains (20 µg, tolerance 50 µg)``."""
+    first = structures[0]
+    if first.of_record:
+        return within(MIXED_UP)
+    where = f" in {', '.join(first.sensors)}" if first.sensors else " in all sensors"
+    return f"{within(UNEXPLAINED).replace('something is there', f'something is there{where}')} ({size})"
+
+
+def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *, named: bool = False) -> str:
+    """``it would be unfit with warm up (A2) in the model``; without a cause: if none of those named acted.
+
+    ``named``: the causes are those that the diagnosis names.
+    """
+    word = condition_of(verdict).word.lower()
+    if named:
+        return f"it would be {word} with what was found in the model"
+    if not causes:
+        return f"it would be {word} if what acts were none of the known causes"
+    names = [cause_on(causes[0], sensors), *(cause_on(cause, ()) for cause in causes[1:])]
+    return f"it would be {word} with {' and '.join(names)} in the model"
+
+
+def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], tolerance: float) -> str:
+    """``51 ± 4 µg, tolerance 50 µg``, with U at k = 2; SI in."""
+    value, sigma = size
+    measure = deviation_measure(kind, parameter, max(value, tolerance))
+    allowed = f"tolerance {number(in_measure(tolerance, measure))}{THIN}{measure.label}"
+    if sigma is None:
+        return f"about {number(float(f'{value * measure.factor:.2g}'))}{THIN}{measure.label}, {allowed}"
+    return f"{measured(value, COVERAGE * sigma, measure)}, {allowed}"
+
+
+def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
+    """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
+    here, by, at = _degrees(now), _degrees(abs(outside)), _between(*covered)
+    if outside > 0:
+        away = f"it was measured at {here}, {by} above its reference and earlier sessions ({at})"
+    else:
+        away = f"it was measured at {here}, {by} below its reference and earlier sessions ({at})"
+    if worth:
+        return f"{away}, and the temperature alone may be worth {worth}"
+    return f"{away}, and the temperature alone can make or hide a change"
+
+
+def worth_in(parameter: str, sensor: str, size: str) -> str:
+    """``A2 bias: 80 ± 10 µg, tolerance 50 µg``."""
+    return f"{sensor} {PARAMETER_NAMES[parameter]}: {size}"
+
+
+def _between(lowest: float, highest: float) -> str:
+    """``19–22 °C``."""
+    low, high = number(lowest, 0), number(highest, 0)
+    return _degrees(lowest) if low == high else f"{low}–{_degrees(highest)}"
+
+
+def at_about(celsius: float) -> str:
+    """Where to measure again."""
+    return f"measure again at about {_degrees(celsius)}, or calibrate over temperature"
+
+
+def _degrees(celsius: float) -> str:
+    return f"{number(celsius, 0)}{HARD}°C"
+
+
+def within(sentence: str) -> str:
+    """A sentence as a clause within another: names of sensors keep their capitals."""
+    head, _, rest = sentence.rstrip(".").partition(" ")
+    plain = head[1:].islower() or len(head) == 1
+    return f"{head.lower() if plain else head} {rest}".rstrip()
+
+
+FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
+NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
+CHOSEN = "Chosen as the reference: the unit's other sessions are judged against it."
+OPENINGS = {Opening.FIRST: FIRST_SESSION, Opening.SERVICE: NEW_EPOCH, Opening.CHOSEN: CHOSEN}
+NOTHING_JUDGED = "Nothing could be judged: no parameter of this session has a tolerance."
+ALL_PASS = "Every parameter is within its tolerance by more than U; closest to it: {closest}."
+
+
+def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
+    """A verdict as it is said wherever it stands: ``Fit, but the zero of A2 jumps once: repeat the session``."""
+    return f"{condition.word}{but(reservations)}"
+
+
+def unit_in_words(unit: UnitSummary) -> str:
+    """The verdict of a unit's latest session, as it is said."""
+    return verdict_in_words(condition_of(unit.verdict, is_reference=unit.is_reference), unit.reservations)
+
+
+def first_in_words(calibration: Calibration, opening: Opening) -> str:
+    """That a session is the reference, and what of the unit it leaves open."""
+    return " ".join(filter(None, (OPENINGS[opening], left_open(calibration))))
+
+
+def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
+    """One sentence on the worst parameter, in people's units; ``blind`` says why a session gives no uncertainty."""
+    worst = worst_of(decisions)
+    if worst is None:
+        return blind or NOTHING_JUDGED
+    if blind and worst.expanded is None:
+        return blind
+    return _sentence(worst, decisions)
+
+
+def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
+    place = f"{worst.sensor} {_name(worst)}"
+    if worst.deviation is None or worst.expanded is None:
+        return _unseen(worst, decisions)
+    moved = _words(worst, worst.deviation, signed=worst.parameter != "axis")
+    spread, allowed = _words(worst, worst.expanded), _words(worst, worst.tolerance)
+    if worst.verdict is Verdict.PASS:
+        return ALL_PASS.format(closest=f"{place}, moved {moved} (U {spread}) of {allowed} allowed")
+    if worst.verdict is Verdict.FAIL:
+        return f"{place} moved {moved} (U {spread}) beyond the tolerance of {allowed}."
+    if worst.verdict is Verdict.CONDITIONAL_FAIL:
+        return f"{place} moved {moved} (U {spread}): beyond the tolerance of {allowed}, by less than U."
+    if worst.verdict is Verdict.CONDITIONAL_PASS:
+        return f"{place} moved {moved} (U {spread}): within the tolerance of {allowed}, by less than U."
+    return _too_uncertain(place, moved, spread, allowed, worst)
+
+
+def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
+    if worst.expanded is not None and worst.expanded > worst.tolerance:
+        return (
+            f"{place} is known to U {spread} only, more than its tolerance of {allowed}: "
+            "measure more positions or better averages, or set a tolerance that can be decided."
+        )
+    return (
+        f"{place} moved {moved} (U {spread}), beyond the tolerance of {allowed} but no more than noise "
+        "makes the largest of so many numbers: measure again."
+    )
+
+
+def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
+    sensors = [d.sensor for d in decisions if d.parameter == worst.parameter and d.deviation is None]
+    named = ", ".join(sensors[:6]) + (f" and {len(sensors) - 6} more" if len(sensors) > 6 else "")
+    missing = "has none in the reference session to compare with"
+    if worst.value is None:
+        missing = "is not observable in this session: add the positions that show it"
+    return f"{_name(worst).capitalize()} of {named} {missing}."
+
+
+def _name(decision: Decision) -> str:
+    return PARAMETER_NAMES[decision.parameter]
+
+
+def _words(decision: Decision, si: float, *, signed: bool = False) -> str:
+    return in_words(decision.kind, decision.parameter, si, signed=signed)

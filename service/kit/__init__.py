@@ -1,0 +1,1 @@
+"""What every subject uses: measures, moments, names, charts' look, lists."""

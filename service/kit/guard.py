@@ -1,0 +1,113 @@
+"""The boundary of work beside the requests: what fails is logged, counted and tried again later, and the rest goes on.
+
+What an upload or a store can do is foreseen, and said in words where it happens. Everything else is a fault of the
+program, and only here is it caught: logged with its traceback and with what it was at, so that whoever gave the work
+can count it and keep that it failed.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+
+from estimator.errors import SessionError
+from service.errors import ServiceError
+from service.kit.failed import AT_FAULT
+from service.kit.log import log
+from service.kit.metrics import Metrics
+
+FORESEEN = (ServiceError, SessionError)
+"""A store that is away or full, a file that cannot be read: logged in one line. What else a database refuses is a fault
+of the program."""
+Alone = Callable[[str, str], AbstractContextManager[None]]
+"""How one piece of work is done: what is done, and on which stand or unit."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a piece of work is not done."""
+
+    fault: str
+    reason: str
+    is_foreseen: bool = True
+    """False where the program failed or its process died: that is tried again some times only."""
+
+
+class Met:
+    """What became of a piece of work."""
+
+    failure: Failure | None = None
+
+
+@contextmanager
+def unforeseen(doing: str, place: str) -> Iterator[Met]:
+    """A piece of work whose unforeseen failure ends here."""
+    met = Met()
+    try:
+        yield met
+    except FORESEEN:
+        raise
+    except Exception as fault:  # noqa: BLE001 - nobody can say what a mistake raises, and what it was at must outlive it
+        log.error("background work failed", doing=doing, place=place, exc_info=fault)
+        met.failure = Failure(type(fault).__name__, AT_FAULT, is_foreseen=False)
+
+
+@contextmanager
+def ending_here(doing: str, place: str) -> Iterator[Met]:
+    """A piece of work of which every failure ends here."""
+    outcome = Met()
+    try:
+        with unforeseen(doing, place) as met:
+            yield outcome
+        outcome.failure = met.failure
+    except FORESEEN as fault:
+        outcome.failure = Failure(type(fault).__name__, str(fault))
+
+
+@contextmanager
+def kept(keep: Callable[[str], None]) -> Iterator[None]:
+    """A piece of work whose failure is kept with its reason, and then goes its way."""
+    try:
+        yield
+    except FORESEEN as fault:
+        keep(str(fault))
+        raise
+    except Exception:  # whatever it was is kept as failed work, and raised again
+        keep(AT_FAULT)
+        raise
+
+
+class Guard:
+    """Counts what fails, and lets the rest go on."""
+
+    def __init__(self, metrics: Metrics) -> None:
+        self._metrics = metrics
+        self.failed = 0
+        """Pieces of work that failed so far."""
+
+    @contextmanager
+    def alone(self, doing: str, place: str) -> Iterator[None]:
+        """A piece of work whose failure ends here."""
+        with ending_here(doing, place) as met:
+            yield
+        if met.failure is not None:
+            if met.failure.is_foreseen:
+                log.warning("background work failed", doing=doing, place=place, reason=met.failure.reason)
+            self._count(doing, met.failure)
+
+    @contextmanager
+    def at_request(self, doing: str, place: str) -> Iterator[None]:
+        """A piece of work for somebody who waits for it, and is told what is foreseen."""
+        with unforeseen(doing, place) as met:
+            yield
+        if met.failure is not None:
+            self._count(doing, met.failure)
+
+    def _count(self, doing: str, failure: Failure) -> None:
+        self.failed += 1
+        self._metrics.count_fault(doing, failure.fault)
+
+
+@contextmanager
+def plainly(doing: str, place: str) -> Iterator[None]:
+    """A piece of work whose failure is the caller's."""
+    yield

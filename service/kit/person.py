@@ -1,0 +1,114 @@
+"""Who asks: people with an account, programs with a token, and what each may do."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+from service.kit.answer import Hidden, answer
+
+
+class Role(StrEnum):
+    """What somebody may do; each may all that the ones before it may."""
+
+    VIEWER = "viewer"
+    """Reads."""
+    CREW = "crew"
+    """Uploads, writes notes, records services, looks after flags."""
+    ENGINEER = "engineer"
+    """Judges: accepts and withdraws records, chooses references, accepts models, sets tolerances, issues papers."""
+    ADMIN = "admin"
+    """Accounts, tokens of others, webhooks, the audit trail."""
+
+    def may(self, needed: "Role") -> bool:
+        """Whether this role includes another."""
+        return RANKS[self] >= RANKS[needed]
+
+
+RANKS = {role: rank for rank, role in enumerate(Role)}
+"""How far each role reaches."""
+
+
+@answer
+@dataclass(frozen=True)
+class Account:
+    """Somebody who may sign in."""
+
+    id: Hidden[int]
+    login: str
+    """What the person signs in with."""
+    name: str
+    """As papers, flags and the audit trail name the person."""
+    role: Role
+    """What the person may do."""
+    is_active: bool
+    """Whether the person may sign in."""
+    created_at: datetime
+    """When, UTC."""
+    has_password: bool
+    """Whether a password was chosen already."""
+
+
+@answer
+@dataclass(frozen=True)
+class Token:
+    """What a program shows instead of a password."""
+
+    id: int
+    """Number of the token."""
+    login: str
+    """Account that it acts for."""
+    label: str
+    """What it is for."""
+    role: Role
+    """At most this, and never more than its account may."""
+    created_at: datetime
+    """When, UTC."""
+    expires_at: datetime
+    """Until when it holds, UTC."""
+    revoked_at: datetime | None
+    """When it was revoked, UTC."""
+    last_used_at: datetime | None
+    """To the hour, UTC."""
+
+
+@dataclass(frozen=True)
+class Person:
+    """Who sent a request."""
+
+    login: str
+    """Account; empty of somebody who did not sign in."""
+    name: str
+    """As written under what this person does; empty where the person says it in each request."""
+    role: Role | None
+    """None of somebody who may only sign in."""
+    token: str = ""
+    """Label of the token that was shown; empty of a browser."""
+    token_id: int | None = None
+    """Its number; None of a browser."""
+    csrf: str = ""
+    """What every form of a signed-in browser brings back; empty of a program."""
+
+    def may(self, needed: Role) -> bool:
+        """Whether this person may do what a role may."""
+        return self.role is not None and self.role.may(needed)
+
+    def signs(self, said: str) -> str:
+        """The name under what this person does: the account's, or, where nobody signs in, as they said."""
+        return self.name or said
+
+    @property
+    def account(self) -> str:
+        """As the audit trail names it: the account, and the token that acted for it."""
+        return f"{self.login}, token {self.token}" if self.token else self.login
+
+
+UNNAMED = "whoever is at this machine"
+"""Who administers, where nobody needs to sign in."""
+COMMAND_LINE = "command line"
+"""As the audit trail names whoever reaches the database."""
+STRANGER = Person("", "", None)
+"""Somebody who has not signed in."""
+LOOKING = Person("", "", Role.VIEWER)
+"""Somebody who has not signed in where there is nothing but a demonstration to see."""
+EVERYBODY = Person("", "", Role.ADMIN)
+"""Everybody where nobody needs to sign in."""

@@ -1,0 +1,1 @@
+"""The causes that engineers accepted, as numbered revisions of models."""

@@ -1,0 +1,26 @@
+"""The stores of the service, opened with what a transaction that writes does last."""
+
+from collections.abc import Callable
+
+from service.fleet.tallies_store import Tallies
+from service.settings import Settings
+from service.storage import Storage
+from service.storage.database import Database
+from service.storage.files import Files, ignore
+from service.storage.store import Store
+from service.storage.waits import Waits, waits_of
+
+
+def settle(store: Store) -> None:
+    """Counts of the fleet are brought in line."""
+    Tallies(store).settle()
+
+
+def open_database(url: str, waits: Waits | None = None) -> Database:
+    """The database at an address."""
+    return Database(url, settle, waits)
+
+
+def open_storage(settings: Settings, count: Callable[[str], None] = ignore) -> Storage:
+    """The stores that the settings name; ``count`` is told of faults of files."""
+    return Storage(open_database(settings.database, waits_of(settings.database_seconds)), Files(settings.files, count))

@@ -1,0 +1,1 @@
+"""When a unit must come back and why: drift, forecast, risk."""

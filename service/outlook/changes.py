@@ -1,0 +1,96 @@
+"""Step: what a unit's outlook is worked out from, and the working out, which no transaction waits for."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from functools import lru_cache
+from hashlib import sha256
+
+from estimator.health.pooled import Prior, learn
+from service.kit.measures import COVERAGE
+from service.outlook.document import unpacked
+from service.outlook.records import UnitOutlook
+from service.outlook.rules.forecast import Past, forecast
+from service.outlook.rules.histories import Histories, histories
+from service.outlook.store import Outlooks
+from service.sessions.store import Sessions
+from service.sessions.words.motion import motions_in_words
+from service.storage.lock_order import outside_writing
+from service.storage.store import Store
+from service.types.store import UnitTypes
+from service.units.store import Services, Units
+
+END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
+"""After every break."""
+RULE = b"5"
+"""Version of what an outlook says of a history: those made by an earlier one are made again."""
+AT_HAND = 32
+"""Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
+TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]
+"""What a type's units tell, by kind of sensor and parameter."""
+
+
+@dataclass(frozen=True)
+class Sources:
+    """What an outlook is worked out from."""
+
+    past: Past
+    known: Histories
+    """The unit's own."""
+    told: TypeHistories
+    together: tuple[str, ...]
+    """What all sensors did together, in words."""
+
+
+def known_of(store: Store, serial: str) -> Histories:
+    """A unit's own histories since its last break."""
+    unit = Units(store).key(serial)
+    since, _ = Services(store).around(unit, END_OF_TIME)
+    return histories(Outlooks(store).changes(unit, since), Outlooks(store).references(unit, since))
+
+
+def gathered(store: Store, serial: str, known: Histories) -> Sources:
+    """Everything that a unit's outlook is worked out from; what the unit tells of its type is kept already."""
+    unit = Units(store).key(serial)
+    since, _ = Services(store).around(unit, END_OF_TIME)
+    last, shown = Outlooks(store).last_calibration(unit), Outlooks(store).last_session(unit)
+    past = Past(
+        serial=serial,
+        since=since,
+        latest=None if last is None else Sessions(store).get(last[0]),
+        longest_days=UnitTypes(store).of_unit(serial).maximum_interval_days,
+        shown=None if shown is None else Sessions(store).get(shown),
+    )
+    together = () if last is None else motions_in_words(Sessions(store).motions(last[0]), COVERAGE)
+    return Sources(past, known, of_type(store, unit), tuple(line.text for line in together))
+
+
+@outside_writing
+def worked_out(sources: Sources) -> UnitOutlook:
+    """The numerical part, with no store at hand."""
+    told = sources.told
+    priors = {place: learned(rows) for place, rows in told.items()}
+    outlook = forecast(sources.past, sources.known, priors)
+    return replace(outlook, rests_on=digest(told), together=sources.together)
+
+
+@lru_cache(maxsize=AT_HAND)
+def learned(rows: tuple[bytes, ...]) -> Prior:
+    """What the histories of a type's units let expect of a parameter. It is the same for most units of a large type."""
+    return learn([one for row in rows for one in unpacked(row)])
+
+
+def of_type(store: Store, unit: int) -> TypeHistories:
+    """What the units of a unit's type tell of the parameters that this one has."""
+    return {place: Outlooks(store).histories(unit, *place) for place in sorted(Outlooks(store).places(unit))}
+
+
+def digest(told: TypeHistories) -> str:
+    """64 hexadecimal digits, the same for the same histories."""
+    return sha256(RULE + b"".join(_bytes(told))).hexdigest()
+
+
+def _bytes(told: TypeHistories) -> Iterable[bytes]:
+    for place, rows in told.items():
+        yield "/".join(place).encode()
+        yield from rows

@@ -1,0 +1,267 @@
+"""Histories of parameters with band, tolerance, verdicts and forecast."""
+
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime, timedelta
+from functools import cache
+from typing import Any
+
+import altair as alt
+
+from service.kit.names import day_of
+from service.outlook.records import ParameterTrend
+from service.outlook.tracks import Track, TrackPoint
+from service.sessions.charts import (
+    DATA_FORM,
+    HIGH,
+    LEFT,
+    LOW,
+    RIGHT,
+    UNIT,
+    ChartSet,
+    Panel,
+    filled,
+    padded,
+    specification,
+)
+from service.sessions.words.conditions import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
+from service.units.records import Note, Service
+
+Trends = Mapping[tuple[str, str, str], ParameterTrend]
+"""By sensor, kind and parameter."""
+NAMES = ("fan", "trend")
+"""Of the data sets."""
+YEAR_SECONDS = 365.25 * 86400
+"""Julian years, as rates a year are given in."""
+ROOM = 1.5
+"""The fan may widen a chart to this many tolerances, not further."""
+
+
+def trends_by_place(trends: Sequence[ParameterTrend]) -> Trends:
+    """As the charts look them up."""
+    return {(trend.sensor, trend.kind, trend.parameter): trend for trend in trends}
+
+
+def trend_of(track: Track, trends: Trends) -> ParameterTrend | None:
+    """The trend of a track."""
+    return trends.get((track.sensor, track.name.rpartition("-")[2], track.parameter))
+
+
+def forecast_data(
+    track: Track, trends: Trends, iso: Callable[[datetime], str], short: Callable[[float | None], float | None]
+) -> dict[str, list[dict[str, Any]]]:
+    """The data sets of one panel; empty without a trend."""
+    trend = trend_of(track, trends)
+    if trend is None or not trend.fan or trend.since is None:
+        return {name: [] for name in NAMES}
+    one, last = track.unit.factor, trend.fan[0].at
+    start = trend.level - trend.rate_per_year * (last - trend.since).total_seconds() / YEAR_SECONDS
+    return {
+        "fan": [
+            {"t": iso(p.at), "lo9": short(p.low_90 * one), "lo5": short(p.low_50 * one), "y": short(p.middle * one),
+             "hi5": short(p.high_50 * one), "hi9": short(p.high_90 * one)}
+            for p in trend.fan
+        ],
+        "trend": [{"t": iso(at), "y": short(y * one)} for at, y in ((trend.since, start), (last, trend.level))],
+    }  # fmt: skip
+
+
+def forecast_layers(x: alt.X) -> list[alt.Chart]:
+    """Bounds of 90 % and 50 %, the middle, and the trend behind it."""
+    fan, trend = (alt.Chart(alt.NamedData(name=name)).encode(x=x) for name in NAMES)
+    colour = "var(--second)"
+    return [
+        fan.mark_area(color=colour, opacity=0.12, clip=True).encode(y=alt.Y("lo9:Q"), y2="hi9:Q"),
+        fan.mark_area(color=colour, opacity=0.2, clip=True).encode(y=alt.Y("lo5:Q"), y2="hi5:Q"),
+        fan.mark_line(color=colour, strokeWidth=1.5, strokeDash=[4, 3], clip=True).encode(y=alt.Y("y:Q")),
+        trend.mark_line(color=colour, strokeWidth=1.2, clip=True).encode(y=alt.Y("y:Q")),
+    ]
+
+
+def forecast_dates(tracks: Sequence[Track], trends: Trends) -> list[datetime]:
+    """The dates that a chart must have room for."""
+    found = (trend_of(track, trends) for track in tracks)
+    return [point.at for trend in found if trend is not None for point in trend.fan]
+
+
+def forecast_edges(tracks: Sequence[Track], trends: Trends) -> list[float]:
+    """The values that a chart must have room for: the inner bounds, up to one and a half tolerances."""
+    edges = []
+    for track in tracks:
+        trend = trend_of(track, trends)
+        if trend is not None:
+            most = ROOM * trend.tolerance
+            inner = [edge for point in trend.fan for edge in (point.low_50, point.high_50)]
+            edges += [max(-most, min(most, edge)) * track.unit.factor for edge in inner]
+    return [max(edge, 0.0) if tracks[0].parameter == "axis" else edge for edge in edges]
+
+
+HEIGHT = 150
+"""Pixels: more than of residuals, for the fan of the forecast."""
+
+
+@cache
+def history_spec() -> dict[str, Any]:
+    """With blanks for the unit and the ranges."""
+    points, limits, services, notes = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services", "notes"))
+    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LOW, HIGH], zero=False))
+    base = alt.Chart(points).encode(x=x)
+    bounds = alt.Chart(limits).encode(x=alt.X("from:T"), x2="to:T")
+    return specification(
+        [
+            bounds.mark_rect(color="var(--pass)", opacity=0.06).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
+            bounds.mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y="hi:Q"),
+            bounds.mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y="lo:Q"),
+            bounds.mark_rule(color="var(--muted)", strokeWidth=1).encode(y="ref:Q"),
+            *forecast_layers(x),
+            _breaks(services),
+            _remarks(notes),
+            base.mark_area(color="var(--accent)", opacity=0.18).encode(y=y, y2="hi:Q", detail="epoch:N")
+            .encode(y=alt.Y("lo:Q")),
+            base.mark_rule(color="var(--accent)", opacity=0.55).encode(y="lo:Q", y2="hi:Q"),
+            base.mark_line(color="var(--accent)", strokeWidth=1.5).encode(y=y, detail="epoch:N"),
+            _marks(base, y),
+        ],
+        HEIGHT,
+    )  # fmt: skip
+
+
+def _breaks(services: alt.NamedData) -> alt.Chart:
+    chart: alt.Chart = (
+        alt.Chart(services)
+        .mark_rule(color="var(--ink)", strokeWidth=2, strokeDash=[2, 2])
+        .encode(
+            x=alt.X("t:T"),
+            tooltip=[alt.Tooltip("what:N", title="service"), alt.Tooltip("note:N", title="note")],
+        )
+    )
+    return chart
+
+
+def _remarks(notes: alt.NamedData) -> alt.Chart:
+    """A mark at the upper edge; what it says is read by pointing at it, and in the list below the charts."""
+    chart: alt.Chart = (
+        alt.Chart(notes)
+        .mark_point(shape="triangle-down", filled=True, size=70, opacity=1, color="var(--second)")
+        .encode(
+            x=alt.X("t:T"),
+            y=alt.value(6),
+            tooltip=[alt.Tooltip("date:N", title="note"), alt.Tooltip("note:N", title="text")],
+        )
+    )
+    return chart
+
+
+def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
+    shown = (*CONDITIONS, REFERENCE, NOT_JUDGED)
+    names = [c.formal for c in shown]
+
+    def by_verdict(values: list[Any]) -> dict[str, Any]:
+        return {"legend": None, "scale": alt.Scale(domain=names, range=values)}
+
+    chart: alt.Chart = base.mark_point(filled=True, opacity=1, stroke="var(--card)", strokeWidth=0.8).encode(
+        y=y,
+        color=alt.Color("verdict:N", **by_verdict([f"var(--{c.key})" for c in shown])),
+        shape=alt.Shape("verdict:N", **by_verdict([c.shape for c in shown])),
+        size=alt.Size("verdict:O", **by_verdict([45 if c is FIT else 95 for c in shown])),
+        tooltip=[
+            alt.Tooltip("date:N", title="date"),
+            alt.Tooltip("value:N", title="value"),
+            alt.Tooltip("verdict:N", title="verdict"),
+        ],
+    )
+    return chart
+
+
+AIR = 0.04
+"""Share of the time that is left empty on either side, so that no mark is cut."""
+
+
+def history_charts(
+    tracks: Sequence[Track],
+    services: Sequence[Service],
+    notes: Sequence[Note] = (),
+    trends: Sequence[ParameterTrend] = (),
+) -> ChartSet:
+    """The panels of one parameter; every track has the same parameter and unit."""
+    known = trends_by_place(trends)
+    span = _span(tracks, known)
+    return ChartSet(
+        name=tracks[0].name,
+        heading=tracks[0].parameter,
+        spec=_filled(tracks, span, known),
+        panels=tuple(_panel(track, services, notes, span, known) for track in tracks),
+    )
+
+
+def _panel(track: Track, services: Sequence[Service], notes: Sequence[Note], span: list[str], trends: Trends) -> Panel:
+    return Panel(
+        title=track.sensor,
+        description=track.points[-1].text,
+        condition=track.points[-1].condition if track.points[-1].limits else None,
+        datasets={
+            DATA_FORM: [_point(p) for p in track.points if p.shown is not None],
+            "limits": _limits(track, span),
+            **forecast_data(track, trends, _iso, _short),
+            "services": [{"t": _iso(s.at), "what": s.kind, "note": s.note} for s in services],
+            "notes": [{"t": _iso(n.at), "date": day_of(n.at), "note": n.text} for n in notes],
+        },
+    )
+
+
+def _point(point: TrackPoint) -> dict[str, Any]:
+    return {
+        "t": _iso(point.at),
+        "y": _short(point.shown),
+        "lo": _short(point.lower),
+        "hi": _short(point.upper),
+        "verdict": point.condition.formal,
+        "epoch": point.epoch,
+        "value": point.text,
+        "date": point.day,
+    }
+
+
+def _limits(track: Track, span: list[str]) -> list[dict[str, Any]]:
+    """Tolerance and reference, each stretch until the next one begins, from edge to edge of the chart."""
+    starts = [_iso(point.at) for point in track.limits]
+    return [
+        {"from": start, "to": end, "ref": 0, "hi": _short(point.limit_upper), "lo": _short(point.limit_lower)}
+        for point, start, end in zip(track.limits, [span[0], *starts[1:]], [*starts[1:], span[1]], strict=False)
+    ]
+
+
+def _iso(at: datetime) -> str:
+    return at.strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+
+
+def _short(value: float | None) -> float | None:
+    """Six digits are more than a screen can show."""
+    return None if value is None else float(f"{value:.6g}")
+
+
+def _filled(tracks: Sequence[Track], span: list[str], trends: Trends) -> dict[str, Any]:
+    low, high = _range(tracks, trends)
+    values = {UNIT: tracks[0].unit.label, LEFT: span[0], RIGHT: span[1], LOW: low, HIGH: high}
+    found: dict[str, Any] = filled(history_spec(), values)
+    return found
+
+
+def _span(tracks: Sequence[Track], trends: Trends) -> list[str]:
+    """One stretch of time for all sensors, so that what happened together stands in line."""
+    dates = [p.at for track in tracks for p in track.points] + forecast_dates(tracks, trends)
+    air = (max(dates) - min(dates)) * AIR or timedelta(days=1)
+    return [_iso(min(dates) - air), _iso(max(dates) + air)]
+
+
+def _range(tracks: Sequence[Track], trends: Trends) -> list[float]:
+    """One range for all sensors: which of them stands out is then seen at a glance."""
+    edges = [
+        edge
+        for track in tracks
+        for p in track.points
+        for edge in (p.shown, p.lower, p.upper, p.limit_lower, p.limit_upper)
+        if edge is not None
+    ]
+    edges += forecast_edges(tracks, trends)
+    return padded(min(edges), max(edges)) if edges else [-1.0, 1.0]

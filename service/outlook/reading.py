@@ -1,0 +1,59 @@
+"""When a unit must be calibrated next and why.
+
+What is stored is worked out when a unit's history changes (`refresh_outlook`); read, it is only set against the clock
+and against what is kept of the rates of its type (`summarise`).
+"""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from datetime import datetime
+
+from service.errors import NotFoundError
+from service.kit.failure_words import unit_failed
+from service.outlook.populations import Population
+from service.outlook.populations_store import Populations
+from service.outlook.records import ParameterTrend, UnitOutlook
+from service.outlook.store import Outlooks
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.storage.store import Store
+from service.units.store import Units
+
+
+def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
+    """One unit's outlook within a transaction."""
+    own = Outlooks(store).of_unit(serial)
+    if own is None:
+        if not Units(store).exists(serial):
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        own = nothing_known(serial)
+    why = WorkQueue(store, WorkKind.OUTLOOK).failed(serial)
+    return replace(
+        compared(own, Populations(store).of_type(own.unit_type), now), failed=unit_failed(why) if why else ""
+    )
+
+
+def dated(outlook: UnitOutlook | None, now: datetime) -> UnitOutlook | None:
+    """Set against the clock alone, and not against the others of its type."""
+    return None if outlook is None else compared(outlook, (), now)
+
+
+def nothing_known(serial: str) -> UnitOutlook:
+    """Of a unit whose sessions were judged before outlooks were kept."""
+    reason = "No outlook yet: it is worked out with the next session."
+    return UnitOutlook(serial, None, False, reason, None, None, None, None, None, ())
+
+
+def compared(outlook: UnitOutlook, populations: Iterable[Population], now: datetime) -> UnitOutlook:
+    """Set against the clock, and every rate against those of the same parameter in other units of the type."""
+    known = {(one.kind, one.parameter): one for one in populations if one.rates}
+    trends = tuple(_placed(trend, known.get((trend.kind, trend.parameter))) for trend in outlook.trends)
+    return replace(outlook, overdue=outlook.due is not None and outlook.due < now, trends=trends)
+
+
+def _placed(trend: ParameterTrend, among: Population | None) -> ParameterTrend:
+    """In tolerances a year, as rates of a type are compared."""
+    if among is None:
+        return trend
+    z = among.z(trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance)
+    return replace(trend, population_z=z)

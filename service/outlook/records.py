@@ -1,0 +1,247 @@
+"""When a unit must come back and why: drift, forecast and risk as frozen records. SI inside."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from typing import Literal
+
+from service.kit.answer import Hidden, answer
+
+ChangeKind = Literal["jump", "drift", "aging", "walk"]
+
+
+@dataclass(frozen=True)
+class Rate:
+    """The drift of one parameter of one sensor, in tolerances a year."""
+
+    unit_type: str
+    lot: str | None
+    serial: str
+    sensor: str
+    kind: str
+    parameter: str
+    value: float
+    sigma: float
+    significance: float = 1.0
+    """The chance of changes as evident as those that it was found from, where nothing happens."""
+    tolerance: float = 1.0
+    """SI; relative for scale."""
+
+
+@dataclass(frozen=True)
+class DueDate:
+    """When a unit must come back, and why then."""
+
+    unit: str
+    at: datetime
+    reason: str
+
+
+@dataclass(frozen=True)
+class FanPoint:
+    """Where a parameter's deviation will be at a date: quantiles, SI; relative for scale."""
+
+    at: datetime
+    low_90: float
+    low_50: float
+    middle: float
+    high_50: float
+    high_90: float
+
+
+class Action(StrEnum):
+    """What a unit needs next."""
+
+    CALIBRATE = "calibrate"
+    """At its due date."""
+    NOW = "act-now"
+    """It was found out of tolerance: adjust, repair or withdraw it; no date makes that better."""
+    REPEAT = "repeat"
+    """Its latest session could not decide, or hardly knows; measure again."""
+    MEASURE = "measure"
+    """No session has shown it yet, or none since its service."""
+
+
+class DueRule(StrEnum):
+    """The rule that decided when a unit comes back, or that it waits for no date."""
+
+    INTERVAL = "interval"
+    """The longest interval of its type, before its risk passes the level."""
+    NO_TREND = "no-trend"
+    """The same interval, for one session gives no estimate of the risk."""
+    RISK = "risk"
+    """The chance that any parameter is out of tolerance passes the level."""
+    MAY_BE_OUT = "may-be-out"
+    """That chance passed the level at the latest session already."""
+    UNDECIDED = "undecided"
+    """The latest session did not decide."""
+    UNFIT = "unfit"
+    """A session found it out of tolerance."""
+    SERVICED = "serviced"
+    """No session has shown it since its last service."""
+    UNMEASURED = "unmeasured"
+    """No session has shown it."""
+
+
+@answer
+@dataclass(frozen=True)
+class DueBasis:
+    """The rule that set the date, with its parts."""
+
+    rule: DueRule
+    """The rule that decided."""
+    at: datetime | None = None
+    """Of the session or the service that it starts from."""
+    interval_days: float | None = None
+    """Longest interval, where the rule is one."""
+    risk: float | None = None
+    """Chance of being out of tolerance at the date, where that set it."""
+    sensor: str | None = None
+    """The sensor that adds most to that chance."""
+    parameter: str | None = None
+    """Its parameter."""
+    because: Hidden[str] = ""
+    """Why the session did not decide, in a sentence, of `DueRule.UNDECIDED`."""
+
+
+@answer
+@dataclass(frozen=True)
+class FoundChange:
+    """A change of one parameter that chance does not explain."""
+
+    kind: ChangeKind
+    """`walk`: it moved at no steady rate."""
+    after: datetime
+    """The last session before it, or the first of all."""
+    before: datetime
+    """The first session that shows it."""
+    size: float
+    """SI or relative, of an axis its length; of a drift a year, of aging the first year's."""
+    sigma: float
+    """Standard uncertainty of it."""
+    p_value: float
+    """Over all kinds, sizes and times of change that were tried on the parameter."""
+
+
+@answer
+@dataclass(frozen=True)
+class TemperatureCoefficient:
+    """How a parameter follows the temperature of its sessions."""
+
+    value: float
+    """SI or relative per °C; of an axis its length."""
+    sigma: float
+    """Standard uncertainty of it."""
+    p_value: float
+    """Chance of one this far from zero when there is none."""
+    is_found: bool
+    """Whether the trend goes on without it."""
+
+
+@answer
+@dataclass(frozen=True)
+class ParameterTrend:
+    """One parameter of one sensor since the unit's last break."""
+
+    sensor: str
+    """Name of the sensor."""
+    parameter: str
+    """`scale`, `bias`, `quadratic`, `axis` or `misalignment`."""
+    rate_per_year: float
+    """Drift a year."""
+    rate_sigma: float
+    """Standard uncertainty of it, that of the random walk included."""
+    significance: float
+    """p-value: chance of changes as evident, of any kind and at any time, where nothing happens."""
+    step_dates: tuple[datetime, ...]
+    """Sessions that first showed a sudden change."""
+    level: float
+    """Deviation at the last session, all sessions considered."""
+    level_sigma: float
+    """Standard uncertainty of it."""
+    reach_50: datetime | None
+    """By then the tolerance is reached with 50 % probability."""
+    reach_90: datetime | None
+    """Before it the tolerance is reached with 10 % probability only."""
+    population_z: float | None
+    """The rate among those of the type's units, in their robust spread."""
+    kind: str = ""
+    """`accelerometer` or `gyroscope`."""
+    tolerance: float = 1.0
+    """T, SI; relative for scale."""
+    since: Hidden[datetime | None] = None
+    """Of the first session that the trend goes through: the reference, or the first after a sudden change."""
+    fan: Hidden[tuple[FanPoint, ...]] = ()
+    """From the last session on, a year ahead."""
+    changes: tuple[FoundChange, ...] = ()
+    """Changes that chance does not explain, most evident first."""
+    temperature: TemperatureCoefficient | None = None
+    """How it follows the sessions' temperature; null where they do not span any."""
+
+
+@answer
+@dataclass(frozen=True)
+class RiskPoint:
+    """The risk of waiting until a date."""
+
+    at: datetime
+    """Date, UTC."""
+    risk: float
+    """Chance that any parameter has reached its tolerance by then."""
+
+
+@answer
+@dataclass(frozen=True)
+class UnitOutlook:
+    """When a unit must be calibrated next, why, and what waiting costs."""
+
+    serial: str
+    """Serial number."""
+    due: datetime | None
+    """Next calibration: before the risk passes 5 %, never after the longest interval; null: at once."""
+    overdue: bool
+    """Whether that has passed."""
+    reason: str
+    """Why then, in one sentence, made from `basis`."""
+    sensor: str | None
+    """The sensor that reaches its tolerance first."""
+    parameter: str | None
+    """Its parameter."""
+    reach_50: datetime | None
+    """By then it is reached with 50 % probability."""
+    reach_90: datetime | None
+    """Before it it is reached with 10 % probability only."""
+    risk_at_due: float | None
+    """Chance that any parameter is out of tolerance by the due date."""
+    trends: tuple[ParameterTrend, ...]
+    """One a sensor and parameter."""
+    unit_type: str = ""
+    """Name of its type."""
+    lot: str | None = None
+    """Production lot, where it is recorded."""
+    risk: tuple[RiskPoint, ...] = ()
+    """The risk of waiting, from the latest session on."""
+    together: Hidden[tuple[str, ...]] = ()
+    """What all sensors did together at the latest calibration, in sentences."""
+    action: Action = Action.CALIBRATE
+    """What the unit needs next."""
+    learned_from: int = 0
+    """Histories of the type that the forecast rests on; 0 where it rests on units in general."""
+    failed: str = ""
+    """That it could not be worked out with the latest records, why and who must act; empty where it was."""
+    rests_on: Hidden[str] = ""
+    """Hash of those histories: another one means that the type has more to tell."""
+    basis: DueBasis | None = None
+    """The rule that set the date; null in an outlook that an earlier version made, until it is renewed."""
+
+    def risk_by(self, at: datetime) -> float | None:
+        """Chance that any parameter is out of tolerance by a date; None where there is no trend."""
+        if not self.risk:
+            return None
+        before = [point for point in self.risk if point.at <= at]
+        after = [point for point in self.risk if point.at > at]
+        if not before or not after:
+            return (before or after)[-1 if before else 0].risk
+        low, high = before[-1], after[0]
+        share = (at - low.at) / (high.at - low.at)
+        return low.risk + share * (high.risk - low.risk)

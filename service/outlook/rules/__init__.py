@@ -1,0 +1,1 @@
+"""How histories become forecasts, and units stand out of their type."""

@@ -1,0 +1,91 @@
+"""Step: judged changes since the last break → a history of each parameter, and what it tells of the unit's type."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+import numpy as np
+
+from estimator.health.pooled import Evidence
+from estimator.health.prognosis import Track, evidence
+from estimator.session import comparable
+from service.kit.names import YEAR
+from service.outlook.store import ChangeRow, ReferenceRow
+
+
+@dataclass(frozen=True)
+class TrackKey:
+    """Which parameter of which sensor."""
+
+    sensor: str
+    kind: str
+    parameter: str
+
+
+@dataclass(frozen=True, eq=False)
+class Histories:
+    """Every parameter of a unit since its last break."""
+
+    keys: tuple[TrackKey, ...]
+    tracks: tuple[Track, ...]
+    dates: tuple[tuple[datetime, ...], ...]
+    """Of every track's sessions, the reference included."""
+
+
+Group = tuple[list[ChangeRow], ReferenceRow]
+Point = tuple[datetime, list[float], list[float], float | None, float | None]
+"""Date, change, its uncertainty with its degrees of freedom, temperature."""
+
+
+def histories(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) -> Histories:
+    """In the order in which sensors and parameters were first judged."""
+    groups = _groups(changes, references)
+    dated = [_track(rows, reference) for rows, reference in groups.values()]
+    return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated))
+
+
+def told_of_type(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
+    """What each history tells, by kind of sensor and parameter."""
+    told: dict[tuple[str, str], list[Evidence]] = {}
+    for key, track in zip(found.keys, found.tracks, strict=True):
+        told.setdefault((key.kind, key.parameter), []).append(evidence(track))
+    return told
+
+
+def _groups(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) -> dict[TrackKey, Group]:
+    """The changes of each parameter from one reference; of a sensor with several references the latest programme's."""
+    first: dict[tuple[str, tuple[str, ...]], ReferenceRow] = {}
+    for reference in references:
+        first.setdefault((reference.block, comparable(reference.programme)), reference)
+    groups: dict[TrackKey, Group] = {}
+    for row in changes:
+        own = first.get((row.block, comparable(row.programme)))
+        if own is not None:
+            key = TrackKey(row.sensor, row.kind, row.parameter)
+            rows, known = groups.get(key, ([], own))
+            groups[key] = ([*rows, row], known) if known is own else ([row], own)
+    return groups
+
+
+def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, tuple[datetime, ...]]:
+    """The sessions of a parameter with its reference among them, in order of time.
+
+    A change's degrees of freedom are those of both its sessions; the reference counts with the fewest.
+    """
+    fewest = min((row.dof for row in rows if row.dof is not None), default=None)
+    origin: Point = (reference.at, [0.0] * len(rows[-1].change), rows[-1].origin, fewest, reference.temperature)
+    points = sorted([origin, *((row.at, row.change, row.own, row.dof, row.temperature) for row in rows)], key=_date)
+    start = points[0][0]
+    track = Track(
+        time=np.array([(at - start) / YEAR for at, *_ in points]),
+        change=np.array([change for _, change, *_ in points]),
+        sigma=np.array([sigma for _, _, sigma, *_ in points]),
+        tolerance=rows[-1].tolerance,
+        dof=np.array([np.inf if dof is None else dof for *_, dof, _ in points]),
+        temperature=np.array([np.nan if warm is None else warm for *_, warm in points]),
+    )
+    return track, tuple(at for at, *_ in points)
+
+
+def _date(point: Point) -> datetime:
+    return point[0]

@@ -1,0 +1,72 @@
+"""How the units of a type drift, parameter by parameter: the centre and the spread of their rates, and who is far out.
+
+A type of thousands of units is looked at once for many pages: what they read is a few numbers and the furthest few.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from estimator.health.population import group_standing, spread
+from service.outlook.populations import TINY, Placed, Population
+from service.outlook.records import Rate
+
+FEWEST_UNITS = 3
+"""Units of a type that make a population."""
+WORTH = 0.1
+"""Tolerances a year: slower drifts are nobody's concern, however unlike the others they are."""
+SIGNIFICANT = 0.001
+"""The chance of such a rate without a drift, beyond which it is no matter for paper."""
+KEPT = 8
+"""The furthest of each population that are kept: more than any page or paper names of all of them."""
+Group = list[Rate]
+
+
+def populations(rates: Sequence[Rate]) -> tuple[Population, ...]:
+    """Of the rates of one type."""
+    groups: dict[tuple[str, str], Group] = {}
+    for rate in rates:
+        groups.setdefault((rate.kind, rate.parameter), []).append(rate)
+    found = (_population(*place, own) for place, own in sorted(groups.items()))
+    return tuple(one for one in found if one.rates or one.lots)
+
+
+def _population(kind: str, parameter: str, own: Group) -> Population:
+    values, sigmas = np.array([(rate.value, rate.sigma) for rate in own]).T
+    centre, wide = spread(values, sigmas)
+    is_one = len({rate.serial for rate in own}) >= FEWEST_UNITS
+    z = (values - centre) / np.sqrt(wide**2 + sigmas**2 + TINY)
+    placed = [_placed(own[i], float(z[i])) for i in np.argsort(-np.abs(z), kind="stable")] if is_one else []
+    lots = sorted(_lots(own), key=lambda lot: -abs(lot[1]))
+    return Population(
+        unit_type=own[0].unit_type,
+        kind=kind,
+        parameter=parameter,
+        centre=centre,
+        spread=wide,
+        rates=len(placed),
+        lots=len(lots),
+        fast=_first(one for one, _ in placed if abs(one.value) > WORTH),
+        evident=_first(one for one, chance in placed if chance < SIGNIFICANT),
+        far_lots=tuple(lots[:KEPT]),
+    )
+
+
+def _placed(rate: Rate, z: float) -> tuple[Placed, float]:
+    """With the chance of such a rate without a drift."""
+    return Placed(rate.serial, rate.sensor, rate.value, rate.sigma, z, rate.tolerance), rate.significance
+
+
+def _first(found: Iterator[Placed]) -> tuple[Placed, ...]:
+    return tuple(one for one, _ in zip(found, range(KEPT), strict=False))
+
+
+def _lots(own: Group) -> list[tuple[str, float]]:
+    """Lots of several units and their distances."""
+    if not any(rate.lot for rate in own):
+        return []
+    units: dict[str, set[str]] = {}
+    for rate in own:
+        units.setdefault(rate.lot or "", set()).add(rate.serial)
+    z = group_standing([(rate.value, rate.sigma) for rate in own], [rate.lot or "" for rate in own])
+    return [(lot, far) for lot, far in z.items() if len(units[lot]) > 1]

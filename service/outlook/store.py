@@ -1,0 +1,206 @@
+"""Outlooks, one a unit, the changes that they are made of, and those still to be worked out."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from sqlalchemy import ColumnElement, Select, delete, func, or_, select
+
+from estimator.health.pooled import Evidence
+from estimator.session import IN_SERVICE
+from service.outlook.document import outlook_from_dicts, outlook_to_dicts, packed
+from service.outlook.records import DueDate, ParameterTrend, Rate, UnitOutlook
+from service.outlook.tables import HistoryRow, OutlookRow
+from service.sessions.states_store import IS_ACCEPTED
+from service.sessions.tables import DecisionRow, SessionRow
+from service.storage.queries import Queries
+from service.types.tables import UnitTypeRow
+from service.types.telling_store import tells_of_type
+from service.units.tables import UnitRow
+
+MOST_UNITS = 60
+"""Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
+
+MOVES_DATES = or_(~SessionRow.is_check, SessionRow.is_reference)
+"""A check moves no date; one that is a reference counts, for all changes are counted from it."""
+
+
+@dataclass(frozen=True)
+class ChangeRow:
+    """One parameter of one sensor at one session, as it was judged."""
+
+    at: datetime
+    block: str
+    programme: str
+    sensor: str
+    kind: str
+    parameter: str
+    tolerance: float
+    change: list[float]
+    own: list[float]
+    origin: list[float]
+    dof: float | None
+    """Degrees of freedom of the uncertainty; None where all noise is known."""
+    temperature: float | None
+    """°C"""
+
+
+@dataclass(frozen=True)
+class ReferenceRow:
+    """A session that others are judged against."""
+
+    at: datetime
+    block: str
+    programme: str
+    temperature: float | None
+    """°C"""
+
+
+class Outlooks(Queries):
+    """When units must come back."""
+
+    def changes(self, unit: int, since: datetime | None) -> tuple[ChangeRow, ...]:
+        """Every judged change of a unit since a time, oldest first; not those of a recording in service or a check."""
+        query = (
+            select(
+                SessionRow.started_at, SessionRow.block, SessionRow.programme, DecisionRow.sensor, DecisionRow.kind,
+                DecisionRow.parameter, DecisionRow.tolerance, DecisionRow.change, DecisionRow.change_own,
+                DecisionRow.change_origin, DecisionRow.dof, SessionRow.temperature,
+            )
+            .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
+            .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
+        )  # fmt: skip
+        order = (SessionRow.started_at, SessionRow.id, DecisionRow.position)
+        query = query.where(*_within(unit, since), MOVES_DATES).order_by(*order)
+        found = self._session.execute(query)
+        return tuple(ChangeRow(*row) for row in found)
+
+    def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
+        """The sessions since a time that others are judged against, oldest first."""
+        columns = (SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature)
+        query = select(*columns).where(SessionRow.is_reference)
+        order = (SessionRow.started_at, SessionRow.id)
+        found = self._session.execute(query.where(*_within(unit, since)).order_by(*order))
+        return tuple(ReferenceRow(*row) for row in found)
+
+    def last_calibration(self, unit: int) -> tuple[str, datetime] | None:
+        """The session that last measured the unit, recordings in service and checks apart, and when."""
+        newest = _newest(unit).where(SessionRow.programme != IN_SERVICE, MOVES_DATES)
+        found = self._session.execute(newest).one_or_none()
+        return None if found is None else (found[0], found[1])
+
+    def last_session(self, unit: int) -> str | None:
+        """The unit's latest session, recordings in service too."""
+        found = self._session.execute(_newest(unit)).one_or_none()
+        return None if found is None else found[0]
+
+    def put(self, unit: int, outlook: UnitOutlook) -> None:
+        """Rewrites a unit's outlook."""
+        document, drawn = outlook_to_dicts(outlook)
+        read = {"due": outlook.due, "reason": outlook.reason, "rates": [_rate(trend) for trend in outlook.trends]}
+        self._session.merge(OutlookRow(unit_id=unit, document=document, drawn=drawn, **read))
+        self._session.flush()
+
+    def drop(self, unit: int) -> None:
+        """Of a unit without an accepted session there is no outlook."""
+        self._session.execute(delete(OutlookRow).where(OutlookRow.unit_id == unit))
+        self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
+
+    def put_histories(self, unit: int, told: Mapping[tuple[str, str], Sequence[Evidence]]) -> None:
+        """Rewrites what a unit's histories tell of its type, by kind of sensor and parameter."""
+        self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
+        self._session.add_all(
+            HistoryRow(unit_id=unit, kind=kind, parameter=parameter, evidence=packed(histories))
+            for (kind, parameter), histories in told.items()
+        )
+        self._session.flush()
+
+    def histories(self, unit: int, kind: str, parameter: str) -> tuple[bytes, ...]:
+        """Of one parameter, of the units of a unit's type, by serial number; of so many units at most."""
+        type_id = select(UnitRow.unit_type_id).where(UnitRow.id == unit).scalar_subquery()
+        query = (
+            select(HistoryRow.evidence)
+            .join(UnitRow, UnitRow.id == HistoryRow.unit_id)
+            .where(UnitRow.unit_type_id == type_id, HistoryRow.kind == kind, HistoryRow.parameter == parameter)
+        )
+        return tuple(self._session.scalars(query.order_by(UnitRow.serial).limit(MOST_UNITS)))
+
+    def places(self, unit: int) -> tuple[tuple[str, str], ...]:
+        """Kinds of sensor and parameters that a unit has histories of."""
+        query = select(HistoryRow.kind, HistoryRow.parameter).where(HistoryRow.unit_id == unit)
+        return tuple((kind, parameter) for kind, parameter in self._session.execute(query))
+
+    def rests_on(self, unit: int) -> str:
+        """What a unit's outlook was made from of its type; empty where there is none."""
+        row = self._session.get(OutlookRow, unit)
+        return "" if row is None else str(row.document["rests_on"])
+
+    def of_unit(self, serial: str) -> UnitOutlook | None:
+        """The outlook of one unit; None before its first session is judged."""
+        query = _outlooks().where(UnitRow.serial == serial)
+        row = self._session.execute(query).one_or_none()
+        return None if row is None else outlook_of(*row)
+
+    def rates(self, unit_type: int) -> tuple[Rate, ...]:
+        """Every drift of a type's units, in one query."""
+        query = (
+            select(UnitTypeRow.name, UnitRow.lot, UnitRow.serial, OutlookRow.rates)
+            .join(UnitRow, UnitRow.id == OutlookRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.id == unit_type, tells_of_type(unit_type))
+            .order_by(UnitRow.serial)
+        )
+        return tuple(
+            Rate(of_type, lot, serial, *rate)
+            for of_type, lot, serial, rates in self._session.execute(query)
+            for rate in rates
+        )
+
+    def overdue(self, now: datetime) -> int:
+        """How many units should have been calibrated by now."""
+        return self._session.scalar(select(func.count()).select_from(OutlookRow).where(OutlookRow.due < now)) or 0
+
+    def overdue_units(self, now: datetime) -> tuple[str, ...]:
+        """Serial numbers of the units that should have been calibrated by now."""
+        query = select(UnitRow.serial).join(OutlookRow, OutlookRow.unit_id == UnitRow.id).where(OutlookRow.due < now)
+        return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
+
+    def due(self, most: int, since: datetime | None = None) -> tuple[DueDate, ...]:
+        """When units must come back and why, the first to come first; those that are overdue before all."""
+        query = select(UnitRow.serial, OutlookRow.due, OutlookRow.reason)
+        query = query.join(UnitRow, UnitRow.id == OutlookRow.unit_id).where(OutlookRow.due.is_not(None))
+        if since is not None:
+            query = query.where(OutlookRow.due >= since)
+        rows = self._session.execute(query.order_by(OutlookRow.due, OutlookRow.unit_id).limit(most))
+        return tuple(DueDate(unit, at, reason) for unit, at, reason in rows if at is not None)
+
+
+def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
+    """Sessions of a unit from a time on."""
+    own = [SessionRow.unit_id == unit, IS_ACCEPTED]
+    return own if since is None else [*own, SessionRow.started_at >= since]
+
+
+def _newest(unit: int) -> Select[str, datetime]:
+    """The latest session of a unit, and when."""
+    own = select(SessionRow.id, SessionRow.started_at).where(*_within(unit, None))
+    return own.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(1)
+
+
+def _outlooks() -> Select[OutlookRow, str | None, str]:
+    return (
+        select(OutlookRow, UnitRow.lot, UnitTypeRow.name)
+        .join(UnitRow, UnitRow.id == OutlookRow.unit_id)
+        .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+    )
+
+
+def _rate(trend: ParameterTrend) -> list[str | float]:
+    """As the fields of `Rate` after those of the unit, in tolerances a year."""
+    value, sigma = trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance
+    return [trend.sensor, trend.kind, trend.parameter, value, sigma, trend.significance, trend.tolerance]
+
+
+def outlook_of(row: OutlookRow, lot: str | None, unit_type: str) -> UnitOutlook:
+    """A stored outlook, with what only a unit's page draws."""
+    return replace(outlook_from_dicts(row.document, row.drawn), lot=lot, unit_type=unit_type)

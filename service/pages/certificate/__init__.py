@@ -1,0 +1,1 @@
+"""Certificates, corrections and labels: the page, and the same over HTTP."""

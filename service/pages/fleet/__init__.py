@@ -1,0 +1,1 @@
+"""The fleet page, its list and its reports."""

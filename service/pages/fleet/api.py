@@ -1,0 +1,65 @@
+"""The fleet as a whole."""
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.fleet.condition import FleetCondition
+from service.fleet.records import FleetQuery
+from service.fleet.store import Fleet
+from service.languages.language import asked
+from service.pages.fleet.columns import fleet_table
+from service.pages.unit.schemas import UnitPage, said_unit
+from service.papers.fleet.paper import fleet_pdf
+from service.papers.fleet.report import fleet_report
+from service.papers.fleet.workbook import fleet_xlsx
+from service.web.dependencies import Now, Reading
+from service.web.fields import Page, Window
+from service.web.files import BINARY, BY_HEADER, PDF, TABLES, XLSX, as_file, as_table
+from service.web.negotiated import FORMS, wanted_form
+from service.web.problem_document import errors
+from service.work.dependencies import ReadingFleet
+
+router = APIRouter(prefix="/fleet", tags=["fleet"])
+FORM = (
+    "Form of the answer; a workbook and a paper are of the whole fleet, whatever the page. Without it the header "
+    "`Accept` chooses, else it is JSON."
+)
+REPORTS = {**FORMS, XLSX: "xlsx", PDF: "pdf"}
+"""Tables, and what is of the whole fleet."""
+
+
+@router.get("", responses=errors())
+def read_fleet(store: Reading) -> FleetCondition:
+    """How many units are in which condition."""
+    return Fleet(store).condition()
+
+
+@router.get(
+    "/report",
+    responses={200: {"content": {**TABLES, XLSX: BINARY, PDF: BINARY}}, **errors(422)},
+    response_model=UnitPage,
+)
+def report_fleet(
+    request: Request,
+    store: ReadingFleet,
+    now: Now,
+    format: Annotated[
+        Literal["json", "csv", "parquet", "arrow", "xlsx", "pdf"] | None,
+        Query(description=FORM),
+    ] = None,
+    page: Page = 1,
+    limit: Annotated[int, Query(ge=1, le=10_000, description="How many units on a page.")] = 10_000,
+) -> Response:
+    """The condition of every unit, worst first."""
+    form = wanted_form(request, format, REPORTS)
+    if form == "xlsx":
+        return as_file(fleet_xlsx(store, fleet_report(store, now), asked(request.scope)), XLSX, "fleet.xlsx")
+    if form == "pdf":
+        return as_file(fleet_pdf(store, fleet_report(store, now), asked(request.scope)), PDF, "fleet.pdf")
+    window = Window(page, limit)
+    found = Fleet(store).units(FleetQuery(offset=window.offset, limit=limit))
+    if form != "json":
+        return as_table(fleet_table(found), form, "fleet")
+    answer = UnitPage(units=list(map(said_unit, found)), **window.place(len(found)))
+    return Response(answer.model_dump_json(), media_type="application/json", headers=BY_HEADER)

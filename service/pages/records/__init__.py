@@ -1,0 +1,1 @@
+"""Records taken back, accepted, superseded, from the page and over HTTP."""

@@ -1,0 +1,283 @@
+"""The page of one session: the verdict and why, the parameters behind it, and how model and readings agree."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from estimator.parity import ParityResult
+from estimator.reading.sensors import PULSES
+from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.session import CALIBRATIONS
+from service.diagnosis.sections import DiagnosisLine, diagnosis_line
+from service.diagnosis.words.causes import cause_on
+from service.judging.parity_words import agreement_in_words
+from service.judging.sections import ParityView, parity_view
+from service.kit.coverage import coverage_in_words
+from service.kit.measures import (
+    HARD,
+    THIN,
+    Measure,
+    decimals,
+    deviation_measure,
+    in_measure,
+    limit,
+    measured,
+    number,
+    signed,
+    size_in_words,
+    value_measure,
+)
+from service.kit.names import method_name
+from service.models.records import ModelRevision
+from service.pages.unit.remarks import Remarks
+from service.papers.records import Traceability
+from service.papers.session_report import SessionReport
+from service.sessions.charts import ChartSet
+from service.sessions.charts.noise import noise_of
+from service.sessions.charts.residuals import residual_charts
+from service.sessions.decision import Decision, Verdict, nominal_factor_of
+from service.sessions.doubt import Remedies, Reservations
+from service.sessions.records import ALL_PARAMETERS, DiagnosisSummary, StoredSession
+from service.sessions.residual_table import ResidualTable, residual_table
+from service.sessions.states import RecordState
+from service.sessions.words.conditions import Condition, condition_of
+from service.sessions.words.fit import FitWords, bands_in_words, fit_in_words
+from service.sessions.words.known import combination_in_words
+from service.sessions.words.motion import MotionLine, motions_in_words
+from service.sessions.words.states import MEANINGS, STATES, state_in_words
+
+NOTHING_KNOWN = Remedies()
+"""Of a session that counts."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One parameter of one sensor."""
+
+    parameter: str
+    observable: bool
+    value: str
+    deviation: str
+    tolerance: str
+    probability: str
+    condition: Condition | None
+    """None where there is no decision."""
+
+
+@dataclass(frozen=True)
+class SensorRow:
+    """One sensor."""
+
+    name: str
+    kind: str
+    cells: tuple[Cell, ...]
+    known: tuple[str, ...]
+    """What is known of parameters that the session cannot tell apart."""
+
+
+@dataclass(frozen=True)
+class SessionPage:
+    """Everything a session's page shows."""
+
+    session: StoredSession
+    condition: Condition
+    reservations: Reservations
+    parameters: tuple[str, ...]
+    """Of every row's cells, in their order."""
+    sensors: tuple[SensorRow, ...]
+    fit: FitWords
+    parity: ParityView | None
+    """Of a recording in service only."""
+    charts: tuple[ChartSet, ...]
+    bands: str
+    """What is drawn of the noise."""
+    residuals: ResidualTable
+    method: str
+    rule: str
+    coverage: str
+    size: str
+    diagnosis: DiagnosisLine
+    gives_correction: bool
+    """Whether its programme calibrates every sensor of the block."""
+    motions: tuple[MotionLine, ...]
+    """What all sensors did together, in words."""
+    state: str
+    """What became of it, said before everything else; empty where it counts."""
+    states: tuple[str, ...]
+    """Its life, newest first."""
+    remedies: Remedies
+    """What would put it right, where it is questioned."""
+    traceability: Traceability | None
+    """What its numbers hang on."""
+    said: Remarks | None
+    """What people say of it; None where the page is made without a service."""
+    follow: int | None
+    """Seconds after which the page looks again whether it is diagnosed; None where it is."""
+    causes: tuple[str, ...] = ()
+    """In the model that its calibration in force was made under."""
+    earlier: tuple[int, ...] = ()
+    """Model revisions that it was calibrated under before."""
+
+
+def session_page(
+    report: SessionReport,
+    diagnosis: DiagnosisSummary | None = None,
+    traceability: Traceability | None = None,
+    *,
+    remedies: Remedies = NOTHING_KNOWN,
+    failed: str = "",
+    follow: int | None = None,
+    model: Sequence[ModelRevision] = (),
+    computed: Sequence[int] = (),
+    said: Remarks | None = None,
+) -> SessionPage:
+    """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
+    calibration, decisions = report.calibration, report.decisions
+    units = reading_units(calibration)
+    judged = {(d.sensor, d.parameter): d for d in decisions}
+    parameters = parameters_of(calibration)
+    coverage = nominal_factor_of(decisions)
+    noise = noise_of(calibration.residuals, calibration)
+    parity = None if calibration.parity is None else ParityResult.from_dict(calibration.parity)
+    return SessionPage(
+        session=report.session,
+        condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
+        reservations=report.session.reservations,
+        parameters=parameters,
+        sensors=tuple(_sensor(s, parameters, judged, (coverage, units.get(s.name, ""))) for s in calibration.sensors),
+        fit=fit_in_words(calibration) if parity is None else agreement_in_words(parity),
+        parity=None if parity is None else parity_view(parity),
+        charts=residual_charts(calibration),
+        bands=bands_in_words(calibration, noise.times),
+        residuals=residual_table(calibration),
+        method=method_name(calibration.method),
+        rule=decisions[0].rule if decisions else "",
+        coverage=coverage_in_words(calibration, coverage),
+        size=size_in_words(report.session.size),
+        diagnosis=diagnosis_line(diagnosis, failed),
+        gives_correction=report.session.programme in CALIBRATIONS,
+        motions=motions_in_words(report.motions, coverage),
+        state=_state(report),
+        states=tuple(state_in_words(line) for line in reversed(report.states)),
+        remedies=remedies,
+        traceability=traceability,
+        said=said,
+        follow=follow,
+        causes=tuple(cause_on(one.cause, one.sensors) for one in model),
+        earlier=tuple(revision for revision in computed if revision != report.session.revision),
+    )
+
+
+def _state(report: SessionReport) -> str:
+    """Why a session does not count."""
+    state = report.session.state
+    if state is RecordState.ACCEPTED:
+        return ""
+    said = f"{state_in_words(report.states[-1])}." if report.states else f"{STATES[state]}."
+    return f"{said.replace('..', '.')} {MEANINGS[state]}"
+
+
+def parameters_of(calibration: Calibration) -> tuple[str, ...]:
+    """The parameters that a session speaks of."""
+    return tuple(p for p in ALL_PARAMETERS if any(p in sensor.observable for sensor in calibration.sensors))
+
+
+def _sensor(
+    sensor: SensorCalibration,
+    parameters: tuple[str, ...],
+    judged: Mapping[tuple[str, str], Decision],
+    way: tuple[float, str],
+) -> SensorRow:
+    """``way``: coverage factor and reading unit."""
+    return SensorRow(
+        name=sensor.name,
+        kind=sensor.kind,
+        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), way) for p in parameters),
+        known=tuple(combination_in_words(k, sensor.kind) for k in sensor.known),
+    )
+
+
+def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, way: tuple[float, str]) -> Cell:
+    return Cell(
+        parameter=parameter,
+        observable=sensor.observable.get(parameter, False),
+        value=value_in_words(sensor, parameter, *way),
+        deviation=deviation_in_words(decision),
+        tolerance=tolerance_in_words(decision),
+        probability=_probability(decision),
+        condition=None if decision is None else condition_of(decision.verdict),
+    )
+
+
+def reading_units(calibration: Calibration) -> dict[str, str]:
+    """What each sensor is read in, from the unit of its scale factor, ``V/(m/s²)``; pulses are counted over time."""
+    units = dict(zip(calibration.names, calibration.units, strict=True))
+    found = {s.name: units.get(f"{s.name}.scale", "").partition("/(")[::2] for s in calibration.sensors}
+    return {name: f"{unit}/s" if unit.lower() in PULSES else unit for name, (unit, per) in found.items() if per}
+
+
+def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float, reading_unit: str) -> str:
+    """A parameter ± U, or that the session does not tell it; empty where it does not speak of it."""
+    if not sensor.observable.get(parameter, False):
+        return "not observable" if parameter in sensor.observable else ""
+    if parameter == "axis":
+        return _axis(sensor, coverage)
+    estimate: Estimate = getattr(sensor, parameter)
+    spread = None if estimate.sigma is None else estimate.factor(coverage) * estimate.sigma
+    if parameter == "scale":
+        return _scale(estimate.value, spread, sensor.kind, reading_unit)
+    largest = max(abs(estimate.value or 0.0), spread or 0.0)
+    return measured(estimate.value, spread, value_measure(sensor.kind, parameter, largest))
+
+
+def _scale(value: float | None, spread: float | None, kind: str, reading_unit: str) -> str:
+    """A scale factor is read with its relative uncertainty: ``1.1792038 V per g ± 4.0 ppm``."""
+    plain = value_measure(kind, "scale", 0.0)
+    measure = Measure(f"{reading_unit} {plain.label}".strip(), plain.factor)
+    if value is None or not spread or not value:
+        return measured(value, None, measure)
+    relative = deviation_measure(kind, "scale", spread / abs(value))
+    share = spread / abs(value) * relative.factor
+    shown = number(in_measure(value, measure), decimals(in_measure(spread, measure)))
+    return f"{shown} {measure.label} ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
+
+
+def _axis(sensor: SensorCalibration, coverage: float) -> str:
+    if sensor.axis is None:
+        return "not observable"
+    vector = ", ".join(number(float(x), 6) for x in sensor.axis)
+    if sensor.axis_sigma is None:
+        return f"({vector})"
+    spread = sensor.factor("axis", coverage) * sensor.axis_sigma
+    measure = deviation_measure(sensor.kind, "axis", spread)
+    share = spread * measure.factor
+    return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{measure.label}"
+
+
+def decision_measure(decision: Decision) -> Measure:
+    """That deviation, uncertainty and tolerance are all read in."""
+    sizes = (decision.deviation, decision.expanded, decision.tolerance)
+    return deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
+
+
+def deviation_in_words(decision: Decision | None) -> str:
+    """The change ± U."""
+    if decision is None or decision.deviation is None:
+        return ""
+    write = measured if decision.parameter == "axis" else signed
+    return write(decision.deviation, decision.expanded, decision_measure(decision))
+
+
+def tolerance_in_words(decision: Decision | None) -> str:
+    """``±40 µg``."""
+    if decision is None:
+        return ""
+    return limit(decision.tolerance, decision_measure(decision), decision.parameter == "axis")
+
+
+def _probability(decision: Decision | None) -> str:
+    """Worth a word only where it is in doubt."""
+    if decision is None or decision.probability_out is None or decision.verdict in (Verdict.PASS, Verdict.FAIL):
+        return ""
+    percent = 100 * decision.probability_out
+    words = "more than 99" if percent > 99 else "less than 1" if percent < 1 else f"{percent:.0f}"
+    return f"{words} % chance to be out"

@@ -1,0 +1,65 @@
+"""Stands over HTTP: their own health, and their certificates."""
+
+from fastapi import APIRouter
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.stands.changes import record_stand_certificate
+from service.stands.conditions import stand_conditions
+from service.stands.paper_records import StandCertificate
+from service.stands.records import StandCondition
+from service.stands.store import StandCertificates
+from service.web.dependencies import Now, Reading
+from service.web.fields import Day, Said, StandName
+from service.web.problem_document import errors
+from service.work.dependencies import ReadingFleet
+
+
+class StandList(BaseModel):
+    """All stands, by name."""
+
+    stands: tuple[StandCondition, ...] = Field(description="The stands.")
+
+
+class NewStandCertificate(BaseModel):
+    """The certificate of a stand's own calibration."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    number: Said = Field(description="As printed on it; one of a number that is there takes its place.")
+    issued_by: Said = Field(description="The laboratory that calibrated the stand.")
+    issued_on: Day = Field(description="From this day on it speaks for the stand.", examples=["2026-01-10"])
+    valid_until: Day = Field(description="The last day on which it holds.", examples=["2027-01-10"])
+    by: Said = Field(description="Your name.")
+
+
+class StandCertificateList(BaseModel):
+    """The certificates of one stand, oldest first."""
+
+    certificates: tuple[StandCertificate, ...] = Field(description="As they were last recorded.")
+
+
+router = APIRouter(prefix="/stands", tags=["stands"])
+
+
+@router.get("", responses=errors())
+def list_stands(store: ReadingFleet) -> StandList:
+    """Every stand: whether it shifts all units that are measured on it, since when, by how much."""
+    return StandList(stands=stand_conditions(store))
+
+
+@router.get("/{name:path}/certificates", responses=errors(404, 422))
+def list_stand_certificates(name: StandName, store: Reading) -> StandCertificateList:
+    """The certificates of a stand's own calibration, oldest first; sessions are traceable while one holds."""
+    found = StandCertificates(store).known(name)
+    return StandCertificateList(certificates=found)
+
+
+@router.put("/{name:path}/certificate", responses=errors(400, 404, 422))
+def put_stand_certificate(
+    name: StandName, new: NewStandCertificate, storage: StorageOf, now: Now, person: PersonOf
+) -> StandCertificate:
+    """Record the certificate of a stand's own calibration; a session is judged by the one of its day."""
+    given = StandCertificate(name, new.number, new.issued_by, new.issued_on, new.valid_until)
+    return record_stand_certificate(storage, given, now, who=person.signs(new.by))

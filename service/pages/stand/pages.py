@@ -1,0 +1,199 @@
+"""The pages of stands: may each be used today, and what its units show of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date, datetime
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Form, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from service.groups.records import Level
+from service.kit.names import day_of
+from service.pages.flags import FlagCard, flag_cards
+from service.pages.fleet.pages import FleetRow, flags_in_words, fleet_row
+from service.pages.group.sections import GroupSection, group_section
+from service.pages.model.sections import AcceptedCause, accepted_causes
+from service.pages.stand.report import MOST, StandLine, StandReport, every_stand, stand_report
+from service.people.dependencies import StorageOf
+from service.people.forms import SAYS_SOMETHING, SEE_OTHER, By, Key
+from service.sessions.lines import SessionLine, session_lines
+from service.stands.changes import record_stand_certificate
+from service.stands.paper_records import StandCertificate
+from service.stands.records import StandCondition, StandEvidence, StandUse
+from service.stands.words import (
+    WORDS,
+    StandWord,
+    certificate_in_words,
+    condition_in_words,
+    held,
+    kind_of_shift,
+    scatter_of,
+    size_of_shift,
+    stand_word,
+)
+from service.web.dependencies import Now
+from service.web.render import render
+from service.work.dependencies import ReadingFleet
+
+
+@dataclass(frozen=True)
+class StandRow:
+    """One stand in the list."""
+
+    use: StandUse
+    word: StandWord
+    condition: str
+    certificate: str
+    """Until when sessions are traceable, as a cell of a table."""
+    flags: str
+
+
+@dataclass(frozen=True)
+class StandsPage:
+    """Everything the list of stands shows."""
+
+    rows: tuple[StandRow, ...]
+    """What needs a hand first, then by name."""
+
+
+@dataclass(frozen=True)
+class ShiftRow:
+    """What the units say of one quantity of the stand: a shift, or that there is none."""
+
+    what: str
+    size: str
+    when: str
+    units: str
+    word: str
+    tone: str
+
+
+@dataclass(frozen=True)
+class StandPage:
+    """Everything the page of one stand shows; of what is listed, one more would be on a page of its own."""
+
+    use: StandUse
+    word: StandWord
+    reasons: tuple[str, ...]
+    certificates: tuple[tuple[str, str, str, str], ...]
+    """Number, issued by, issued on, valid until; the latest first."""
+    flags: tuple[FlagCard, ...]
+    shifts: tuple[ShiftRow, ...]
+    seating: tuple[tuple[str, str], ...]
+    """Quantity, and its scatter from one mounting to the next."""
+    unreadable: tuple[str, ...]
+    """Sessions that tell nothing of the stand, because what is stored of them cannot be used."""
+    units: tuple[FleetRow, ...]
+    sessions: tuple[SessionLine, ...]
+    causes: tuple[AcceptedCause, ...]
+    group: GroupSection | None
+    more: tuple[str, ...]
+    """Of ``flags``, ``units`` and ``sessions``, those of which not all are listed."""
+
+
+def stands_page(stands: Sequence[StandLine], now: datetime) -> StandsPage:
+    """The list of stands."""
+    rows = [_row(stand, now) for stand in stands]
+    return StandsPage(tuple(sorted(rows, key=lambda row: (WORDS.index(row.word), row.use.stand))))
+
+
+def stand_page(report: StandReport, now: datetime, group: GroupSection | None = None) -> StandPage:
+    """The page of one stand."""
+    line, condition = report.line, report.line.condition
+    certificate = certificate_in_words(line.certificates, now.date())
+    listed = {"flags": report.flags, "units": report.units, "sessions": report.sessions}
+    return StandPage(
+        use=line.use,
+        word=_word(line, now),
+        reasons=(certificate, condition_in_words(condition)),
+        certificates=tuple(map(_certificate, reversed(line.certificates))),
+        flags=flag_cards(report.flags[:MOST]),
+        shifts=() if condition is None else _shifts(condition),
+        seating=() if condition is None else _seating(condition),
+        unreadable=() if condition is None else condition.unreadable,
+        units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
+        sessions=session_lines(report.sessions[:MOST]),
+        causes=accepted_causes(report.models),
+        group=group,
+        more=tuple(name for name, found in listed.items() if len(found) > MOST),
+    )
+
+
+def _row(line: StandLine, now: datetime) -> StandRow:
+    latest = held(line.certificates, now.date())
+    until = "none on record" if latest is None else f"until {day_of(latest.valid_until)}"
+    return StandRow(line.use, _word(line, now), condition_in_words(line.condition), until, flags_in_words(line.flags))
+
+
+def _word(line: StandLine, now: datetime) -> StandWord:
+    return stand_word(line.condition, line.certificates, line.flags, now.date())
+
+
+def _certificate(own: StandCertificate) -> tuple[str, str, str, str]:
+    return own.number, own.issued_by, day_of(own.issued_on), day_of(own.valid_until)
+
+
+def _shifts(condition: StandCondition) -> tuple[ShiftRow, ...]:
+    """Shifts, newest first; then the most evident of every quantity that has none."""
+    shifted = {(shift.kind, shift.quantity) for shift in condition.shifts}
+    steady = [one for one in condition.evidence if (one.kind, one.quantity) not in shifted]
+    return (*(_shift(one) for one in reversed(condition.shifts)), *(_steady(one) for one in steady))
+
+
+def _shift(one: StandEvidence) -> ShiftRow:
+    lasts = one.until is None
+    when = f"since {day_of(one.since)}" if one.until is None else f"{day_of(one.since)} to before {day_of(one.until)}"
+    word, tone = ("shifted", "conditional-fail") if lasts else ("back where it was", "conditional-pass")
+    return _shift_row(one, when, word, tone)
+
+
+def _steady(one: StandEvidence) -> ShiftRow:
+    return _shift_row(one, f"most evident since {day_of(one.since)}", "steady: no more than chance", "pass")
+
+
+def _shift_row(one: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
+    units = f"{one.agreeing} of {one.units}"
+    return ShiftRow(kind_of_shift(one.kind, one.quantity), size_of_shift(one), when, units, word, tone)
+
+
+def _seating(condition: StandCondition) -> tuple[tuple[str, str], ...]:
+    return tuple((kind_of_shift(own.kind, own.quantity), scatter_of(own)) for own in condition.seating)
+
+
+router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+Said = Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)]
+Day = Annotated[date, Form()]
+
+
+@router.get("/stands")
+def show_stands(request: Request, store: ReadingFleet, now: Now) -> HTMLResponse:
+    """Every stand, what needs a hand first."""
+    return render(request, "stands.html", stands_page(every_stand(store), now))
+
+
+@router.get("/stands/{name:path}")
+def show_stand(request: Request, store: ReadingFleet, now: Now, name: Key) -> HTMLResponse:
+    """One stand: may it be used today, and what was measured on it."""
+    return render(
+        request, "stand.html", stand_page(stand_report(store, name), now, group_section(store, Level.STAND, name))
+    )
+
+
+@router.post("/stands/{name:path}/certificates")
+def record_certificate(
+    name: Key,
+    number: Said,
+    issued_by: Said,
+    issued_on: Day,
+    valid_until: Day,
+    *,
+    by: By,
+    storage: StorageOf,
+    now: Now,
+) -> RedirectResponse:
+    """Keeps the certificate of the stand's own calibration."""
+    given = StandCertificate(name, number.strip(), issued_by.strip(), issued_on, valid_until)
+    record_stand_certificate(storage, given, now, who=by)
+    return RedirectResponse(f"/stands/{quote(name)}#certificates", SEE_OTHER)

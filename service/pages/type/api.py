@@ -1,0 +1,54 @@
+"""Unit types and their tolerances."""
+
+from dataclasses import fields
+
+from fastapi import APIRouter
+
+from service.pages.type.tolerances import preview_tolerances, set_tolerances
+from service.pages.unit.schemas import NewTolerances, TolerancesSchema, UnitTypePage
+from service.people.admission import PersonOf
+from service.people.dependencies import CREW, StorageOf
+from service.types.records import TolerancePreview, Tolerances, UnitType, WantedTolerances
+from service.types.store import UnitTypes
+from service.web.dependencies import Now, Reading, SettingsOf
+from service.web.fields import TypeName, WindowOf
+from service.web.problem_document import errors
+
+router = APIRouter(prefix="/unit-types", tags=["unit types"])
+
+
+@router.get("", responses=errors(422))
+def list_unit_types(store: Reading, window: WindowOf) -> UnitTypePage:
+    """Unit types, by name."""
+    found = UnitTypes(store).page(window.offset, window.limit)
+    return UnitTypePage(unit_types=found, **window.place(len(found)))
+
+
+@router.get("/{name:path}", responses=errors(404, 422))
+def read_unit_type(name: TypeName, store: Reading) -> UnitType:
+    """One unit type with the tolerances that hold now."""
+    return UnitTypes(store).get(name)
+
+
+@router.put("/{name:path}", responses=errors(400, 404, 422))
+def change_tolerances(name: TypeName, new: NewTolerances, storage: StorageOf, now: Now, person: PersonOf) -> UnitType:
+    """Other tolerances, from the next session on, and another longest interval. Past decisions keep theirs."""
+    gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
+    days, who = new.maximum_interval_days, person.signs(CREW)
+    changed = set_tolerances(storage, name, _record(new.tolerances), gyro, now, interval_days=days, who=who)
+    return changed
+
+
+@router.post("/{name:path}/preview", responses=errors(400, 404, 422))
+def preview_change(name: TypeName, new: NewTolerances, store: Reading, settings: SettingsOf) -> TolerancePreview:
+    """What other tolerances would change: the latest sessions of the type's units, judged by them. Nothing is stored.
+
+    At most 100 units are looked at, the worst first; `beyond` says how many were not.
+    """
+    gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
+    wanted = WantedTolerances(_record(new.tolerances), gyro)
+    return preview_tolerances(store, name, wanted, settings.coverage_factor)
+
+
+def _record(given: TolerancesSchema) -> Tolerances:
+    return Tolerances(**{field.name: getattr(given, field.name) for field in fields(Tolerances)})

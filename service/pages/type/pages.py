@@ -1,0 +1,252 @@
+"""The pages of unit types."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Depends, Form, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from estimator.wording import counted
+from service.groups.records import Level
+from service.kit.measures import deviation_measure, in_measure, limit, number, scale_measure
+from service.kit.names import heading
+from service.pages.flags import FlagCard, flag_cards
+from service.pages.fleet.pages import FleetRow, fleet_row
+from service.pages.fleet.view import FleetView
+from service.pages.group.sections import GroupSection, group_section
+from service.pages.model.sections import AcceptedCause, accepted_causes
+from service.pages.type.report import MOST, TypeLine, TypeReport, every_type, type_report
+from service.pages.type.tolerances import (
+    ToleranceField,
+    days,
+    preview_page,
+    preview_tolerances,
+    set_tolerances,
+    tolerance_fields,
+    wanted,
+)
+from service.people.dependencies import StorageOf
+from service.people.forms import SEE_OTHER, By, Key, Why
+from service.sessions.records import PARAMETERS
+from service.sessions.words.conditions import Condition, condition_of
+from service.types.records import ToleranceRevision, TypeUse, UnitType, WantedTolerances
+from service.types.rules import tolerances_of
+from service.types.store import UnitTypes
+from service.web.dependencies import Now, Reading, SettingsOf
+from service.web.render import render
+
+DEFAULTS = "the service itself, with the first session of the type"
+"""Who set tolerances that nobody set."""
+NOT_JUDGED = "not judged"
+KINDS = {ACCELEROMETER: "accelerometer", GYROSCOPE: "gyro"}
+"""Of sensors, as people call them."""
+
+
+@dataclass(frozen=True)
+class TypeTile:
+    """How many units of a type are in one condition; a click shows them."""
+
+    condition: Condition
+    count: int
+    url: str
+
+
+@dataclass(frozen=True)
+class TypeRow:
+    """One type in the list."""
+
+    name: str
+    block: str
+    units: int
+    tiles: tuple[TypeTile, ...]
+    """Worst first, none without a unit."""
+    tolerances: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class TypesPage:
+    """Everything the list of types shows."""
+
+    rows: tuple[TypeRow, ...]
+
+
+@dataclass(frozen=True)
+class SensorModel:
+    """A sensor as its maker describes it."""
+
+    name: str
+    kind: str
+    axis: str
+    scale: str
+
+
+@dataclass(frozen=True)
+class RevisionRow:
+    """One revision of the tolerances, by parameter and kind."""
+
+    revision: int
+    since: datetime
+    who: str
+    limits: tuple[tuple[str, str], ...]
+    """What is allowed of what."""
+
+
+@dataclass(frozen=True)
+class TypePage:
+    """Everything the page of one type shows."""
+
+    row: TypeRow
+    interval: str
+    revisions: tuple[RevisionRow, ...]
+    """Newest first: the first one holds."""
+    sensors: tuple[SensorModel, ...]
+    units: tuple[FleetRow, ...]
+    more: bool
+    """Whether there are units that are not listed."""
+    flags: tuple[FlagCard, ...]
+    causes: tuple[AcceptedCause, ...]
+    group: GroupSection | None
+    fields: tuple[ToleranceField, ...]
+    """Of the form that sets other tolerances."""
+    days: str
+    """The longest interval, in the form."""
+
+
+def types_page(types: Sequence[TypeLine]) -> TypesPage:
+    """The list of types."""
+    return TypesPage(tuple(map(_row, types)))
+
+
+def type_page(report: TypeReport, now: datetime, group: GroupSection | None = None) -> TypePage:
+    """The page of one type."""
+    known = report.line.unit_type
+    kinds = {name: report.kinds.get(name, known.block) for name in known.sensors}
+    return TypePage(
+        row=_row(report.line),
+        interval=counted(round(known.maximum_interval_days), "day"),
+        revisions=tuple(_revision(one, known, report) for one in reversed(report.revisions)),
+        sensors=tuple(
+            _sensor(name, kinds[name], axis, scale)
+            for name, axis, scale in zip(known.sensors, known.nominal_axes, known.nominal_scales, strict=True)
+        ),
+        units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
+        more=len(report.units) > MOST,
+        flags=flag_cards(report.flags),
+        causes=accepted_causes(report.models),
+        group=group,
+        fields=tolerance_fields(known),
+        days=days(known),
+    )
+
+
+def _row(line: TypeLine) -> TypeRow:
+    known = line.unit_type
+    named = [f"{what} {text}" for what, text in _limits(known) if text != NOT_JUDGED]
+    return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
+
+
+def _block(known: UnitType) -> str:
+    """``6 accelerometers``."""
+    count = len(known.sensors)
+    if known.gyro_tolerances is not None:
+        return f"{count} accelerometers and gyros"
+    kind = KINDS.get(known.block, known.block)
+    return f"{count} {kind}{'' if count == 1 else 's'}"
+
+
+def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
+    return tuple(
+        TypeTile(condition_of(verdict), count, FleetView(condition=verdict.value, unit_type=name).url())
+        for verdict, count in reversed(use.verdicts.items())
+        if count
+    )
+
+
+def _revision(one: ToleranceRevision, known: UnitType, report: TypeReport) -> RevisionRow:
+    who = report.setters.get(one.since, DEFAULTS if one.revision == 1 else "not recorded")
+    held = replace(known, tolerances=one.tolerances, gyro_tolerances=one.gyro_tolerances)
+    return RevisionRow(one.revision, one.since, who, _limits(held))
+
+
+def _limits(known: UnitType) -> tuple[tuple[str, str], ...]:
+    """What units are judged by; of a mixed block each kind of sensor has its own."""
+    allowed = tolerances_of(known)
+    kinds = (known.block,) if known.gyro_tolerances is None else (ACCELEROMETER, GYROSCOPE)
+    of = {kind: f", {KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}
+    return tuple(
+        (f"{heading(name)}{of[kind]}", _limit(kind, name, allowed.get((kind, name))))
+        for kind in kinds
+        for name in PARAMETERS
+    )
+
+
+def _limit(kind: str, parameter: str, tolerance: float | None) -> str:
+    if tolerance is None:
+        return NOT_JUDGED
+    return limit(tolerance, deviation_measure(kind, parameter, tolerance), parameter == "axis")
+
+
+def _sensor(name: str, kind: str, axis: tuple[float, float, float], scale: float) -> SensorModel:
+    measure = scale_measure(kind)
+    vector = ", ".join(number(x, 4) for x in axis)
+    return SensorModel(
+        name, KINDS.get(kind, kind), f"({vector})", f"{number(in_measure(scale, measure))} {measure.label}"
+    )
+
+
+router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+
+
+@router.get("/unit-types")
+def show_types(request: Request, store: Reading) -> HTMLResponse:
+    """Every unit type with its tolerances and how its units are."""
+    return render(request, "unit_types.html", types_page(every_type(store)))
+
+
+async def _form(request: Request) -> dict[str, str]:
+    """The numbers of the form, as they were written."""
+    return {key: value for key, value in (await request.form()).items() if isinstance(value, str)}
+
+
+@router.post("/unit-types/{name:path}/tolerances")
+def set_limits(
+    name: Key,
+    by: By,
+    why: Why,
+    seen: Annotated[int, Form(ge=1, le=2_000_000_000)],
+    form: Annotated[dict[str, str], Depends(_form)],
+    *,
+    storage: StorageOf,
+    now: Now,
+) -> RedirectResponse:
+    """Other tolerances from the next session on, and another longest interval at once."""
+    with storage.database.reading() as store:
+        asked = wanted(UnitTypes(store).get(name), form)
+    limits, days = (asked.tolerances, asked.gyro_tolerances), asked.interval_days
+    set_tolerances(storage, name, *limits, now, interval_days=days, who=by, why=why, seen=seen)
+    return RedirectResponse(f"/unit-types/{quote(name)}#tolerances", SEE_OTHER)
+
+
+@router.post("/unit-types/{name:path}/tolerances/preview")
+def preview_limits(
+    request: Request, name: Key, form: Annotated[dict[str, str], Depends(_form)], store: Reading, settings: SettingsOf
+) -> HTMLResponse:
+    """What other tolerances would change; nothing is stored."""
+    known = UnitTypes(store).get(name)
+    asked = wanted(known, form)
+    found = preview_tolerances(
+        store, name, WantedTolerances(asked.tolerances, asked.gyro_tolerances), settings.coverage_factor
+    )
+    return render(request, "tolerance_preview.html", preview_page(known, asked, form, found))
+
+
+@router.get("/unit-types/{name:path}")
+def show_type(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
+    """One unit type: what is allowed and who allowed it, the nominal model, its units."""
+    return render(
+        request, "unit_type.html", type_page(type_report(store, name), now, group_section(store, Level.TYPE, name))
+    )

@@ -1,0 +1,315 @@
+"""Tolerances are tried, previewed and set.
+
+A recording in service is judged by what was kept of its comparison, as it was with its upload: no file is read.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime
+from math import isclose, isfinite
+
+from estimator.errors import Problem
+from estimator.parity import ParityResult
+from estimator.results import Calibration
+from estimator.session import ACCELEROMETER, GYROSCOPE, IN_SERVICE
+from estimator.wording import counted
+from service.errors import ConflictError, RefusedError
+from service.fleet.records import FleetQuery
+from service.fleet.rows_store import FleetRows
+from service.fleet.store import Fleet
+from service.judging.calibrate import Comparison
+from service.judging.judge import judge, judge_recording
+from service.judging.reference import reference_of
+from service.kit.measures import COVERAGE, Measure, deviation_measure, in_measure
+from service.kit.names import heading
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.derive_again import Deriving
+from service.records.refresh_outlooks import date
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.records import PARAMETERS
+from service.sessions.words.conditions import Condition, condition_of
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.store import Store
+from service.types.records import LatestSession, TolerancePreview, Tolerances, UnitType, VerdictChange, WantedTolerances
+from service.types.store import UnitTypes
+from service.units.store import Units
+
+SAME = 1e-9
+"""Relative: what a number loses as it is written and read again; so much is no change."""
+LEAST, MOST = 1e-15, 1e6
+"""SI; as the API has it."""
+SHORTEST, LONGEST = 1, 36_525
+"""Days: from one to a hundred years."""
+INTERVAL = "interval"
+
+
+@dataclass(frozen=True)
+class ToleranceField:
+    """One number."""
+
+    key: str
+    label: str
+    unit: str
+    value: str
+    """As it is in force; empty where it is not judged."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What the form asks for."""
+
+    tolerances: Tolerances
+    gyro_tolerances: Tolerances | None
+    interval_days: float
+
+
+def tolerance_fields(known: UnitType) -> tuple[ToleranceField, ...]:
+    """What can be set, with what is in force."""
+    return tuple(
+        ToleranceField(
+            f"{kind}.{name}", _label(known, kind, name), _measure(kind, name).label, _text(kind, name, given)
+        )
+        for kind, given in _kinds(known)
+        for name in PARAMETERS
+    )
+
+
+def days(known: UnitType) -> str:
+    """The longest interval as the form has it."""
+    return f"{known.maximum_interval_days:.12g}"
+
+
+def wanted(known: UnitType, form: Mapping[str, str]) -> Wanted:
+    """What a form asks for; RefusedError with every number that is none."""
+    faults: list[Problem] = []
+    read = {kind: Tolerances(**{name: _read(kind, name, given, form, faults) for name in PARAMETERS})
+            for kind, given in _kinds(known)}  # fmt: skip
+    interval = _number(INTERVAL, form.get(INTERVAL, days(known)), faults)
+    if interval is None or not SHORTEST <= interval <= LONGEST:
+        faults.append(Problem(INTERVAL, f"must be between {SHORTEST} and {LONGEST:,} days"))
+    if faults or interval is None:
+        raise RefusedError("The tolerances cannot be set.", tuple(faults))
+    own, *others = read.values()
+    return Wanted(own, others[0] if others else None, interval)
+
+
+def _kinds(known: UnitType) -> tuple[tuple[str, Tolerances], ...]:
+    """Kinds of sensor with their tolerances."""
+    if known.gyro_tolerances is None:
+        return ((known.block, known.tolerances),)
+    return (ACCELEROMETER, known.tolerances), (GYROSCOPE, known.gyro_tolerances)
+
+
+def _label(known: UnitType, kind: str, name: str) -> str:
+    return heading(name) if known.gyro_tolerances is None else f"{heading(name)}, {kind}s"
+
+
+def _measure(kind: str, name: str) -> Measure:
+    """Always the fine one, so that a number never changes its meaning with its size."""
+    return deviation_measure(kind, name, 0.0)
+
+
+def _text(kind: str, name: str, given: Tolerances) -> str:
+    shown = in_measure(getattr(given, name), _measure(kind, name))
+    return "" if shown is None else f"{shown:.12g}"
+
+
+def _read(kind: str, name: str, given: Tolerances, form: Mapping[str, str], faults: list[Problem]) -> float | None:
+    """SI; what is in force where the number was not changed."""
+    key, current = f"{kind}.{name}", getattr(given, name)
+    text = form.get(key, _text(kind, name, given)).strip()
+    number = _number(key, text, faults) if text else None
+    if number is None:
+        return None
+    tolerance = number / _measure(kind, name).factor
+    if current is not None and isclose(tolerance, current, rel_tol=SAME):
+        return float(current)
+    if not LEAST <= tolerance <= MOST:
+        faults.append(Problem(key, "must be larger than nothing, and no larger than can be measured"))
+    return tolerance
+
+
+def _number(key: str, text: str, faults: list[Problem]) -> float | None:
+    """A number with a point or a comma; None, and a fault, where it is none."""
+    try:
+        found = float(text.strip().replace(",", "."))
+    except ValueError:
+        found = float("nan")
+    if isfinite(found):
+        return found
+    faults.append(Problem(key, "is not a number"))
+    return None
+
+
+def headline_of(found: TolerancePreview) -> str:
+    """``With these, 3 of 40 units change``: of those that were judged by them."""
+    changed = len(found.changes)
+    if not found.judged:
+        return "No unit of this type has a session that tolerances decide"
+    if not changed:
+        return "With these, no unit changes"
+    return f"With these, {changed} of {found.judged} units {'changes' if changed == 1 else 'change'}"
+
+
+def notes_of(found: TolerancePreview) -> Iterator[str]:
+    """What was not looked at, and why."""
+    if found.references:
+        yield f"{counted(found.references, 'unit')} not counted: the latest session is a reference, judged by nothing."
+    if found.recordings:
+        units = counted(found.recordings, "unit")
+        yield f"{units} not counted: the latest session is a recording in service without a calibration beside it."
+    if found.beyond:
+        yield f"{counted(found.beyond, 'unit')} not looked at: only the worst ones are."
+
+
+CARRIED_APART = ("by", "why", "csrf")
+"""Fields that the page's own form asks for."""
+
+
+@dataclass(frozen=True)
+class ChangeRow:
+    """One unit with another verdict."""
+
+    unit: str
+    before: Condition
+    after: Condition
+    reason: str
+
+
+@dataclass(frozen=True)
+class PreviewPage:
+    """Everything the page shows."""
+
+    name: str
+    headline: str
+    rows: tuple[ChangeRow, ...]
+    notes: tuple[str, ...]
+    interval: str
+    """That the form asks for, where it is another one; empty where it stays."""
+    carried: tuple[tuple[str, str], ...]
+    """Numbers as they were written, to be set as they are."""
+    why: str
+
+
+def preview_page(known: UnitType, asked: Wanted, form: Mapping[str, str], found: TolerancePreview) -> PreviewPage:
+    """What would change, and the form that sets it."""
+    other = asked.interval_days != known.maximum_interval_days
+    return PreviewPage(
+        name=known.name,
+        headline=headline_of(found),
+        rows=tuple(
+            ChangeRow(one.unit, condition_of(one.before), condition_of(one.after), one.reason) for one in found.changes
+        ),
+        notes=tuple(notes_of(found)),
+        interval=f"{asked.interval_days:.12g}" if other else "",
+        carried=tuple((key, value) for key, value in form.items() if key not in CARRIED_APART),
+        why=form.get("why", ""),
+    )
+
+
+def set_tolerances(
+    storage: Storage,
+    name: str,
+    tolerances: Tolerances,
+    gyro_tolerances: Tolerances | None,
+    now: datetime,
+    *,
+    interval_days: float | None = None,
+    who: str = "crew",
+    why: str = "",
+    seen: int | None = None,
+) -> UnitType:
+    """Adds a revision of the type's tolerances; the same ones again change nothing, and past decisions keep theirs.
+
+    ConflictError where ``seen``, the revision that somebody changed, is no longer the one in force.
+
+    Another interval holds for all units of the type at once; None leaves it as it is.
+    """
+    undated: tuple[str, ...] = ()
+    with storage.database.writing() as store:
+        current = UnitTypes(store).hold(name)
+        if seen is not None and seen != current.revision:
+            raise ConflictError(
+                f"Somebody set other tolerances meanwhile, revision {current.revision}: look at them, then set yours."
+            )
+        said = {"why": why} if why else {}
+        if interval_days is not None and interval_days != current.maximum_interval_days:
+            was = current.maximum_interval_days
+            current = UnitTypes(store).set_interval(name, interval_days)
+            undated = tuple(Units(store).of_type(name))
+            for serial in undated:
+                WorkQueue(store, WorkKind.OUTLOOK).ask_again(serial, now)
+            Audit(store).write(
+                now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days} | said
+            )
+        if (current.tolerances, current.gyro_tolerances) != (tolerances, gyro_tolerances):
+            before = asdict(current)
+            current = UnitTypes(store).revise(name, tolerances, gyro_tolerances, now)
+            Audit(store).write(now, who, "tolerances", name, {"before": before, **asdict(current), **said})
+    date(storage, Deriving(storage.files, COVERAGE, now), *undated)
+    return current
+
+
+MOST_UNITS = 100
+"""Units that are looked at, the worst first: about two seconds; those far within their tolerances change last."""
+
+
+def preview_tolerances(
+    store: Store, name: str, wanted: WantedTolerances, coverage_factor: float, most: int = MOST_UNITS
+) -> TolerancePreview:
+    """By the rule that judges uploads, against the same references; NotFoundError where there is no such type."""
+    known = UnitTypes(store).get(name)
+    other = replace(known, tolerances=wanted.tolerances, gyro_tolerances=wanted.gyro_tolerances)
+    units = sum(UnitTypes(store).uses(name)[name].verdicts.values())
+    serials = tuple(unit.serial for unit in Fleet(store).units(FleetQuery(unit_type=name, limit=most)))
+    latest = FleetRows(store).latest_sessions(serials)
+    against = {one.session: _reference(store, one) for one in latest.values()}
+    known_of = {session: reference for session, reference in against.items() if reference is not None}
+    calibrations = Calibrations(store).in_force({*known_of, *known_of.values()})
+    alone = {one.session for one in latest.values() if _is_uncompared(one, known_of, calibrations)}
+    compared = {session: reference for session, reference in known_of.items() if session not in alone}
+    judged = [latest[serial] for serial in serials if serial in latest and latest[serial].session in compared]
+    found = (_change(one, compared, calibrations, other, coverage_factor) for one in judged)
+    return TolerancePreview(
+        units=units,
+        judged=len(judged),
+        references=len(against) - len(compared) - len(alone),
+        recordings=len(alone),
+        beyond=units - len(latest),
+        changes=tuple(sorted(filter(None, found), key=lambda one: -one.after.severity)),
+    )
+
+
+def _reference(store: Store, one: LatestSession) -> str | None:
+    """The session that it is judged against; None of a reference, and where there is none."""
+    if one.is_reference:
+        return None
+    return reference_of(store, one.key, one.block, one.programme, one.started_at).session
+
+
+def _is_uncompared(one: LatestSession, against: Mapping[str, str], calibrations: Mapping[str, Calibration]) -> bool:
+    """Whether it is a recording in service without a calibration to compare it with, or whose file could not be read
+    when it was to be compared."""
+    return one.programme == IN_SERVICE and (one.session not in against or calibrations[one.session].parity is None)
+
+
+def _change(
+    one: LatestSession,
+    against: Mapping[str, str],
+    calibrations: Mapping[str, Calibration],
+    other: UnitType,
+    coverage_factor: float,
+) -> VerdictChange | None:
+    own, reference = calibrations[one.session], calibrations[against[one.session]]
+    if own.parity is None:
+        found = judge(own, reference, other, coverage_factor)
+    else:
+        seen = Comparison(reference, ParityResult.from_dict(own.parity))
+        found = judge_recording(own, seen, other, coverage_factor)
+    if found.verdict is one.verdict:
+        return None
+    worst = found.worst
+    place = ("", "") if worst is None else (worst.sensor, worst.parameter)
+    return VerdictChange(one.unit, one.session, one.verdict, found.verdict, *place, found.reason)

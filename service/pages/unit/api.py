@@ -1,0 +1,146 @@
+"""Units: their condition, history and known breaks."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+
+from service.flags.api import FlagPage, WantedState, flag_page
+from service.flags.store import FlagQuery
+from service.fleet.records import FleetQuery, Order
+from service.fleet.store import Fleet
+from service.outlook.reading import outlook_of
+from service.outlook.records import RiskPoint
+from service.outlook.schemas import OutlookAnswer
+from service.pages.unit.columns import history_table
+from service.pages.unit.report import unit_report
+from service.pages.unit.schemas import (
+    HistoryAsked,
+    HistoryPage,
+    NewLot,
+    SaidUnit,
+    UnitPage,
+    UnitReportSchema,
+    said_unit,
+)
+from service.papers.schemas import NewCustomer
+from service.people.admission import PersonOf
+from service.people.dependencies import CREW, StorageOf
+from service.records.recalibrate import Recalibrated, recalibrate
+from service.records.unit_changes import set_customer, set_lot
+from service.sessions.history_store import History
+from service.units.customer import Customer
+from service.units.store import Units
+from service.web.dependencies import Now, Reading, SettingsOf
+from service.web.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
+from service.web.files import BY_HEADER, TABLES, as_table
+from service.web.negotiated import wanted_form
+from service.web.problem_document import errors
+from service.work.dependencies import ReaderOf, ReadingFleet
+
+router = APIRouter(prefix="/units", tags=["units"])
+WORST_FIRST = Order.CONDITION
+
+
+@router.get("", responses=errors(422))
+def list_units(
+    store: Reading,
+    window: WindowOf,
+    verdict: WantedVerdict = None,
+    text: WantedText = None,
+    reserved: Annotated[bool | None, Query(description="Only those whose verdict has a reservation, or none.")] = None,
+    *,
+    due_before: Annotated[Bound | None, Query(description="Only those whose next calibration is due before.")] = None,
+    unit_type: Annotated[Text | None, Query(description="Only those of this type.")] = None,
+    stand: Annotated[Text | None, Query(description="Only those last measured on this stand.")] = None,
+    lot: Annotated[Text | None, Query(description="Only those of this production lot.")] = None,
+    flagged: Annotated[bool, Query(description="Only those with an open flag.")] = False,
+    order: Annotated[Order, Query(description="By condition worst first, by due date, serial number …")] = WORST_FIRST,
+    backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
+    after: Annotated[Text | None, Query(description="Only those that come after this serial number.")] = None,
+) -> UnitPage:
+    """Units, worst first unless another order is asked for."""
+    wanted = FleetQuery(
+        verdict, text, window.offset, window.limit, reserved,
+        due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged,
+        order=order, backwards=backwards, after=after,
+    )  # fmt: skip
+    found = Fleet(store).units(wanted)
+    return UnitPage(units=list(map(said_unit, found)), **window.place(len(found)))
+
+
+@router.get(
+    "/{serial:path}/history",
+    responses={200: {"content": TABLES}, **errors(404, 422)},
+    response_model=HistoryPage,
+)
+def read_history(request: Request, serial: Serial, store: Reading, asked: Annotated[HistoryAsked, Query()]) -> Response:
+    """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point.
+
+    A table (CSV, Parquet, Arrow) that is not the last has a `Link` header to the next.
+    """
+    found = History(store).points(Units(store).key(serial), asked.query)
+    form = wanted_form(request, asked.format)
+    if form == "json":
+        answer = HistoryPage(unit=serial, points=found, **asked.window.place(len(found)))
+        return Response(answer.model_dump_json(), media_type="application/json", headers=BY_HEADER)
+    table = as_table(history_table(serial, found), form, f"{serial}-history")
+    following = asked.window.next_after(len(found))
+    if following is not None:
+        table.headers["Link"] = f'<{request.url.include_query_params(page=following)}>; rel="next"'
+    return table
+
+
+@router.get("/{serial:path}/flags", responses=errors(404, 422))
+def read_flags(serial: Serial, store: Reading, window: WindowOf, state: WantedState = None) -> FlagPage:
+    """The unit's flags with their lives, open ones first."""
+    return flag_page(store, FlagQuery(serial, state), window)
+
+
+@router.get("/{serial:path}/outlook", responses=errors(404, 422))
+def read_outlook(
+    serial: Serial,
+    store: ReadingFleet,
+    now: Now,
+    reader: ReaderOf,
+    until: Annotated[Moment | None, Query(description="Also the risk of waiting until this date.")] = None,
+) -> OutlookAnswer:
+    """When the unit must come back and why: drift, forecast to tolerance, risk of waiting."""
+    reader.until_dated(serial)
+    found = outlook_of(store, serial, now)
+    risk = None if until is None else found.risk_by(until)
+    asked = None if until is None or risk is None else RiskPoint(until, risk)
+    return OutlookAnswer(**vars(found), until=asked)
+
+
+@router.put("/{serial:path}/lot", responses=errors(400, 404, 422))
+def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now, person: PersonOf) -> SaidUnit:
+    """Record the unit's production lot; a lot that drifts unlike the others is named on the fleet page."""
+    return said_unit(set_lot(storage, serial, new.lot or None, now, who=person.signs(CREW)))
+
+
+@router.get("/{serial:path}/customer", responses=errors(404, 422))
+def read_customer(serial: Serial, store: Reading) -> Customer:
+    """For whom the unit is calibrated."""
+    return Units(store).customer(serial)
+
+
+@router.put("/{serial:path}/customer", responses=errors(400, 404, 422))
+def change_customer(serial: Serial, new: NewCustomer, storage: StorageOf, now: Now, person: PersonOf) -> Customer:
+    """Record for whom the unit is calibrated; its certificates name them."""
+    customer = Customer(new.name.strip(), new.address.strip())
+    return set_customer(storage, serial, customer, now, who=person.signs(new.by))
+
+
+@router.post("/{serial:path}/recalibrate", responses=errors(404, 422))
+def recalibrate_unit(
+    serial: Serial, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf
+) -> Recalibrated:
+    """Compute the stored sessions again under the model in force. What was computed before stays readable."""
+    k, who = settings.coverage_factor, person.signs("engineer")
+    return recalibrate(storage, serial, now, coverage_factor=k, who=who)
+
+
+@router.get("/{serial:path}", responses=errors(404, 422))
+def read_unit(serial: Serial, store: Reading, now: Now) -> UnitReportSchema:
+    """One unit: condition, type, reference, latest sessions, known breaks."""
+    return UnitReportSchema.model_validate(unit_report(store, serial, now))

@@ -1,0 +1,115 @@
+"""What happened to a unit, in one list; and the unit as it was found and as it was left."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.kit.measures import deviation_measure, limit, measured, signed
+from service.papers.found_and_left import FoundAndLeft
+from service.sessions.decision import Decision
+from service.sessions.records import StoredSession
+from service.sessions.states import StateChange
+from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of
+from service.sessions.words.states import state_in_words
+from service.units.records import Note, Service
+
+KINDS = {
+    "adjustment": "Adjustment",
+    "repair": "Repair",
+    "sensor-swap": "Sensor swap",
+    "reference": "New reference",
+    "service": "Service",
+}
+
+
+@dataclass(frozen=True)
+class Event:
+    """A service or a note."""
+
+    at: datetime
+    heading: str
+    text: str
+    who: str
+    note: Note | None
+    """None for a service, which is a break in the history."""
+    service: Service | None = None
+    withdrawn: str = ""
+    """Of a service that was withdrawn: when, by whom and why."""
+
+
+@dataclass(frozen=True)
+class StageCell:
+    """One parameter's deviation at one of the two sessions."""
+
+    text: str
+    condition: Condition
+
+
+@dataclass(frozen=True)
+class StageRow:
+    """One parameter of one sensor."""
+
+    sensor: str
+    parameter: str
+    tolerance: str
+    found: StageCell
+    left: StageCell | None
+
+
+@dataclass(frozen=True)
+class StageTable:
+    """The unit as found and as left."""
+
+    found: StoredSession
+    left: StoredSession | None
+    rows: tuple[StageRow, ...]
+    """Empty where the unit was found at its reference."""
+
+
+def events_of(
+    services: Sequence[Service], notes: Sequence[Note], withdrawals: Sequence[StateChange] = ()
+) -> tuple[Event, ...]:
+    """Newest first."""
+    gone = {line.record: state_in_words(line) for line in withdrawals}
+    listed = [
+        Event(
+            s.at,
+            f"{KINDS.get(s.kind, s.kind)}{f' of {s.sensor}' if s.sensor else ''}",
+            s.note,
+            s.who,
+            None,
+            s,
+            gone.get(str(s.id), ""),
+        )
+        for s in services
+    ]
+    listed += [Event(note.at, "Note", note.text, note.who, note) for note in notes]
+    return tuple(sorted(listed, key=lambda event: event.at, reverse=True))
+
+
+def stage_table(pair: FoundAndLeft | None) -> StageTable | None:
+    """Both sessions beside each other; None where the unit was never marked as found."""
+    if pair is None:
+        return None
+    rows = tuple(_row(found, left) for found, left in pair.decisions)
+    return StageTable(pair.found, pair.left, rows)
+
+
+def _row(found: Decision, left: Decision | None) -> StageRow:
+    largest = max(abs(d.deviation or 0.0) for d in (found, left) if d is not None)
+    measure = deviation_measure(found.kind, found.parameter, max(largest, found.tolerance))
+    is_angle = found.parameter == "axis"
+
+    def cell(decision: Decision) -> StageCell:
+        if decision.deviation is None:
+            return StageCell("not observable", NOT_JUDGED)
+        write = measured if is_angle else signed
+        return StageCell(write(decision.deviation, decision.expanded, measure), condition_of(decision.verdict))
+
+    return StageRow(
+        found.sensor,
+        found.parameter,
+        limit(found.tolerance, measure, is_angle),
+        cell(found),
+        None if left is None else cell(left),
+    )

@@ -1,0 +1,145 @@
+"""Shapes of units, types, the fleet and histories."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from service.fleet.condition import UnitSummary
+from service.judging.schemas import SaidVerdict, said
+from service.kit.answer import answer
+from service.pages.session.schemas import SaidSession, said_session
+from service.sessions.history_store import HistoryQuery
+from service.sessions.records import HistoryPoint
+from service.types.records import UnitType
+from service.units.records import Service
+from service.web.fields import Bound, Paged, Text, Window
+
+Tolerance = Annotated[float, Field(ge=1e-15, le=1e6, allow_inf_nan=False)]
+
+
+class TolerancesSchema(BaseModel):
+    """Largest allowed deviations from the reference; null where a parameter is not judged."""
+
+    model_config = ConfigDict(from_attributes=True, extra="forbid")
+
+    scale: Tolerance | None = Field(description="Relative: 1e-6 is 1 ppm.", examples=[1e-4])
+    bias: Tolerance | None = Field(description="m/s² (rad/s).", examples=[4.9e-4])
+    quadratic: Tolerance | None = Field(description="s²/m (s/rad).", examples=[2.04e-6])
+    axis: Tolerance | None = Field(description="rad.", examples=[9.7e-5])
+
+
+class NewTolerances(BaseModel):
+    """Other tolerances for a unit type, from the next session on."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    tolerances: TolerancesSchema = Field(description="Of the sensors of the block's own kind.")
+    gyro_tolerances: TolerancesSchema | None = Field(
+        default=None, description="Of the gyros of a block of accelerometers; null for the default ones."
+    )
+    maximum_interval_days: float | None = Field(
+        default=None, ge=1, le=36_525, description="Longest time from a session to the next calibration; null keeps it."
+    )
+
+
+class NewLot(BaseModel):
+    """The production lot of a unit."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    lot: Text | None = Field(description="Name of the lot; null where it is not known.", examples=["2024-07"])
+
+
+class UnitTypePage(Paged):
+    """One page of unit types, by name."""
+
+    unit_types: tuple[UnitType, ...] = Field(description="The types of this page.")
+
+
+@answer
+@dataclass(frozen=True, kw_only=True)
+class SaidUnit(SaidVerdict, UnitSummary):
+    """One unit in short."""
+
+
+def said_unit(unit: UnitSummary) -> SaidUnit:
+    """With its verdict in words."""
+    return SaidUnit(**said(unit))
+
+
+class UnitPage(Paged):
+    """One page of units, worst first."""
+
+    units: list[SaidUnit] = Field(description="The units of this page.")
+
+
+class UnitReportSchema(BaseModel):
+    """Everything that is known of one unit, apart from its history."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    summary: Annotated[SaidUnit, BeforeValidator(said_unit)] = Field(description="Its condition.")
+    unit_type: UnitType = Field(description="Its type, with the tolerances that hold now.")
+    reference_session: str | None = Field(
+        description="What the next session will be judged against; null when that one becomes the reference."
+    )
+    sessions: list[Annotated[SaidSession, BeforeValidator(said_session)]] = Field(
+        description="The latest sessions, newest first."
+    )
+    services: list[Service] = Field(description="All known breaks, oldest first.")
+    withdrawn_services: list[Service] = Field(description="Services that were withdrawn, oldest first.")
+    waiting: int = Field(description="Sessions that are still to be judged again after a change of the records.")
+
+
+Parameter = Literal[
+    "scale", "bias", "quadratic", "axis", "misalignment",
+    "quantisation", "white-noise", "bias-instability", "random-walk",
+]  # fmt: skip
+"""What a calibration gives, and the terms of noise at rest."""
+TableForm = Literal["json", "csv", "parquet", "arrow"]
+
+
+class HistoryAsked(BaseModel):
+    """Which part of a unit's history is wanted, and in which form."""
+
+    parameter: Parameter | None = Field(None, description="Only this parameter.")
+    sensor: Text | None = Field(None, description="Only this sensor.")
+    since: Bound | None = Field(None, description="Measured at or after this time.")
+    until: Bound | None = Field(None, description="Measured before this time.")
+    format: TableForm | None = Field(
+        None, description="Form of the answer; without it the header `Accept` chooses, else it is JSON."
+    )
+    revision: Annotated[int, Field(ge=0, le=2_000_000_000)] | None = Field(
+        None, description="Under this model revision instead of the one in force; 0: baseline."
+    )
+    raw: bool = Field(False, description="Leave in what the whole block did: turn of all axes, factor of all scales.")
+    page: int = Field(1, ge=1, le=1_000_000, description="Which page, from 1.")
+    limit: int = Field(10_000, ge=1, le=50_000, description="How many points on a page.")
+
+    @property
+    def window(self) -> Window:
+        """The page."""
+        return Window(self.page, self.limit)
+
+    @property
+    def query(self) -> HistoryQuery:
+        """The same for the store."""
+        return HistoryQuery(
+            parameter=self.parameter,
+            sensor=self.sensor,
+            since=self.since,
+            until=self.until,
+            offset=self.window.offset,
+            limit=self.limit,
+            revision=self.revision,
+            raw=self.raw,
+            noise=True,
+        )
+
+
+class HistoryPage(Paged):
+    """One page of a unit's history, oldest first."""
+
+    unit: str = Field(description="Serial number of the unit.")
+    points: tuple[HistoryPoint, ...] = Field(description="One a session, sensor and parameter.")

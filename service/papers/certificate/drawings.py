@@ -1,0 +1,62 @@
+"""The charts of the paper: histories of the parameters closest to their tolerance, and residuals."""
+
+from dataclasses import dataclass
+
+from service.kit.names import spaced
+from service.outlook.charts import history_charts
+from service.outlook.tracks import tracks_of
+from service.papers.certified import CertifiedSession
+from service.papers.pictures import picture
+from service.sessions.charts import ChartSet
+from service.sessions.charts.residuals import residual_charts
+from service.sessions.decision import Decision
+
+MOST_HISTORIES = 6
+"""Histories that are drawn, of the parameters closest to their tolerance."""
+MOST_RESIDUALS = 12
+"""Panels of residuals that are drawn, the first of them; the session's page has all."""
+WIDTH = 235
+"""Of one drawn panel, pixels."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """One panel of a chart."""
+
+    title: str
+    text: str
+    svg: str
+
+
+def histories_of(found: CertifiedSession) -> tuple[Drawing, ...]:
+    """The parameters closest to their tolerance, through time."""
+    closest = sorted(found.report.decisions, key=_rank)[:MOST_HISTORIES]
+    wanted = [(d.parameter, d.sensor) for d in closest if d.margin is not None]
+    drawn: dict[tuple[str, str], Drawing] = {}
+    for tracks in tracks_of(found.history, found.services):
+        charts = history_charts(tracks, found.services)
+        drawn |= {
+            (track.parameter, track.sensor): _drawing(charts, place, f"{track.sensor} {spaced(track.parameter)}")
+            for place, track in enumerate(tracks)
+            if (track.parameter, track.sensor) in wanted and len(track.points) > 1
+        }
+    return tuple(drawn[key] for key in wanted if key in drawn)
+
+
+def _rank(decision: Decision) -> float:
+    margin = decision.margin
+    return float("inf") if margin is None else margin
+
+
+def residuals_of(found: CertifiedSession) -> tuple[Drawing, ...]:
+    """By the angle of the head where there was a stand, else in the order measured."""
+    sets = residual_charts(found.report.calibration)
+    across = {charts.name.rpartition("-")[2] for charts in sets}
+    wanted = "beta" if "beta" in across else "order"
+    shown = [(charts, place) for charts in sets if charts.name.endswith(wanted) for place in range(len(charts.panels))]
+    return tuple(_drawing(charts, place, charts.panels[place].title) for charts, place in shown[:MOST_RESIDUALS])
+
+
+def _drawing(charts: ChartSet, place: int, title: str) -> Drawing:
+    panel = charts.panels[place]
+    return Drawing(title, panel.description, picture(charts, panel, WIDTH))

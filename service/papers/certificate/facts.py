@@ -1,0 +1,107 @@
+"""What was measured, with what, by whom, and what it was worked out from."""
+
+from math import degrees
+
+from estimator.applied_vector import gravity
+from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
+from service.diagnosis.words.causes import cause_on
+from service.kit.measures import THIN, number, size_in_words
+from service.kit.names import day_of, method_name, spaced
+from service.papers.certificate.fact import Fact
+from service.papers.certified import CertifiedSession
+from service.papers.words import stated
+from service.sessions.records import StoredSession
+
+STEADY = 0.05
+"""°C: a temperature that moved by less is one number, as it is printed to a tenth."""
+
+
+def title_of(session: StoredSession) -> str:
+    """A recording in service checks a calibration; it is none. What was simulated certifies nothing."""
+    if session.simulated:
+        return "Specimen, not a certificate"
+    return "Check in service" if session.programme == IN_SERVICE else "Calibration certificate"
+
+
+def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
+    """What was measured, with what, by whom, under which conditions."""
+    session, source = found.report.session, found.source
+    return (
+        Fact("Unit", session.unit, is_written=True),
+        Fact("Unit type", found.unit_type.name, is_written=True),
+        Fact("Sensors", _sensors(source)),
+        Fact("Programme", spaced(session.programme)),
+        Fact("Method", f"{method_name(found.report.calibration.method)}, version {found.software}"),
+        Fact("Measured", _measured(found)),
+        Fact("Operator", stated(session.operator), is_written=bool(session.operator)),
+        Fact("Stand", _stand(source), is_written=source.stand is not None),
+        Fact("Site", _site(source)),
+        Fact("Judged against", _judged_against(found)),
+        Fact("State of the unit", _state(found)),
+        Fact("Temperature", _temperature(source)),
+    )
+
+
+def _measured(found: CertifiedSession) -> str:
+    if found.source.started_at is None:
+        return "day not stated; see the upload under Record"
+    at = found.report.session.started_at
+    return f"{day_of(at)}, {at:%H:%M} UTC"
+
+
+def _sensors(source: CalibrationSession) -> str:
+    kinds = [s.kind for s in source.sensors]
+    return ", ".join(f"{kinds.count(k)} {k}{'s' if kinds.count(k) > 1 else ''}" for k in dict.fromkeys(kinds))
+
+
+def _stand(source: CalibrationSession) -> str:
+    if source.stand is None:
+        return "none"
+    angles = (("α", source.stand.alpha), ("χ", source.stand.chi))
+    set_to = (f"{name} = {number(degrees(angle))}°" for name, angle in angles if angle is not None)
+    return ", ".join([source.stand.id, *set_to])
+
+
+def _site(source: CalibrationSession) -> str:
+    site, parts = source.site, []
+    if site.latitude is not None:
+        parts.append(f"latitude {number(degrees(site.latitude), 4)}°, height {number(site.height)}{THIN}m")
+    if any(s.kind == ACCELEROMETER for s in source.sensors):
+        origin = "measured" if site.gravity is not None else "by formula"
+        parts.append(f"g = {number(gravity(site), 6)}{THIN}m/s² ({origin})")
+    return ", ".join(parts) or stated("")
+
+
+def _temperature(source: CalibrationSession) -> str:
+    if source.temperature is None:
+        return "not recorded"
+    low, high = float(source.temperature.min()), float(source.temperature.max())
+    return f"{number(low, 1)} to {number(high, 1)}{THIN}°C" if high - low > STEADY else f"{number(low, 1)}{THIN}°C"
+
+
+def _judged_against(found: CertifiedSession) -> str:
+    if found.reference is not None:
+        other = found.reference.session
+        return f"session {other.id[:12]} of {day_of(other.started_at)}"
+    return "nothing: it is the reference of later sessions" if found.report.session.is_reference else "no reference"
+
+
+def _state(found: CertifiedSession) -> str:
+    """As found or as left, and what was last done to the unit."""
+    last = f"last service: {found.services[-1].kind}, {day_of(found.services[-1].at)}" if found.services else ""
+    known = [part for part in (spaced(found.report.session.stage or ""), last) if part]
+    return ", ".join(known) or "no service recorded"
+
+
+def record_of(found: CertifiedSession) -> tuple[Fact, ...]:
+    """Input, method, model, software."""
+    session = found.report.session
+    causes = (cause_on(r.cause, r.sensors) for r in found.revisions)
+    model = f"revision {session.revision}: baseline with {', '.join(causes)}" if session.revision else "baseline (0)"
+    return (
+        Fact("Input file", f"{session.filename}, {size_in_words(session.size)}"),
+        Fact("Uploaded", f"{day_of(session.uploaded_at)}, {session.uploaded_at:%H:%M} UTC"),
+        Fact("Model revision", model),
+        Fact("Session", session.id),
+        Fact("Software", f"imu-health {found.software}"),
+    )

@@ -1,0 +1,83 @@
+"""What makes a paper a certificate: its number, who issued it for whom, what it hangs on, what it may be used for."""
+
+from dataclasses import dataclass
+
+from service.kit.names import day_of
+from service.papers.certificate.fact import Fact
+from service.papers.certified import CertifiedSession
+from service.papers.records import Issue
+from service.papers.words import RECEIVED, RELATES, SAMPLING, WHOLE, draft_in_words, lacks, stated, uncertainty_in_words
+from service.sessions.decision import nominal_factor_of
+
+
+@dataclass(frozen=True)
+class Paper:
+    """The certificate as a document."""
+
+    number: str
+    issued: str
+    """Date."""
+    replaces: str
+    """Number of the certificate that it takes the place of; empty for a session's first."""
+    draft: str
+    """Why it is a draft only; empty where nothing is missing."""
+    parties: tuple[Fact, ...]
+    """Laboratory, customer, place."""
+    traceability: str
+    interrupted: bool
+    """Whether the chain to the SI was broken at the day of measurement."""
+    statements: tuple[Fact, ...]
+
+
+def paper_of(found: CertifiedSession, issue: Issue) -> Paper:
+    """The document of one issue."""
+    own, customer = found.laboratory, found.customer
+    missing = lacks(own, customer, dated=found.source.started_at is not None)
+    return Paper(
+        number=issue.number,
+        issued=day_of(issue.issued_at),
+        replaces=issue.replaces or "",
+        draft=draft_in_words(missing),
+        parties=(
+            _party("Laboratory", own.name, own.address, own.country),
+            _party("Customer", customer.name, customer.address),
+            _party("Place of calibration", own.place or own.address),
+            Fact("Date of issue", day_of(issue.issued_at)),
+        ),
+        traceability=found.traceability.text,
+        interrupted=found.traceability.has_expired,
+        statements=_statements(found),
+    )
+
+
+def _party(name: str, *parts: str) -> Fact:
+    if not any(parts):
+        return Fact(name, stated(""))
+    return Fact(name, ", ".join(stated(part) for part in parts), is_written=True)
+
+
+def _statements(found: CertifiedSession) -> tuple[Fact, ...]:
+    k = nominal_factor_of(found.report.decisions)
+    return (
+        Fact("Uncertainty", uncertainty_in_words(found.report.calibration, k)),
+        Fact("Traceability", _whole_chain(found)),
+        Fact("Item", RELATES),
+        Fact("Reproduction", WHOLE),
+        Fact("Departures from the method", _departures(found)),
+        Fact("Sampling", SAMPLING),
+        Fact("Item received", RECEIVED),
+        Fact("External providers", "none stated"),
+    )
+
+
+def _whole_chain(found: CertifiedSession) -> str:
+    """With that of the reference, which every deviation hangs on too."""
+    if found.reference is None:
+        return found.traceability.text
+    return f"{found.traceability.text} Of the reference session: {found.reference.traceability.text}"
+
+
+def _departures(found: CertifiedSession) -> str:
+    if found.report.session.revision:
+        return "the accepted causes that are named under Record are part of the model"
+    return "none stated"

@@ -1,0 +1,103 @@
+"""The judged parameters of a session as tables of a document: one a parameter and kind of sensor, in people's units."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from estimator.results import SensorCalibration
+from service.kit.measures import deviation_measure, limit, value_measure
+from service.kit.names import heading as heading_of
+from service.papers.certificate.result_rows import ResultColumn, ResultRow, result_row
+from service.papers.certified import CertifiedSession
+from service.sessions.decision import Decision
+from service.sessions.records import ALL_PARAMETERS
+
+
+@dataclass(frozen=True)
+class ResultTable:
+    """One parameter of all sensors of a kind."""
+
+    heading: str
+    value_measure: str
+    deviation_measure: str
+    tolerance: str
+    rows: tuple[ResultRow, ...]
+
+
+@dataclass(frozen=True)
+class _Results:
+    """What all tables are made of."""
+
+    before: Mapping[str, SensorCalibration]
+    """The sensors of the reference by name; empty where there is none."""
+    judged: Mapping[tuple[str, str], Decision]
+    """By sensor and parameter; empty for a reference."""
+    reading_units: Mapping[str, str]
+    """Of the sensors, by name."""
+    counts: bool
+    """Whether a gyro counts pulses over a known time."""
+    k: float
+
+
+def result_tables(found: CertifiedSession, k: float) -> tuple[ResultTable, ...]:
+    """The tables of a session, parameters in their usual order."""
+    results, sensors = _results(found, k), found.report.calibration.sensors
+    kinds = dict.fromkeys(sensor.kind for sensor in sensors)
+    groups = (
+        (p, kind, [s for s in sensors if s.kind == kind and p in s.observable])
+        for p in ALL_PARAMETERS
+        for kind in kinds
+    )
+    return tuple(
+        _table(
+            f"{heading_of(parameter)}, {kind}s" if len(kinds) > 1 else heading_of(parameter), parameter, own, results
+        )
+        for parameter, kind, own in groups
+        if own
+    )
+
+
+def _results(found: CertifiedSession, k: float) -> _Results:
+    decisions = () if found.report.session.is_reference else found.report.decisions
+    before = () if found.reference is None else found.reference.calibration.sensors
+    return _Results(
+        before={sensor.name: sensor for sensor in before},
+        judged={(d.sensor, d.parameter): d for d in decisions},
+        reading_units={sensor.name: sensor.reading_unit for sensor in found.source.sensors},
+        counts=bool(found.source.count_time),
+        k=k,
+    )
+
+
+def _table(heading: str, parameter: str, sensors: list[SensorCalibration], results: _Results) -> ResultTable:
+    decisions = [results.judged[s.name, parameter] for s in sensors if (s.name, parameter) in results.judged]
+    column = _column(parameter, sensors, decisions, results.k)
+    limits = dict.fromkeys(limit(d.tolerance, column.deviation, parameter == "axis") for d in decisions)
+    rows = (result_row(s, results.before.get(s.name), results.judged.get((s.name, parameter)), column) for s in sensors)
+    return ResultTable(
+        heading=heading,
+        value_measure="" if parameter == "axis" else _with_reading_unit(column.value.label, sensors, results),
+        deviation_measure=column.deviation.label,
+        tolerance=" or ".join(limits),
+        rows=tuple(rows),
+    )
+
+
+def _with_reading_unit(label: str, sensors: list[SensorCalibration], results: _Results) -> str:
+    """``V per g`` where all sensors are read in one unit."""
+    units = {results.reading_units[s.name] for s in sensors if s.name in results.reading_units}
+    if not label.startswith("per ") or len(units) != 1:
+        return label
+    rate = "/s" if results.counts and "°" in label else ""
+    return f"{units.pop()}{rate} {label}"
+
+
+def _column(parameter: str, sensors: list[SensorCalibration], decisions: list[Decision], k: float) -> ResultColumn:
+    """Units that suit the largest number of the table."""
+    kind = sensors[0].kind
+    moved = [abs(x) for d in decisions for x in (d.deviation, d.expanded, d.tolerance) if x is not None]
+    if parameter == "axis":
+        spreads = [s.factor("axis", k) * s.axis_sigma for s in sensors if s.axis_sigma is not None]
+        return ResultColumn(parameter, k, *(deviation_measure(kind, "axis", max([*moved, *spreads], default=0.0)),) * 2)
+    own = [abs(e.value) for s in sensors if (e := getattr(s, parameter)) is not None and e.value is not None]
+    value = value_measure(kind, parameter, max(own, default=0.0))
+    return ResultColumn(parameter, k, value, deviation_measure(kind, parameter, max(moved, default=0.0)))

@@ -1,0 +1,98 @@
+"""The certificate of a session in words: all that the paper says, before its charts are drawn."""
+
+from dataclasses import dataclass
+
+from estimator.health.rule import WITH_SESSION_LEVEL
+from service.kit.coverage import coverage_in_words
+from service.kit.names import day_of, spaced
+from service.papers.certificate.causes import Cause, causes_of
+from service.papers.certificate.fact import Fact
+from service.papers.certificate.facts import facts_of, record_of, title_of
+from service.papers.certificate.pair import Pair, pair_of
+from service.papers.certificate.paper import Paper, paper_of
+from service.papers.certificate.results import ResultTable, result_tables
+from service.papers.certified import CertifiedSession
+from service.papers.records import Issue
+from service.sessions.decision import nominal_factor_of
+from service.sessions.words.conditions import CONDITIONS, Condition, condition_of
+from service.sessions.words.fit import FitWords, fit_in_words
+from service.sessions.words.known import combination_in_words
+from service.sessions.words.motion import motions_in_words
+from service.sessions.words.reservations import but
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Everything that the paper says."""
+
+    title: str
+    paper: Paper
+    unit: str
+    day: str
+    simulated: bool
+    condition: Condition
+    but: str
+    """What the verdict is said with; empty where it is plain."""
+    reason: str
+    facts: tuple[Fact, ...]
+    record: tuple[Fact, ...]
+    """Input, method, model, software."""
+    sha256: str
+    notes: str
+    coverage: str
+    judged: bool
+    """Whether there was a reference to judge it by, and a tolerance."""
+    rule: str
+    whole_level: bool
+    """Whether a number counts as out of tolerance only if it is a change at the level of all of them."""
+    states: tuple[Condition, ...]
+    """Of the decision rule, best first, each explained once."""
+    tables: tuple[ResultTable, ...]
+    together: tuple[str, ...]
+    """What all sensors did together since the reference."""
+    stage: str
+    """``as found``, ``as left``, or empty."""
+    pair: Pair | None
+    known: tuple[Fact, ...]
+    """What is known of parameters that the session cannot tell apart."""
+    diagnosis: str
+    causes: tuple[Cause, ...]
+    fit: FitWords
+    stand: bool
+    software: str
+
+
+def certificate(found: CertifiedSession, issue: Issue) -> Certificate:
+    """What the paper of an issue says."""
+    session, calibration, decisions = found.report.session, found.report.calibration, found.report.decisions
+    k = nominal_factor_of(decisions)
+    known = ((s.name, combination_in_words(c, s.kind)) for s in calibration.sensors for c in s.known)
+    return Certificate(
+        title=title_of(session),
+        paper=paper_of(found, issue),
+        unit=session.unit,
+        day=day_of(session.started_at),
+        simulated=session.simulated,
+        condition=condition_of(session.verdict, is_reference=session.is_reference),
+        but=but(session.reservations),
+        reason=session.reason,
+        facts=facts_of(found),
+        record=record_of(found),
+        sha256=session.sha256,
+        notes=session.notes,
+        coverage=coverage_in_words(calibration, k),
+        judged=bool(decisions) and not session.is_reference,
+        rule=decisions[0].rule if decisions else "",
+        whole_level=any(d.rule.startswith(WITH_SESSION_LEVEL) for d in decisions),
+        states=tuple(reversed(CONDITIONS)),
+        tables=result_tables(found, k),
+        together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
+        stage=spaced(session.stage or ""),
+        pair=None if found.pair is None else pair_of(found.pair),
+        known=tuple(Fact(name, words) for name, words in known),
+        diagnosis=found.diagnosis.summary,
+        causes=causes_of(found),
+        fit=fit_in_words(calibration),
+        stand=calibration.residuals.beta is not None,
+        software=found.software,
+    )

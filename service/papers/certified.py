@@ -1,0 +1,145 @@
+"""Everything that a certificate of a session states, read from what is stored."""
+
+from dataclasses import dataclass
+from datetime import timedelta
+
+from estimator.results import Calibration
+from estimator.session import AS_LEFT, CalibrationSession
+from service.diagnosis.records import StoredDiagnosis
+from service.errors import ConflictError
+from service.ingest import read_upload
+from service.judging.reference import reference_of
+from service.models.records import ModelRevision
+from service.models.rules import in_force
+from service.models.store import Models
+from service.papers.found_and_left import FoundAndLeft, found_and_left
+from service.papers.records import Laboratory, Traceability
+from service.papers.session_report import SessionReport, recent_history, session_report
+from service.papers.words import traceability
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.decision import nominal_factor_of
+from service.sessions.records import HistoryPoint, StoredSession
+from service.sessions.states import RecordState
+from service.sessions.store import Sessions
+from service.settings import VERSION, Settings
+from service.stands.store import StandCertificates
+from service.storage import Storage
+from service.storage.store import Store
+from service.types.records import UnitType
+from service.types.store import UnitTypes
+from service.units.customer import Customer
+from service.units.records import Service
+from service.units.store import Services, Units
+
+
+def traceability_of(store: Store, session: StoredSession) -> Traceability:
+    """By the certificate of its stand at the day of measurement, UTC."""
+    day = session.started_at.date()
+    found = None if session.stand is None else StandCertificates(store).on(session.stand, day)
+    return traceability(session.stand, found, day)
+
+
+MOST_POINTS = 10_000
+"""Points of the unit's history that are read, of the newest sessions up to the certified one."""
+MOST_EARLIER = 50
+"""Earlier sessions among which the one is looked for that shows the unit as found."""
+NOT_ACCEPTED = "This session is {state}: no certificate is issued of a record that does not count."
+JUST_AFTER = timedelta(microseconds=1)
+"""The finest step of a stored time."""
+
+
+@dataclass(frozen=True)
+class ReferenceSession:
+    """The session that another was judged against."""
+
+    session: StoredSession
+    calibration: Calibration
+    traceability: Traceability
+
+
+@dataclass(frozen=True)
+class CertifiedSession:
+    """Everything that a certificate states. It rests on the session and on what came before it, never on later ones."""
+
+    report: SessionReport
+    source: CalibrationSession
+    """What the file says."""
+    unit_type: UnitType
+    reference: ReferenceSession | None
+    """None of a session that is the reference itself."""
+    pair: FoundAndLeft | None
+    """Of a session that shows the unit as left: with the one that shows it as found."""
+    diagnosis: StoredDiagnosis
+    revisions: tuple[ModelRevision, ...]
+    """The accepted causes that its calibration takes into account."""
+    services: tuple[Service, ...]
+    """Of the unit, up to the session."""
+    history: tuple[HistoryPoint, ...]
+    laboratory: Laboratory
+    customer: Customer
+    traceability: Traceability
+    calibration_json: bytes
+    """imu-calibration/1 as it was written: every number that the certificate rests on."""
+    software: str
+    """Version."""
+
+
+def laboratory_of(settings: Settings) -> Laboratory:
+    """Who calibrates, as the operator set it."""
+    return Laboratory(
+        name=settings.laboratory_name.strip(),
+        address=settings.laboratory_address.strip(),
+        country=settings.laboratory_country,
+        place=settings.laboratory_place.strip(),
+    )
+
+
+def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: Laboratory) -> CertifiedSession:
+    """The session of a diagnosis with all that its certificate needs; ConflictError where it does not count."""
+    id = diagnosis.session
+    with storage.database.reading() as store:
+        report = session_report(store, id)
+        stored = report.session
+        if stored.state is not RecordState.ACCEPTED:
+            raise ConflictError(NOT_ACCEPTED.format(state=stored.state))
+        until = stored.started_at + JUST_AFTER
+        return CertifiedSession(
+            report=report,
+            source=read_upload(storage.files.content(stored.sha256), stored.filename),
+            unit_type=UnitTypes(store).of_unit(stored.unit),
+            reference=_reference(store, stored),
+            pair=_pair(store, report),
+            diagnosis=diagnosis,
+            revisions=in_force([r for r in Models(store).of_session(id) if r.id <= stored.revision]),
+            services=tuple(s for s in Services(store).of_unit(stored.unit) if s.at < until),
+            history=recent_history(store, stored.unit, MOST_POINTS, until=until),
+            laboratory=laboratory,
+            customer=Units(store).customer(stored.unit),
+            traceability=traceability_of(store, stored),
+            calibration_json=Calibrations(store).json(id),
+            software=VERSION,
+        )
+
+
+def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
+    """What the session was judged against."""
+    if stored.is_reference:
+        return None
+    unit, block = Units(store).key(stored.unit), UnitTypes(store).of_unit(stored.unit).block
+    found = reference_of(store, unit, block, stored.programme, stored.started_at).session
+    if found is None:
+        return None
+    session = Sessions(store).get(found)
+    return ReferenceSession(session, Calibrations(store).get(found), traceability_of(store, session))
+
+
+def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:
+    """The unit as found and as left, where the session is the latter."""
+    stored = report.session
+    if stored.stage != AS_LEFT:
+        return None
+    sessions = (*Sessions(store).before(stored, None, MOST_EARLIER), stored)
+    k = nominal_factor_of(report.decisions)
+    services = Services(store).of_unit(stored.unit)
+    pair = found_and_left(store, UnitTypes(store).of_unit(stored.unit), sessions, services, k)
+    return pair if pair is not None and pair.left == stored else None

@@ -1,0 +1,170 @@
+"""A certificate gets its number, and is signed as reviewed or approved.
+
+A certificate is reviewed first and approved by somebody else. What is signed is what it states, by its hash, and only
+while that is still what is stored; an approved certificate is kept byte by byte.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.errors import ConflictError, ForbiddenError, SignInError
+from service.kit.person import Role
+from service.papers.records import CertificateFile, Issue, Meaning, Signature
+from service.papers.store import Certificates, Signatures
+from service.papers.words import STATES
+from service.people.passwords import is_password
+from service.people.store import Accounts
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.store import Store
+from service.units.store import Units
+
+SPECIMEN = "specimen-"
+"""Begins the number of what is written of a simulated session: no such number is a certificate's."""
+
+
+@dataclass(frozen=True)
+class Statement:
+    """What a certificate is about to state."""
+
+    unit: str
+    session: str
+    revision: int
+    content_hash: str
+    """SHA-256 of all of it."""
+    is_specimen: bool = False
+    """Whether the session was simulated, so that it certifies nothing."""
+
+
+def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, who: str) -> Issue:
+    """The issue that states this: the latest one of the session, or a new one that names the one it replaces."""
+    with storage.database.writing() as store:
+        Units(store).hold(statement.unit)
+        issued = Certificates(store).of_session(statement.session)
+        if issued and issued[-1].content_hash == statement.content_hash:
+            return issued[-1]
+        new = Issue(
+            number=f"{SPECIMEN * statement.is_specimen}{statement.session}-{statement.revision}-{len(issued) + 1}",
+            session=statement.session,
+            revision=statement.revision,
+            issued_at=now,
+            who=who,
+            replaces=issued[-1].number if issued else None,
+            content_hash=statement.content_hash,
+        )
+        Certificates(store).add(new)
+        Audit(store).write(now, who, "certificate", new.number, {"replaces": new.replaces})
+    return new
+
+
+NEEDED = Role.ENGINEER
+"""Who judges may also put a name under it."""
+WRONG = "The password is wrong. Nothing was signed."
+NO_ACCOUNT = "A signature is an account's: make an account and sign in with it."
+NOT_ISSUED = "There is no certificate to sign yet: ask for it, read it, then sign it."
+REPLACED = "Certificate {number} is not the latest one: {latest} is. Read that one."
+CHANGED = (
+    "What certificate {number} rests on has changed since it was issued. Ask for the certificate again, read it, and "
+    "sign the new one."
+)
+NOT_REVIEWED = "Certificate {number} must be reviewed before it is approved."
+SAME_PERSON = (
+    "You have reviewed certificate {number}: somebody else must approve it, so that two people have looked at it."
+)
+IS_SPECIMEN = "The session is simulated: its certificate is a specimen, and nobody puts a name under it."
+ALREADY = "Certificate {number} is {meaning} already, by {name}."
+
+
+@dataclass(frozen=True)
+class Signing:
+    """What somebody is about to sign."""
+
+    session: str
+    number: str
+    """Of the certificate that they read."""
+    meaning: Meaning
+    login: str
+    password: str
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How a laboratory signs."""
+
+    four_eyes: bool = True
+    """Whether reviewer and approver must be two people."""
+
+
+def require_signer(storage: Storage, signing: Signing) -> str:
+    """The name that will be printed; SignInError where the password is not the account's."""
+    if not signing.login:
+        raise ConflictError(NO_ACCOUNT)
+    with storage.database.reading() as store:
+        stored = Accounts(store).password_hash(signing.login)
+        account = Accounts(store).get(signing.login)
+    if not is_password(stored, signing.password):
+        raise SignInError(WRONG)
+    if not account.role.may(NEEDED):
+        raise ForbiddenError(f"To sign a certificate needs the role {NEEDED}; {account.login} is {account.role}.")
+    return account.name
+
+
+def signature_of(store: Store, signing: Signing, statement: Statement, rules: Rules, now: datetime) -> Signature:
+    """The signature as it would be written; ConflictError where it may not be."""
+    if statement.is_specimen:
+        raise ConflictError(IS_SPECIMEN)
+    issue = _latest(store, signing)
+    if issue.content_hash != statement.content_hash:
+        raise ConflictError(CHANGED.format(number=issue.number))
+    before = {signature.meaning: signature for signature in Signatures(store).of_certificate(issue.number)}
+    if signing.meaning in before:
+        given = before[signing.meaning]
+        raise ConflictError(ALREADY.format(number=issue.number, meaning=given.meaning, name=given.name))
+    account = Accounts(store).get(signing.login)
+    if signing.meaning is Meaning.APPROVED:
+        _require_review(before.get(Meaning.REVIEWED), issue, account.login, rules)
+    return Signature(issue.number, signing.meaning, account.login, account.name, now, issue.content_hash)
+
+
+def _latest(store: Store, signing: Signing) -> Issue:
+    issued = Certificates(store).of_session(signing.session)
+    if not issued:
+        raise ConflictError(NOT_ISSUED)
+    if issued[-1].number != signing.number:
+        raise ConflictError(REPLACED.format(number=signing.number, latest=issued[-1].number))
+    return issued[-1]
+
+
+def _require_review(review: Signature | None, issue: Issue, login: str, rules: Rules) -> None:
+    if review is None:
+        raise ConflictError(NOT_REVIEWED.format(number=issue.number))
+    if rules.four_eyes and review.login == login:
+        raise ConflictError(SAME_PERSON.format(number=issue.number))
+
+
+def sign_certificate(
+    storage: Storage,
+    signing: Signing,
+    statement: Statement,
+    rules: Rules,
+    signature: Signature,
+    *,
+    files: Sequence[CertificateFile] = (),
+) -> Signature:
+    """Writes a signature; with it, of an approved certificate, the files that are handed out from now on."""
+    with storage.database.writing() as store:
+        Units(store).hold(statement.unit)
+        again = signature_of(store, signing, statement, rules, signature.signed_at)
+        if again != signature:
+            raise ConflictError(CHANGED.format(number=signature.certificate))
+        Signatures(store).add(signature, Accounts(store).get(signature.login).id)
+        Signatures(store).keep(signature.certificate, files)
+        details = {
+            "meaning": signature.meaning,
+            "states": STATES[signature.meaning],
+            "content_hash": signature.content_hash,
+            "files": {file.format: file.sha256 for file in files},
+        }
+        Audit(store).write(signature.signed_at, signature.name, "sign certificate", signature.certificate, details)
+    return signature

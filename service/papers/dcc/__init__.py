@@ -1,0 +1,25 @@
+"""The certificate for programs: a PTB Digital Calibration Certificate, release 3.3.0 with D-SI 2.2.1. SI throughout."""
+
+from service.kit.xml import document
+from service.papers.certificate.signed import UNSIGNED, Signed
+from service.papers.certified import CertifiedSession
+from service.papers.dcc.administrative import administrative
+from service.papers.dcc.elements import DCC, NAMESPACES
+from service.papers.dcc.measurement import measurement
+from service.papers.records import Issue
+
+SCHEMA = "3.3.0"
+"""Of the DCC, as PTB published it; with it goes D-SI 2.2.1."""
+LOCATION = f"{{{NAMESPACES['xsi']}}}schemaLocation"
+LOCATIONS = "{dcc} {dcc}/v{schema}/dcc.xsd {si} {si}/v2.2.1/SI_Format.xsd".format(schema=SCHEMA, **NAMESPACES)
+"""The attribute that names, and the text that holds, where the schema of each namespace is found."""
+
+
+def certificate_dcc(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> bytes:
+    """The certificate as XML; one issue gives the same bytes every time."""
+    root = DCC.digitalCalibrationCertificate(
+        {"schemaVersion": SCHEMA, LOCATION: LOCATIONS},
+        administrative(found, issue, signed),
+        DCC.measurementResults(measurement(found)),
+    )
+    return document(root)

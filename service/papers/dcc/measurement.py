@@ -1,0 +1,132 @@
+"""What was measured: method, equipment and, a sensor a result, every value with U and the decision on it."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from estimator.results import SensorCalibration
+from estimator.session import ACCELEROMETER
+from service.kit.names import spaced
+from service.kit.xml import Element
+from service.papers.certificate.facts import title_of
+from service.papers.certified import CertifiedSession
+from service.papers.dcc.conditions import conditions
+from service.papers.dcc.covariance import covariance
+from service.papers.dcc.elements import DCC, conformity, english, software
+from service.papers.dcc.quantities import ONE, Factor, bare_quantity, deviation_measure, quantity, value_measure
+from service.sessions.decision import Decision, nominal_factor_of
+
+
+def measurement(found: CertifiedSession) -> Element:
+    """The one measurement result of a session."""
+    session, calibration = found.report.session, found.report.calibration
+    together = covariance(found)
+    decisions = {(d.sensor, d.parameter): d for d in found.report.decisions if not session.is_reference}
+    return DCC.measurementResult(
+        english("name", f"{title_of(session)}: {spaced(session.programme)}"),
+        DCC.usedMethods(*_methods(found)),
+        DCC.usedSoftware(software(found.software)),
+        *_equipment(found),
+        conditions(found.source),
+        DCC.results(
+            *(_result(sensor, found, decisions) for sensor in calibration.sensors),
+            *(() if together is None else (together,)),
+        ),
+    )
+
+
+def _methods(found: CertifiedSession) -> Iterator[Element]:
+    """With their versions: how it was measured, how its uncertainty was found, how it was judged."""
+    session, calibration = found.report.session, found.report.calibration
+    model = (
+        f"Model revision {session.revision}; block axes held by {calibration.gauge}; "
+        f"computed by imu-health, version {found.software}."
+    )
+    yield DCC.usedMethod(english("name", calibration.method), english("description", model))
+    yield DCC.usedMethod(english("name", "Evaluation of uncertainty"), DCC.norm("EA-4/02"))
+    if found.report.decisions and not session.is_reference:
+        rule = f"{found.report.decisions[0].rule}; guard band w = U"
+        yield DCC.usedMethod(english("name", "Decision rule"), english("description", rule), DCC.norm("ILAC-G8"))
+
+
+def _equipment(found: CertifiedSession) -> Iterator[Element]:
+    """The stand, with the number of its certificate where one is on record."""
+    stand, certificate = found.source.stand, found.traceability.certificate
+    if stand is None:
+        return
+    numbered = []
+    if certificate is not None:
+        name = english("name", f"Certificate of the stand, issued by {certificate.issued_by}")
+        numbered = [DCC.identification(DCC.issuer("other"), DCC.value(certificate.number), name)]
+    yield DCC.measuringEquipments(
+        DCC.measuringEquipment(
+            english("name", f"Stand {stand.id}"),
+            english("description", found.traceability.text),
+            *(DCC.identifications(number) for number in numbered),
+        )
+    )
+
+
+def _result(
+    sensor: SensorCalibration, found: CertifiedSession, decisions: Mapping[tuple[str, str], Decision]
+) -> Element:
+    data = DCC.data()
+    for parameter, seen in sensor.observable.items():
+        unseen = english("text", f"{parameter}: not observable in this session")
+        data.append(_value(sensor, parameter, found) if seen else unseen)
+        decision = decisions.get((sensor.name, parameter))
+        if decision is not None and decision.deviation is not None:
+            data.append(_deviation(decision, decision.deviation))
+    return DCC.result(english("name", f"{sensor.kind} {sensor.name}"), data)
+
+
+def _value(sensor: SensorCalibration, parameter: str, found: CertifiedSession) -> Element:
+    k = sensor.factor(parameter, nominal_factor_of(found.report.decisions))
+    if parameter == "axis":
+        return _axis(sensor, k)
+    estimate = getattr(sensor, parameter)
+    declared = next((s for s in found.source.sensors if s.name == sensor.name), None)
+    reading = "" if declared is None else declared.reading_unit
+    counted = found.source.count_time is not None and sensor.kind != ACCELEROMETER
+    unit = value_measure(sensor.kind, parameter, reading, counted=counted)
+    name = f"{parameter}, in {reading or '1'} per input" if parameter == "scale" else parameter
+    return quantity(name, estimate.value, unit, estimate.sigma, Factor(k, estimate.dof))
+
+
+def _axis(sensor: SensorCalibration, k: float) -> Element:
+    """Three components; the uncertainty is the turn's along each of them."""
+    assert sensor.axis is not None
+    spread = np.sqrt(np.diag(sensor.axis_tangents @ sensor.axis_covariance @ sensor.axis_tangents.T))
+    components = zip("xyz", sensor.axis, spread, strict=True)
+    return DCC.list(
+        english("name", "input axis, block axes"),
+        *(quantity(name, value, ONE, _known(sigma), Factor(k, sensor.axis_dof)) for name, value, sigma in components),
+    )
+
+
+def _known(sigma: float) -> float | None:
+    """NaN, of a session that tells no noise, is no uncertainty."""
+    return float(sigma) if np.isfinite(sigma) else None
+
+
+def _deviation(decision: Decision, deviation: float) -> Element:
+    """The deviation with what it was decided by."""
+    unit, k = deviation_measure(decision.kind, decision.parameter), Factor(decision.coverage_factor, decision.dof)
+    name = f"{decision.parameter}, deviation from the reference"
+    found = quantity(name, deviation, unit, decision.uncertainty, k)
+    judged = DCC.metaData(
+        english("declaration", f"{decision.rule}: {decision.verdict.value}"),
+        *conformity(decision.verdict),
+        DCC.data(*_limits(decision, unit)),
+    )
+    found.append(DCC.measurementMetaData(judged))
+    return found
+
+
+def _limits(decision: Decision, unit: str) -> Iterator[Element]:
+    """What the decision was made by."""
+    yield bare_quantity("tolerance", decision.tolerance, unit)
+    if decision.guard_band is not None:
+        yield bare_quantity("guard band", decision.guard_band, unit)
+    if decision.probability_out is not None:
+        yield bare_quantity("probability of being out of tolerance", decision.probability_out, ONE)

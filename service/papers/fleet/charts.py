@@ -1,0 +1,67 @@
+"""The fleet in one picture: how much of its tolerance each unit uses."""
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from typing import Any
+
+import altair as alt
+
+from estimator.wording import counted
+from service.fleet.records import LAST, NOT_JUDGED, STEP, Tally
+from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
+from service.sessions.words.conditions import CONDITIONS, Condition, condition_of
+
+HEIGHT = 120
+"""Pixels: the whole fleet in one low strip above its table."""
+TITLE = f"tolerance used by the worst parameter, U included, %; the last bar holds all from {LAST} on"
+TICKS = list(range(0, LAST + 1, 2 * STEP))
+"""Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
+
+
+def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
+    """Units by the share of the tolerance that their worst parameter uses, uncertainty included."""
+    counts: dict[tuple[int, Condition], int] = {}
+    for tally in tallies:
+        condition = condition_of(tally.verdict, is_reference=tally.is_reference)
+        if tally.bar != NOT_JUDGED and condition in CONDITIONS:
+            key = (tally.bar * STEP, condition)
+            counts[key] = counts.get(key, 0) + tally.units
+    rows = _stacked(counts)
+    text = f"{counted(sum(counts.values()), 'unit')} by tolerance used"
+    return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, None, {DATA_FORM: rows}),))
+
+
+def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[dict[str, Any]]:
+    """Bars with the better conditions below."""
+    rows: list[dict[str, Any]] = []
+    top: dict[int, int] = {}
+    for (left, condition), count in sorted(counts.items(), key=lambda item: (item[0][0], -item[0][1].rank)):
+        below = top.get(left, 0)
+        top[left] = below + count
+        rows.append({"left": left, "right": left + STEP, "low": below, "high": top[left], "verdict": condition.formal})
+    return rows
+
+
+@cache
+def _spec() -> dict[str, Any]:
+    names = [condition.formal for condition in CONDITIONS]
+    colours = [f"var(--{condition.key})" for condition in CONDITIONS]
+    x = alt.X("left:Q", title=TITLE, scale=alt.Scale(domain=[0, LAST + STEP]), axis=alt.Axis(values=TICKS))
+    y = alt.Y("low:Q", title="units", axis=alt.Axis(tickCount=4, format="d", tickMinStep=1))
+    bars = (
+        alt.Chart(alt.NamedData(name=DATA_FORM))
+        .mark_rect(stroke="var(--card)", strokeWidth=0.7)
+        .encode(
+            x=x,
+            x2="right:Q",
+            y=y,
+            y2="high:Q",
+            color=alt.Color("verdict:N", legend=None, scale=alt.Scale(domain=names, range=colours)),
+        )
+    )
+    limit = (
+        alt.Chart(alt.InlineData(values=[{"limit": 100}]))
+        .mark_rule(color="var(--tolerance)", strokeDash=[5, 3], strokeWidth=1.5)
+        .encode(x="limit:Q")
+    )
+    return specification([bars, limit], HEIGHT)

@@ -1,0 +1,243 @@
+"""The fleet on paper: how it stands, then a section for every unit that is not fit."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from estimator.wording import counted
+from service.fleet.condition import FleetCondition, UnitSummary
+from service.fleet.records import NOT_JUDGED, FleetQuery, Tally
+from service.fleet.rows_store import FleetRows
+from service.fleet.store import Fleet
+from service.kit.measures import COVERAGE, deviation_measure, measured, number, signed
+from service.kit.names import day_of
+from service.languages.language import Language
+from service.outlook.charts import history_charts
+from service.outlook.populations import Placed, Population
+from service.outlook.populations_store import Populations
+from service.outlook.records import DueDate
+from service.outlook.store import Outlooks
+from service.outlook.tracks import tracks_of
+from service.papers.fleet.charts import fleet_chart
+from service.papers.fleet.report import FleetReport
+from service.papers.moved import Moved, moved
+from service.papers.pictures import picture
+from service.papers.typeset import typeset
+from service.sessions.decision import Decision, Verdict
+from service.sessions.records import HistoryPoint
+from service.sessions.words.conditions import REFERENCE, Condition, condition_of
+from service.sessions.words.reservations import but
+from service.storage.store import Store
+from service.units.records import Service
+
+MOST_MOVED = 8
+"""Parameters of one unit that are listed."""
+SECTION_WIDTH = 330
+"""Of a drawn history, pixels: half of the page."""
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Line:
+    """One unit in the ranking."""
+
+    unit: str
+    unit_type: str
+    condition: Condition
+    but: str
+    """What the verdict is said with; empty where it is plain."""
+    worst: str
+    used: str
+    """Share of the tolerance, uncertainty included."""
+    last: str
+    simulated: bool
+
+
+@dataclass(frozen=True)
+class Section:
+    """One unit that is not fit."""
+
+    line: Line
+    reason: str
+    diagnosis: str
+    moved: tuple[Moved, ...]
+    """The parameters that did not pass, worst first."""
+    more: int
+    """How many others did not."""
+    history: str
+    """SVG of the worst parameter through time; empty where there is none."""
+    history_of: str
+
+
+def line_of(unit: UnitSummary) -> Line:
+    """How the unit stands, in people's units."""
+    return Line(
+        unit=unit.serial,
+        unit_type=unit.unit_type,
+        condition=condition_of(unit.verdict, is_reference=unit.is_reference),
+        but=but(unit.reservations),
+        worst=f"{unit.worst_sensor or ''} {unit.worst_parameter or ''}".strip(),
+        used="" if unit.margin is None else f"{number(100 * (1 - unit.margin), 0)} %",
+        last="" if unit.last_at is None else day_of(unit.last_at),
+        simulated=unit.simulated,
+    )
+
+
+def sections_of(store: Store, units: Sequence[UnitSummary]) -> tuple[Section, ...]:
+    """Sections of units, with three queries for all of them."""
+    serials = tuple(unit.serial for unit in units)
+    decisions = _grouped((serial, decision) for serial, _, decision in FleetRows(store).latest_decisions(serials))
+    points = _grouped(FleetRows(store).worst_histories(serials))
+    services = FleetRows(store).services(serials)
+    return tuple(
+        _section(unit, decisions.get(unit.serial, []), points.get(unit.serial, []), services) for unit in units
+    )
+
+
+def _grouped(rows: Iterable[tuple[str, T]]) -> dict[str, list[T]]:
+    found: dict[str, list[T]] = {}
+    for serial, row in rows:
+        found.setdefault(serial, []).append(row)
+    return found
+
+
+def _section(
+    unit: UnitSummary, decisions: list[Decision], points: list[HistoryPoint], services: tuple[Service, ...]
+) -> Section:
+    line, wrong = line_of(unit), _worst_first(decisions)
+    history = _history(points, tuple(service for service in services if service.unit == unit.serial))
+    return Section(
+        line=line,
+        reason=unit.reason,
+        diagnosis=unit.diagnosis,
+        moved=tuple(moved(decision) for decision in wrong[:MOST_MOVED]),
+        more=max(0, len(wrong) - MOST_MOVED),
+        history=history,
+        history_of=line.worst if history else "",
+    )
+
+
+def _worst_first(decisions: list[Decision]) -> list[Decision]:
+    wrong = [d for d in decisions if d.verdict is not Verdict.PASS]
+    return sorted(wrong, key=lambda d: (-d.verdict.severity, d.margin or 0.0))
+
+
+def _history(points: list[HistoryPoint], services: tuple[Service, ...]) -> str:
+    tracks = tracks_of(points, services)
+    if not tracks or len(points) < 2:
+        return ""
+    charts = history_charts(tracks[0], services)
+    return picture(charts, charts.panels[0], SECTION_WIDTH)
+
+
+MOST_RANKED = 100
+"""Lines of the ranking: two pages, worst first; the workbook has all units."""
+MOST_SECTIONS = 40
+"""Units with a section of their own, two to three on a page."""
+MOST_NOTICES = 8
+"""Units that are listed as overdue, and parameters that stand out."""
+STANDS_OUT = 5.0
+"""Distance from the type's other units, in their robust spread."""
+WIDTH = 700
+"""Of the drawn chart, pixels: the whole page."""
+NOT_FIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL, Verdict.UNDECIDABLE)
+"""Verdicts that somebody must act on: these units get a section."""
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many units are in one condition."""
+
+    condition: Condition
+    count: int
+    reserved: int
+    """Of how many of them the verdict is said with a reservation."""
+
+
+@dataclass(frozen=True)
+class Notice:
+    """One unit that is overdue, or that stands out."""
+
+    unit: str
+    text: str
+
+
+@dataclass(frozen=True)
+class FleetPaper:
+    """Everything that the paper says."""
+
+    day: str
+    total: int
+    simulated: int
+    counts: tuple[Count, ...]
+    chart: str
+    overdue: tuple[Notice, ...]
+    more_overdue: int
+    standing_out: tuple[Notice, ...]
+    """Parameters that drift otherwise than those of the type's other units."""
+    ranked: tuple[Line, ...]
+    sections: tuple[Section, ...]
+    not_fit: int
+    software: str
+
+
+def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.ENGLISH) -> bytes:
+    """The report as PDF: two pages and a section for each unit that is not fit, of the worst ones if they are many."""
+    return typeset("fleet.typ", fleet_paper(store, report), report.at, language)
+
+
+def fleet_paper(store: Store, report: FleetReport) -> FleetPaper:
+    """What the paper says."""
+    judged = [t for t in report.tallies if t.bar != NOT_JUDGED and _condition(t) is not REFERENCE]
+    overdue = [one for one in Outlooks(store).due(MOST_NOTICES) if one.at < report.at]
+    chart = fleet_chart(report.tallies)
+    return FleetPaper(
+        day=day_of(report.at),
+        total=report.condition.units,
+        simulated=report.condition.simulated,
+        counts=_counts(report.condition),
+        chart=picture(chart, chart.panels[0], WIDTH) if judged else "",
+        overdue=tuple(Notice(one.unit, _since(one, report)) for one in overdue),
+        more_overdue=report.overdue - len(overdue),
+        standing_out=_standing_out(store),
+        ranked=tuple(line_of(unit) for unit in Fleet(store).units(FleetQuery(limit=MOST_RANKED))),
+        sections=sections_of(store, Fleet(store).units(FleetQuery(unfit=True, limit=MOST_SECTIONS))),
+        not_fit=sum(tally.units for tally in report.tallies if _is_not_fit(tally)),
+        software=report.software,
+    )
+
+
+def _counts(fleet: FleetCondition) -> tuple[Count, ...]:
+    """Worst first."""
+    found = reversed(fleet.verdicts.items())
+    return tuple(Count(condition_of(verdict), count, fleet.reserved.get(verdict, 0)) for verdict, count in found)
+
+
+def _since(one: DueDate, report: FleetReport) -> str:
+    """``since 3 Mar 2026 (263 days)``."""
+    due = one.at
+    return f"since {day_of(due)} ({counted((report.at - due).days, 'day')})"
+
+
+def _standing_out(store: Store) -> tuple[Notice, ...]:
+    """The furthest out of their types, of those whose drift chance does not explain."""
+    populations = Populations(store).most_evident(MOST_NOTICES)
+    found = [(one, own) for own in populations for one in own.evident if abs(one.z) > STANDS_OUT]
+    furthest = sorted(found, key=lambda pair: (-abs(pair[0].z), pair[0].serial, pair[0].sensor, pair[1].parameter))
+    return tuple(Notice(one.serial, _drift(one, own)) for one, own in furthest[:MOST_NOTICES])
+
+
+def _drift(one: Placed, own: Population) -> str:
+    """``A6 bias drifts +62 ± 4 µg a year``."""
+    rate, sigma = one.value * one.tolerance, one.sigma * one.tolerance
+    unit = deviation_measure(own.kind, own.parameter, abs(rate))
+    write = measured if own.parameter == "axis" else signed
+    return f"{one.sensor} {own.parameter} drifts {write(rate, COVERAGE * sigma, unit)} a year"
+
+
+def _condition(tally: Tally) -> Condition:
+    return condition_of(tally.verdict, is_reference=tally.is_reference)
+
+
+def _is_not_fit(tally: Tally) -> bool:
+    return tally.verdict in NOT_FIT and _condition(tally) is not REFERENCE

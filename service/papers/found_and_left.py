@@ -1,0 +1,67 @@
+"""A unit as it was found and as it was left, both against the reference that held when it was found."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.session import AS_FOUND, AS_LEFT, CALIBRATIONS
+from service.judging.judge import decisions_of
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.decision import Decision
+from service.sessions.records import StoredSession
+from service.sessions.states import RecordState
+from service.sessions.store import reference_query
+from service.storage.store import Store
+from service.types.records import UnitType
+from service.units.records import Service
+from service.units.store import Units, epoch
+
+
+@dataclass(frozen=True)
+class FoundAndLeft:
+    """The latest pair of a unit; a session that is still to be measured is None."""
+
+    reference: str | None
+    """The session that both are judged against; None where the unit was found at its reference."""
+    found: StoredSession
+    left: StoredSession | None
+    decisions: tuple[tuple[Decision, Decision | None], ...]
+    """Of every judged parameter as found and as left, in the order of the sensors."""
+
+
+def found_and_left(
+    store: Store,
+    unit_type: UnitType,
+    sessions: Sequence[StoredSession],
+    services: Sequence[Service],
+    coverage_factor: float,
+) -> FoundAndLeft | None:
+    """The latest as-found session among some, and the first as-left one after it; None where nothing was found."""
+    sessions = [s for s in sessions if s.state is RecordState.ACCEPTED]
+    found = max((s for s in sessions if s.stage == AS_FOUND), key=_when, default=None)
+    if found is None:
+        return None
+    later = (s for s in sessions if s.stage == AS_LEFT and _when(s) > _when(found) and s.programme in CALIBRATIONS)
+    left = min(later, key=_when, default=None)
+    since, until = epoch(tuple(service.at for service in services), found.started_at)
+    unit = Units(store).key(found.unit)
+    pair = (found.id,) if left is None else (found.id, left.id)
+    reference, known = Calibrations(store).beside_reference(pair, reference_query(unit, unit_type.block, since, until))
+
+    def judged(session: StoredSession | None) -> tuple[Decision, ...]:
+        """By the tolerances that hold now."""
+        if session is None or reference is None:
+            return ()
+        return decisions_of(known[session.id], known[reference], unit_type, coverage_factor)
+
+    return FoundAndLeft(None if reference == found.id else reference, found, left, _beside(judged(found), judged(left)))
+
+
+def _beside(found: Sequence[Decision], left: Sequence[Decision]) -> tuple[tuple[Decision, Decision | None], ...]:
+    """Every judged parameter as found, with the same as left."""
+    by_key = {(d.sensor, d.parameter): d for d in left}
+    return tuple((d, by_key.get((d.sensor, d.parameter))) for d in found)
+
+
+def _when(session: StoredSession) -> datetime:
+    return session.started_at

@@ -1,0 +1,38 @@
+"""The correction of a session as other systems' parameter files, each with what that system cannot hold."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from service.papers.onboard import ardupilot, kalibr, px4, ros2
+from service.papers.onboard.given import Given
+
+__all__ = ["FORMS", "Form", "System"]
+
+
+class System(StrEnum):
+    """Whose parameters."""
+
+    PX4 = "px4"
+    ARDUPILOT = "ardupilot"
+    KALIBR = "kalibr"
+    ROS2 = "ros2"
+
+
+@dataclass(frozen=True)
+class Form:
+    """How a system's parameters are written."""
+
+    name: str
+    """As people call the system."""
+    ending: str
+    """Of the file's name."""
+    written: Callable[[Given], str]
+
+
+FORMS = {
+    System.PX4: Form("PX4", "params", px4.written),
+    System.ARDUPILOT: Form("ArduPilot", "parm", ardupilot.written),
+    System.KALIBR: Form("Kalibr", "yaml", kalibr.written),
+    System.ROS2: Form("ROS 2", "yaml", ros2.written),
+}

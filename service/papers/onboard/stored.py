@@ -1,0 +1,31 @@
+"""The correction of a stored session, as the parameter files of other systems are written from."""
+
+from estimator.nominal_vector import nominal_vector
+from service.errors import ConflictError
+from service.papers.correction import corrected
+from service.papers.onboard.given import Given
+from service.sessions.noise_store import Noises
+from service.sessions.words.conditions import condition_of
+from service.settings import VERSION
+from service.storage import Storage
+
+
+def given_of(storage: Storage, id: str) -> Given:
+    """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
+    vector that a driver makes holds it too."""
+    one = corrected(storage, id)
+    if one.found.left_out:
+        why = "; ".join(f"{name}: {reason}" for name, reason in one.found.left_out)
+        raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
+    with storage.database.reading() as store:
+        noise = Noises(store).get(id)
+    return Given(
+        unit=one.stored.unit,
+        session=one.stored.id,
+        measured_at=one.stored.started_at,
+        verdict=condition_of(one.stored.verdict, is_reference=one.stored.is_reference).word,
+        simulated=one.stored.simulated,
+        software=f"imu-health {VERSION}",
+        vectors={block.kind: nominal_vector(one.session, block) for block in one.found.blocks},
+        noise=noise,
+    )

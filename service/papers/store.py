@@ -1,0 +1,89 @@
+"""Numbers of certificates, signatures under them, and certificates as they were approved."""
+
+from collections.abc import Sequence
+from datetime import datetime
+
+from sqlalchemy import Select, select
+
+from service.errors import ConflictError, NotFoundError
+from service.papers.records import CertificateFile, Issue, Meaning, Signature
+from service.papers.tables import CertificateFileRow, CertificateRow, SignatureRow
+from service.people.tables import AccountRow
+from service.storage.queries import Queries
+
+
+class Certificates(Queries):
+    """Issues by session; a row is written once."""
+
+    def of_session(self, id: str) -> tuple[Issue, ...]:
+        """Every issue of a session's certificate, the first one first."""
+        query = select(CertificateRow).where(CertificateRow.session_id == id).order_by(CertificateRow.id)
+        return tuple(_issue(row) for row in self._session.scalars(query))
+
+    def add(self, issue: Issue) -> None:
+        """Stores an issue; its number is unique."""
+        values = {**vars(issue), "session_id": issue.session}
+        del values["session"]
+        self._session.add(CertificateRow(**values))
+        self._session.flush()
+
+
+def _issue(row: CertificateRow) -> Issue:
+    issued_at: datetime = row.issued_at
+    return Issue(row.number, row.session_id, row.revision, issued_at, row.who, row.replaces, row.content_hash)
+
+
+class Signatures(Queries):
+    """By the certificate's number or its session; a row is written once."""
+
+    def of_session(self, id: str) -> tuple[Signature, ...]:
+        """Under every issue of a session's certificate, the first one first."""
+        query = _signatures().where(CertificateRow.session_id == id).order_by(SignatureRow.id)
+        return tuple(_signature(*row) for row in self._session.execute(query))
+
+    def of_certificate(self, number: str) -> tuple[Signature, ...]:
+        """Under one issue."""
+        query = _signatures().where(CertificateRow.number == number).order_by(SignatureRow.id)
+        return tuple(_signature(*row) for row in self._session.execute(query))
+
+    def add(self, signature: Signature, account: int) -> None:
+        """Stores a signature; ConflictError where somebody signed the same at the same moment."""
+        values = {
+            "certificate_id": self._key(signature.certificate),
+            "meaning": signature.meaning,
+            "account_id": account,
+            "name": signature.name,
+            "signed_at": signature.signed_at,
+            "content_hash": signature.content_hash,
+        }
+        if not self.insert_once(SignatureRow, **values):
+            raise ConflictError(f"Certificate {signature.certificate} is {signature.meaning} already.")
+
+    def keep(self, number: str, files: Sequence[CertificateFile]) -> None:
+        """Stores an issue as it is handed out from now on."""
+        key = self._key(number)
+        self._session.add_all(CertificateFileRow(certificate_id=key, **vars(file)) for file in files)
+
+    def kept(self, number: str, format: str) -> CertificateFile | None:
+        """An issue as it was approved; None where it was not."""
+        query = select(CertificateFileRow).join(CertificateRow).where(CertificateRow.number == number)
+        row = self._session.scalar(query.where(CertificateFileRow.format == format))
+        return None if row is None else CertificateFile(row.format, row.content, row.sha256, row.sealed_by)
+
+    def _key(self, number: str) -> int:
+        key = self._session.scalar(select(CertificateRow.id).where(CertificateRow.number == number))
+        if key is None:
+            raise NotFoundError(f"There is no certificate {number!r}.")
+        return key
+
+
+def _signatures() -> Select[SignatureRow, str, str]:
+    columns = select(SignatureRow, CertificateRow.number, AccountRow.login)
+    return columns.join(CertificateRow, CertificateRow.id == SignatureRow.certificate_id).join(
+        AccountRow, AccountRow.id == SignatureRow.account_id
+    )
+
+
+def _signature(row: SignatureRow, number: str, login: str) -> Signature:
+    signed_at: datetime = row.signed_at
+    return Signature(number, Meaning(row.meaning), login, row.name, signed_at, row.content_hash)

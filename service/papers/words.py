@@ -1,0 +1,124 @@
+"""What certificates state: signatures, traceability, uncertainty."""
+
+from datetime import date, datetime
+
+from estimator.coverage import chance
+from estimator.results import Calibration
+from service.kit.coverage import coverage_in_words, noise_is_estimated
+from service.kit.measures import number
+from service.kit.names import day_of
+from service.papers.records import NOT_STATED, Laboratory, Meaning, Traceability, TraceState
+from service.stands.paper_records import StandCertificate
+from service.units.customer import Customer
+
+RELATES = "The results relate only to the item calibrated, as it was on the day of measurement."
+WHOLE = "This certificate may be reproduced only in full, except with the written approval of the laboratory."
+SAMPLING = "None: every sensor of the item was measured."
+RECEIVED = "not stated (not critical to the results)"
+DRAFT = "Draft, not an accredited certificate: {missing} not stated."
+
+
+def lacks(laboratory: Laboratory, customer: Customer, *, dated: bool) -> tuple[str, ...]:
+    """What nobody stated of all that a calibration certificate must name."""
+    wanted = (
+        ("name of the laboratory", laboratory.name),
+        ("address of the laboratory", laboratory.address),
+        ("country of the laboratory", laboratory.country),
+        ("name of the customer", customer.name),
+        ("address of the customer", customer.address),
+        ("day of measurement", dated),
+    )
+    return tuple(name for name, given in wanted if not given)
+
+
+def draft_in_words(missing: tuple[str, ...]) -> str:
+    """That the paper is a draft, and why; empty where nothing is missing."""
+    if not missing:
+        return ""
+    listed = missing[0] if len(missing) == 1 else f"{', '.join(missing[:-1])} and {missing[-1]}"
+    return DRAFT.format(missing=listed)
+
+
+def stated(text: str) -> str:
+    """The text, or that there is none."""
+    return text.strip() or NOT_STATED
+
+
+STATES = {
+    Meaning.REVIEWED: "I have checked record, results, uncertainties and statements of this certificate, and have "
+    "found nothing against them.",
+    Meaning.APPROVED: "I release this certificate in the name of the laboratory.",
+}
+"""What whoever signs states."""
+BOUND = "Signed in imu-health with the password asked again; holds for the content with SHA-256 {hash}."
+NO_LONGER = (
+    "What certificate {number} rests on has changed since it was {done}: it no longer states what is stored. "
+    "The next certificate will have another number, and must be signed anew."
+)
+CHANGED_HASH = "Certificate {number} was signed under another content than is on record: the database was changed."
+NOT_COUNTED = "The session no longer counts: certificate {number} should not be used."
+
+
+def done_by(meaning: Meaning) -> str:
+    """``Reviewed by``."""
+    return f"{meaning.capitalize()} by"
+
+
+def moment_of(at: datetime) -> str:
+    """``7 Mar 2026, 09:30 UTC``."""
+    return f"{at.day} {at:%b %Y, %H:%M} UTC"
+
+
+HOLDS = (
+    "Traceable to the SI through stand {stand}: certificate {number} of {by}, issued {issued}, valid until {until}. "
+    "It held at the day of measurement, {day}."
+)
+EXPIRED = (
+    "Traceability is interrupted: certificate {number} of stand {stand}, issued by {by} on {issued}, had expired on "
+    "{until}, before the day of measurement, {day}."
+)
+NOT_ON_RECORD = (
+    "Traceability is not stated: no certificate of stand {stand} that was issued by the day of measurement, {day}, is "
+    "on record."
+)
+NO_STAND = "Traceability is not stated: no stand was used, and gravity at the site carries no certificate."
+
+
+def traceability(stand: str | None, certificate: StandCertificate | None, day: date) -> Traceability:
+    """Of a session measured on a day; the certificate is the latest of its stand that was issued by then."""
+    if stand is None:
+        return Traceability(TraceState.NO_STAND, NO_STAND, None)
+    if certificate is None:
+        text = NOT_ON_RECORD.format(stand=stand, day=day_of(day))
+        return Traceability(TraceState.NOT_STATED, text, None)
+    expired = certificate.valid_until < day
+    text = (EXPIRED if expired else HOLDS).format(
+        stand=stand,
+        number=certificate.number,
+        by=certificate.issued_by,
+        issued=day_of(certificate.issued_on),
+        until=day_of(certificate.valid_until),
+        day=day_of(day),
+    )
+    return Traceability(TraceState.INTERRUPTED if expired else TraceState.TRACEABLE, text, certificate)
+
+
+NORMAL = (
+    "The reported expanded uncertainty of measurement is stated as the standard uncertainty of measurement multiplied "
+    "by the coverage factor k = {k}, which for a normal distribution corresponds to a coverage probability of "
+    "approximately {percent} %."
+)
+STUDENT = (
+    "The reported expanded uncertainty of measurement is stated as the standard uncertainty of measurement multiplied "
+    "by the coverage factor {k}; for a t-distribution of these degrees of freedom it corresponds to a coverage "
+    "probability of approximately {percent} %."
+)
+BY = "The standard uncertainty of measurement has been determined in accordance with EA-4/02."
+
+
+def uncertainty_in_words(calibration: Calibration, k: float) -> str:
+    """With the coverage factor that the session was judged with."""
+    percent = number(100 * (2.0 * chance(k, None) - 1.0), 0)
+    if noise_is_estimated(calibration):
+        return f"{STUDENT.format(k=coverage_in_words(calibration, k), percent=percent)} {BY}"
+    return f"{NORMAL.format(k=number(k), percent=percent)} {BY}"

@@ -1,0 +1,1 @@
+"""Who may sign in, what each may do, and who did what when."""

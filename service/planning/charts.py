@@ -1,0 +1,141 @@
+"""Expected uncertainty over the plan, and the drift of the first minutes."""
+
+from functools import cache
+from typing import Any
+
+import altair as alt
+import numpy as np
+
+from estimator.planning import Plan, Sweep
+from estimator.readiness import Readiness
+from estimator.results import PARAMETERS
+from estimator.session import Array
+from service.kit.measures import MEASURES, THIN, Measure, deviation_measure, number
+from service.kit.names import heading
+from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
+
+HEIGHT = 150
+"""Pixels: two rows of panels fit on a screen."""
+SERIES = ("total", "repeatability", "tolerance")
+COLOURS = ["var(--accent)", "var(--second)", "var(--tolerance)"]
+DASHES = [[1, 0], [4, 3], [5, 3]]
+"""What the lines of a panel show, in their colours and dashes: they are told apart in black and white too."""
+
+
+def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
+    """Over N at the plan's elevation, and over the elevation at the plan's N."""
+    degrees = np.degrees(plan.over_elevation.at)
+    by_number = _parameters(plan, kind, plan.over_positions, plan.over_positions.at.astype(float), plan.positions)
+    by_angle = _parameters(plan, kind, plan.over_elevation, degrees, float(np.degrees(plan.elevation)))
+    return (
+        ChartSet("positions", "Over the number of positions", _spec("positions a run"), tuple(by_number)),
+        ChartSet(
+            "elevation", "Over the elevation of the head", _spec("elevation, °"), (*by_angle, *_rho(plan, degrees))
+        ),
+    )
+
+
+def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Array, chosen: float) -> list[Panel]:
+    """One panel a parameter that is observed anywhere; ``at``, shape (points,), is the number of positions or in °."""
+    wanted = plan.request.wanted.row() * plan.request.share
+    panels = []
+    for k, name in enumerate(PARAMETERS):
+        measure, coverage = MEASURES[kind, name], plan.request.coverage
+        pairs = [(series, getattr(sweep, series)[:, k] * coverage * measure.factor) for series in SERIES[:2]]
+        points = [p for series, values in pairs for p in _points(series, at, values)]
+        if points:
+            if np.isfinite(wanted[k]):
+                points += _points(SERIES[2], at, np.full(len(at), wanted[k] * measure.factor))
+            panels.append(_panel(heading(name), measure, points, chosen))
+    return panels
+
+
+def _panel(title: str, measure: Measure, points: list[dict[str, Any]], chosen: float) -> Panel:
+    words = f"U of the worst sensor, {measure.label}" if measure.label else "largest over smallest eigenvalue"
+    return Panel(
+        title=title,
+        description=words,
+        condition=None,
+        datasets={DATA_FORM: points, "chosen": [{"x": round(chosen, 2)}]},
+    )
+
+
+def _points(series: str, at: Array, values: Array) -> list[dict[str, Any]]:
+    """Finite values over where they hold, both of shape (points,), in the units of the panel's axes (number or °)."""
+    return [
+        {"x": round(float(x), 2), "y": float(f"{y:.4g}"), "series": series}
+        for x, y in zip(at, values, strict=True)
+        if np.isfinite(y)
+    ]
+
+
+def _rho(plan: Plan, degrees: Array) -> list[Panel]:
+    """The conditioning, where it is finite, over elevations in °, shape (points,)."""
+    points = _points("total", degrees, plan.over_elevation.conditioning)
+    if not points:
+        return []
+    panel = _panel("Conditioning ρ", Measure("", 1.0), points, float(np.degrees(plan.elevation)))
+    return [panel]
+
+
+def _spec(across: str) -> dict[str, Any]:
+    points, chosen = (alt.NamedData(name=n) for n in (DATA_FORM, "chosen"))
+    x = alt.X("x:Q", title=across, axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
+    y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=True))
+    colour = alt.Color("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=COLOURS))
+    dash = alt.StrokeDash("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=DASHES))
+    base = alt.Chart(points).encode(x=x, y=y, color=colour)
+    hints = [alt.Tooltip("x:Q", title=across), alt.Tooltip("y:Q", title="value"), alt.Tooltip("series:N", title="part")]
+    return specification(
+        [
+            alt.Chart(chosen).mark_rule(color="var(--ink)", strokeDash=[2, 2]).encode(x="x:Q"),
+            base.mark_line(strokeWidth=1.5).encode(strokeDash=dash),
+            base.transform_filter("datum.series != 'tolerance'")
+            .mark_point(filled=True, opacity=1, size=20)
+            .encode(tooltip=hints),
+        ],
+        HEIGHT,
+    )
+
+
+READINESS_HEIGHT = 140
+"""Pixels: six panels fit on a screen."""
+MINUTE = 60.0
+"""s."""
+
+
+def readiness_charts(found: Readiness, kinds: dict[str, str]) -> ChartSet | None:
+    """One panel a sensor, all of one scale; None where nothing was recorded. ``kinds`` by sensor."""
+    if not len(found.time):
+        return None
+    allowed = {one.name: one.allowed for one in found.outlooks}
+    panels = tuple(_drift_panel(found, i, kinds[name], allowed.get(name)) for i, name in enumerate(found.names))
+    return ChartSet("readiness", "Change since the record began", _drift_spec(), panels)
+
+
+def _drift_panel(found: Readiness, column: int, kind: str, allowed: float | None) -> Panel:
+    change = found.change[:, column]
+    measure = deviation_measure(kind, "bias", float(np.max(np.abs([*change, allowed or 0.0]))))
+    minutes = found.time / MINUTE
+    points = [
+        {"x": float(f"{x:.5g}"), "y": float(f"{y * measure.factor:.4g}")} for x, y in zip(minutes, change, strict=True)
+    ]
+    limits = [] if allowed is None else [{"y": float(f"{side * allowed * measure.factor:.4g}")} for side in (-1, 1)]
+    low, high = (number(float(f"{edge * measure.factor:.2g}")) for edge in (change.min(), change.max()))
+    words = f"from {low} to {high}{THIN}{measure.label}"
+    return Panel(found.names[column], words, None, {DATA_FORM: points, "allowed": limits})
+
+
+@cache
+def _drift_spec() -> dict[str, Any]:
+    points, limits = (alt.NamedData(name=name) for name in (DATA_FORM, "allowed"))
+    x = alt.X("x:Q", title="minutes", axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
+    y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=False))
+    hints = [alt.Tooltip("x:Q", title="minutes"), alt.Tooltip("y:Q", title="change")]
+    line = alt.Chart(limits).mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y=y)
+    dots = (
+        alt.Chart(points)
+        .mark_point(filled=True, opacity=1, size=14, color="var(--accent)")
+        .encode(x=x, y=y, tooltip=hints)
+    )
+    return specification([line, dots], READINESS_HEIGHT)

@@ -1,0 +1,69 @@
+"""A session to go by: the last one of a unit or of a type's units, or where there is none yet, a simulated one."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.calibration.calibrate import averaged
+from estimator.parameters import nominal
+from estimator.session import CalibrationSession
+from estimator.simulate import simulate, stand_schedule
+from service.ingest import read_upload
+from service.planning.question import PlanQuestion
+from service.planning.stored_type import asked_of, sensors_of, why_not
+from service.sessions.store import Sessions
+from service.storage import Storage
+from service.storage.store import Store
+from service.types.store import UnitTypes
+
+LARGEST = 4 * 1024 * 1024
+"""Bytes of a file that is read as a pattern: a session of positions has a hundredth, and a long log says no more."""
+MOST_TYPES = 500
+"""That are offered for a choice."""
+POSITIONS = 12
+"""A run, of the simulated pattern: every 30°."""
+SEED = 1
+"""Of its noise: the same pattern every time."""
+NOISE = 1e-5
+"""m/s² or rad/s, one sigma: a microg, no more than makes it look measured."""
+
+
+def type_names(store: Store) -> tuple[str, ...]:
+    """Names of the stored types, for a choice."""
+    return tuple(known.name for known in UnitTypes(store).page(0, MOST_TYPES))
+
+
+def pattern(storage: Storage, serial: str, unit_type: str, question: PlanQuestion) -> CalibrationSession:
+    """What the next session of the unit, or of the type, will be like; NotFoundError where the type is not known."""
+    found = earlier(storage, serial, unit_type)
+    if found is not None:
+        return found
+    if not unit_type:
+        return _simulated(question.cone())
+    with storage.database.reading() as store:
+        known = UnitTypes(store).get(unit_type)
+    if why_not(known):
+        return _simulated(question.cone())
+    whole = asked_of(question, known)
+    return replace(_simulated(whole.block(sensors_of(known))), unit_type=unit_type)
+
+
+def earlier(storage: Storage, serial: str, unit_type: str) -> CalibrationSession | None:
+    """The last session of the unit, or else of the type."""
+    with storage.database.reading() as store:
+        stored = Sessions(store).latest_like(serial, None) if serial else None
+        if stored is None and unit_type:
+            stored = Sessions(store).latest_like(None, unit_type)
+    if stored is None or stored.size > LARGEST:
+        return None
+    session = read_upload(storage.files.read(stored.sha256), stored.filename)
+    return replace(averaged(session) if session.is_raw else session, unit_type=session.unit_type or unit_type or None)
+
+
+def _simulated(like: CalibrationSession) -> CalibrationSession:
+    """Nominal sensors on the stand of the question, which has no name yet."""
+    assert like.stand is not None, "a plan is for a stand"
+    stand = replace(like.stand, id="")
+    empty = stand_schedule(like.sensors, stand, like.site, POSITIONS, unit_name="", count_time=like.count_time)
+    noise = NOISE * np.array([sensor.nominal_scale for sensor in like.sensors])
+    return simulate(empty, nominal(like.sensors), np.random.default_rng(SEED), noise=noise, state_noise=False)

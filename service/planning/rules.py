@@ -1,0 +1,143 @@
+"""A session planned, a unit found ready, what a session still lacks; nothing is stored."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.linalg import LinAlgError
+
+from estimator.errors import Problem, SessionError
+from estimator.planning import Missing, Plan, missing
+from estimator.planning import plan as plan_session
+from estimator.readiness import Readiness, readiness
+from estimator.session import CalibrationSession
+from service.errors import NotFoundError, RefusedError
+from service.ingest import in_turn, read_first_rows, read_upload
+from service.ingest.layout.envelope import wrapped
+from service.kit.arriving_files import SentFile, held, where
+from service.kit.measures import leading_kind
+from service.planning.pattern import earlier
+from service.planning.question import PlanQuestion
+from service.planning.ready import ReadyQuestion
+from service.planning.stored_type import asked_of, sensors_of, why_not
+from service.sessions.records import PARAMETERS
+from service.storage import Storage
+from service.types.rules import DEFAULTS, tolerances_of
+from service.types.store import UnitTypes
+from service.units.store import Units
+
+AMOUNTS = ("theta", "alpha_error", "beta_error", "noise", "variation")
+TOO_FAR_APART = "This cannot be planned: errors of the stand and noise lie too many orders of magnitude apart."
+APART = "bring it nearer to the others"
+MOST_TYPES = 500
+"""Types that are offered for a choice."""
+
+
+def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
+    """The question with what the type knows filled in, and its plan."""
+    if not question.unit_type:
+        return question, _planned(question, question.cone(), question.kind)
+    with storage.database.reading() as store:
+        unit_type = UnitTypes(store).get(question.unit_type)
+    problems = why_not(unit_type)
+    if problems:
+        raise RefusedError(f"Units of the type {unit_type.name!r} cannot be planned for.", problems)
+    whole = asked_of(question, unit_type)
+    return whole, _planned(whole, whole.block(sensors_of(unit_type)), whole.kind)
+
+
+def _planned(question: PlanQuestion, like: CalibrationSession, kind: str) -> Plan:
+    """The plan; RefusedError where the amounts are such that no computation of 16 digits holds them together."""
+    try:
+        return plan_session(like, question.request(kind), sigma=question.sigma(like))
+    except LinAlgError as fault:
+        raise RefusedError(TOO_FAR_APART, tuple(Problem(name, APART) for name in AMOUNTS)) from fault
+
+
+def plannable_types(storage: Storage) -> tuple[str, ...]:
+    """Names of the stored types that can be planned for."""
+    with storage.database.reading() as store:
+        listed = UnitTypes(store).page(0, MOST_TYPES)
+    return tuple(known.name for known in listed if not why_not(known))
+
+
+def missing_of(file: SentFile, positions: int | None, *, both_runs: bool) -> Missing:
+    """What is to come; RefusedError with every problem where the file cannot be read so far."""
+    content = where(file.content) if file.mapping is None else wrapped(file.mapping, held(file.content))
+    try:
+        with in_turn(content):
+            return missing(read_upload(content, file.filename), positions, both_runs=both_runs)
+    except SessionError as fault:
+        raise RefusedError(f"{file.filename} cannot be read so far.", fault.problems) from fault
+
+
+SEED = 1
+"""Of the draws: the same file has the same answer."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """The answer, and what it was judged by."""
+
+    found: Readiness
+    kind: str
+    """Of the leading sensors."""
+    unit_type: str | None
+    """Whose tolerances were taken; None: the defaults."""
+    is_usual: bool
+    """Whether the duration was nobody's, but the usual one."""
+
+
+def readiness_of(storage: Storage, file: SentFile, asked: ReadyQuestion) -> Asked:
+    """Ready or not; RefusedError with every problem where the file cannot be read."""
+    content = where(file.content) if file.mapping is None else wrapped(file.mapping, held(file.content))
+    try:
+        with in_turn(content):
+            return _answered(storage, read_first_rows(content, file.filename), asked)
+    except SessionError as fault:
+        raise RefusedError(f"{file.filename} cannot be read so far.", fault.problems) from fault
+
+
+def judged_by_defaults(session: CalibrationSession, asked: ReadyQuestion) -> Asked:
+    """The same without a store, as of a unit that nobody knows."""
+    return _asked(session, asked, None, defaults(), None)
+
+
+def defaults() -> dict[tuple[str, str], float]:
+    """The tolerances that hold until an engineer sets others."""
+    stated = {(kind, name): getattr(own, name) for kind, own in DEFAULTS.items() for name in PARAMETERS}
+    return {key: tolerance for key, tolerance in stated.items() if tolerance is not None}
+
+
+def _answered(storage: Storage, session: CalibrationSession, asked: ReadyQuestion) -> Asked:
+    known = None
+    with storage.database.reading() as store:
+        if asked.unit_type:
+            known = UnitTypes(store).get(asked.unit_type)
+        elif Units(store).exists(session.unit):
+            known = UnitTypes(store).of_unit(session.unit)
+    if known is None:
+        return judged_by_defaults(session, asked)
+    usual = None if asked.minutes else usual_length(storage, session.unit, known.name)
+    return _asked(session, asked, known.name, tolerances_of(known), usual)
+
+
+def usual_length(storage: Storage, serial: str, unit_type: str) -> float | None:
+    """s that the last session of the unit, or else of its type, took; None where none says so."""
+    try:
+        last = earlier(storage, serial, unit_type)
+    except (NotFoundError, SessionError):
+        return None
+    return None if last is None or last.time is None else float(np.ptp(last.time)) or None
+
+
+def _asked(
+    session: CalibrationSession,
+    asked: ReadyQuestion,
+    unit_type: str | None,
+    tolerances: dict[tuple[str, str], float],
+    usual: float | None,
+) -> Asked:
+    kind = leading_kind({sensor.kind for sensor in session.sensors})
+    question = asked.question(kind, tolerances, usual)
+    found = readiness(session, question, np.random.default_rng(SEED))
+    return Asked(found, kind, unit_type, asked.minutes is None and usual is None)

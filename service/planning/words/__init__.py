@@ -1,0 +1,1 @@
+"""Sentences on plans and measurements to come."""

@@ -1,0 +1,179 @@
+"""Records are accepted, withdrawn, marked and chosen; services are recorded and withdrawn.
+
+was entered.
+"""
+
+from datetime import datetime
+
+from estimator.errors import Problem
+from estimator.session import IN_SERVICE
+from service.errors import ConflictError, RefusedError
+from service.ingest.checked import CLOCK_LEEWAY
+from service.outlook.changes import END_OF_TIME
+from service.records.change_state import change
+from service.records.derive_again import Derived, Deriving, derive_again
+from service.records.follow import follow
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.records import StoredSession
+from service.sessions.states import RecordKind, RecordState, Step
+from service.sessions.states_store import States
+from service.sessions.store import Sessions
+from service.sessions.words.advice import too_few
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.store import Store
+from service.types.store import UnitTypes
+from service.units.records import NewService, Service
+from service.units.store import Services, Units
+
+
+def accept_session(storage: Storage, way: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
+    """Accepts a session; ConflictError where it counts already, or where another one stands for it."""
+    with storage.database.writing() as store:
+        Units(store).hold(Sessions(store).get(id).unit)
+        session = Sessions(store).get(id)
+        _require_possible(store, session)
+        change(store, session, RecordState.ACCEPTED, step)
+        derived = derive_again(store, way, session.unit, session.started_at, (id,))
+    follow(storage, way, session.unit, derived)
+    with storage.database.reading() as store:
+        return Sessions(store).get(id), derived
+
+
+def _require_possible(store: Store, session: StoredSession) -> None:
+    if session.state is RecordState.ACCEPTED:
+        raise ConflictError(f"Session {session.id} is accepted already.")
+    if session.simulated and not Units(store).is_simulated(session.unit):
+        raise ConflictError(f"Session {session.id} is simulated, and unit {session.unit} has been measured since.")
+    if session.superseded_by is None:
+        return
+    stands_for_it = Sessions(store).get(session.superseded_by)
+    if stands_for_it.state in (RecordState.ACCEPTED, RecordState.QUESTIONED):
+        raise ConflictError(
+            f"Session {stands_for_it.id} stands for session {session.id}: withdraw it first, or both would count."
+        )
+
+
+POSSIBLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
+"""States of a session that can be withdrawn."""
+
+
+def withdraw_session(storage: Storage, way: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
+    """Withdraws a session; ConflictError where it does not count any more."""
+    with storage.database.writing() as store:
+        Units(store).hold(Sessions(store).get(id).unit)
+        session = Sessions(store).get(id)
+        if session.state not in POSSIBLE:
+            raise ConflictError(f"Session {id} is {session.state} already.")
+        change(store, session, RecordState.WITHDRAWN, step)
+        derived = derive_again(store, way, session.unit, session.started_at, (id,))
+    follow(storage, way, session.unit, derived)
+    with storage.database.reading() as store:
+        return Sessions(store).get(id), derived
+
+
+def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
+    """Makes a session the reference of its epoch, from the first session on; ConflictError where it cannot be one."""
+    with storage.database.writing() as store:
+        unit = Units(store).hold(Sessions(store).get(id).unit)
+        session = Sessions(store).get(id)
+        _require_choice(store, session)
+        States(store).choose(unit, id, step)
+        Audit(store).write(step.at, step.who, "choose reference", id, {"unit": session.unit, "why": step.why})
+        derived = derive_again(store, way, session.unit, session.started_at, (id,))
+    follow(storage, way, session.unit, derived)
+    with storage.database.reading() as store:
+        return Sessions(store).get(id), derived
+
+
+def _require_choice(store: Store, session: StoredSession) -> None:
+    if session.state is not RecordState.ACCEPTED:
+        raise ConflictError(f"Session {session.id} is {session.state}: only an accepted session can be a reference.")
+    if session.programme == IN_SERVICE:
+        raise ConflictError("A recording in service is compared with a calibration and is no reference itself.")
+    if blind := too_few(Calibrations(store).get(session.id)):
+        raise ConflictError(f"Session {session.id} gives no uncertainty to judge others with. {blind}")
+
+
+def set_check(storage: Storage, way: Deriving, id: str, step: Step, *, is_check: bool) -> StoredSession:
+    """Marks a session and works out its unit's dates again; no verdict changes. The same mark again changes nothing."""
+    derived: Derived | None = None
+    with storage.database.writing() as store:
+        Units(store).hold(Sessions(store).get(id).unit)
+        session = Sessions(store).get(id)
+        if session.is_check != is_check:
+            Sessions(store).set_check(id, is_check)
+            details = {"unit": session.unit, "is_check": is_check, "why": step.why}
+            Audit(store).write(step.at, step.who, "check", id, details)
+            derived = derive_again(store, way, session.unit, END_OF_TIME)
+    if derived is not None:
+        follow(storage, way, session.unit, derived)
+    with storage.database.reading() as store:
+        return Sessions(store).get(id)
+
+
+def set_stage(storage: Storage, id: str, stage: str | None, who: str, now: datetime) -> StoredSession:
+    """Marks a session; the same mark again changes nothing."""
+    with storage.database.writing() as store:
+        session = Sessions(store).get(id)
+        if session.stage != stage:
+            Sessions(store).set_stage(id, stage)
+            Audit(store).write(now, who, "stage", id, {"unit": session.unit, "before": session.stage, "stage": stage})
+        return Sessions(store).get(id)
+
+
+def record_service(
+    storage: Storage, serial: str, new: NewService, now: datetime, *, coverage_factor: float = 2.0
+) -> tuple[Service, Derived | None]:
+    """Records a break once; returns it and what followed, None where it was known. A trend never runs across it.
+
+    One that was withdrawn and is recorded again counts again.
+    """
+    way = Deriving(storage.files, coverage_factor, now)
+    with storage.database.writing() as store:
+        unit = Units(store).hold(serial)
+        problems = _problems(store, serial, new, now)
+        if problems:
+            raise RefusedError("The service cannot be recorded.", problems)
+        number, created = Services(store).add(unit, new, now)
+        known = Services(store).get(number)
+        if not created and known.state is RecordState.ACCEPTED:
+            return known, None
+        who = new.who or "crew"
+        if not created:
+            Services(store).put_state(number, RecordState.ACCEPTED)
+            step = Step(who, now, new.note or "recorded again")
+            States(store).add(RecordKind.SERVICE, str(number), RecordState.ACCEPTED, step)
+        details = {"kind": new.kind, "at": new.at.isoformat(), "note": new.note, "sensor": new.sensor}
+        Audit(store).write(now, who, "service", serial, details)
+        derived = derive_again(store, way, serial, new.at)
+        recorded = Services(store).get(number)
+    follow(storage, way, serial, derived)
+    return recorded, derived
+
+
+def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:
+    found = []
+    if new.at > now + CLOCK_LEEWAY:
+        found.append(Problem("at", f"lies in the future ({new.at:%Y-%m-%d}); record what was done"))
+    sensors = UnitTypes(store).of_unit(serial).sensors
+    if new.sensor and new.sensor not in sensors:
+        found.append(Problem("sensor", f"is no sensor of {serial}; it has {', '.join(sensors)}"))
+    return tuple(found)
+
+
+def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -> tuple[Service, Derived]:
+    """Withdraws a service; ConflictError where that was done before."""
+    with storage.database.writing() as store:
+        Units(store).hold(Services(store).get(number).unit)
+        service = Services(store).get(number)
+        if service.state is RecordState.WITHDRAWN:
+            raise ConflictError(f"Service {number} is withdrawn already.")
+        Services(store).put_state(number, RecordState.WITHDRAWN)
+        States(store).add(RecordKind.SERVICE, str(number), RecordState.WITHDRAWN, step)
+        details = {"service": number, "kind": service.kind, "at": service.at.isoformat(), "why": step.why}
+        Audit(store).write(step.at, step.who, "withdraw service", service.unit, details)
+        derived = derive_again(store, way, service.unit, service.at)
+        withdrawn = Services(store).get(number)
+    follow(storage, way, withdrawn.unit, derived)
+    return withdrawn, derived

@@ -1,0 +1,20 @@
+"""What routes ask for by type: what changes records."""
+
+from typing import Annotated
+
+from fastapi import Depends, Request
+
+from service.people.admission import PersonOf
+from service.people.dependencies import CREW, StorageOf
+from service.records.reception import Reception
+from service.web.application import application_of
+
+
+def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Reception:
+    own = application_of(request)
+    k, later = own.settings.coverage_factor, own.settings.diagnosis_workers > 0
+    return Reception(storage, k, own.metrics, own.bell.ring, person.signs(CREW), is_dated_later=later)
+
+
+ReceptionOf = Annotated[Reception, Depends(_reception)]
+"""What takes in uploads."""

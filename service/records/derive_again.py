@@ -1,0 +1,165 @@
+"""Step: everything that is derived of a unit's accepted records, brought in line with them after a change.
+
+References, verdicts with their decisions and common motions, the unit's line in the fleet and its open flags. Every
+flow that changes which records count ends with it, within its own transaction, and nothing is computed in that: what
+was foreseen is put down, what remains is left to be judged, and `service.records.follow` does it next. A session whose
+verdict rests on what it must rest on is left alone, so an ordinary upload judges one session.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.fleet.store import Fleet
+from service.groups.records import Level
+from service.groups.store import Groups
+from service.judging.known_unit import KnownUnit, known_unit
+from service.judging.store import Derivations
+from service.outlook.store import Outlooks
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.epochs import Place, needs_judging
+from service.records.flagging.drift import flag_drift
+from service.records.flagging.fold import settle_sessions
+from service.records.flagging.overdue import no_longer_overdue
+from service.records.flagging.settle import Occasion
+from service.records.flagging.verdict import tell_verdict
+from service.records.judge_again import Foreseen, fitting, judging, places_of, put
+from service.sessions.records import StoredSession
+from service.storage import Files
+from service.storage.store import Store
+from service.units.store import Units
+
+AT_ONCE = 20
+"""Sessions that are judged within the request that changed a record, about a second; of more, all but the request's
+own are judged after it."""
+NOTHING_FORESEEN = Foreseen()
+
+
+@dataclass(frozen=True)
+class Deriving:
+    """What a derivation takes beside the transaction that changes a record."""
+
+    files: Files
+    coverage_factor: float
+    at: datetime
+    at_once: int | None = AT_ONCE
+    """None where all are judged now."""
+    outlook: bool = True
+    """Whether the outlook is asked for: of many files in a row the last one brings it."""
+    is_dated_later: bool = False
+    """Whether processes beside the requests make it; else it is made after the transaction (`refresh_beside.date`)."""
+
+
+@dataclass(frozen=True)
+class Derived:
+    """What a derivation did and left."""
+
+    judged: tuple[str, ...]
+    """Before the answer."""
+    waiting: int
+    """Sessions that are to be judged after the answer."""
+    latest: StoredSession | None
+    """The unit's latest session that counts; None where that is still to be looked at."""
+    is_left: bool = False
+    """Whether anything is to be judged or weighed after the transaction."""
+
+
+NOTHING_LEFT = Derived((), 0, None)
+
+
+def derive_again(
+    store: Store,
+    way: Deriving,
+    serial: str,
+    since: datetime,
+    touched: Sequence[str] = (),
+    *,
+    known: KnownUnit | None = None,
+    foreseen: Foreseen = NOTHING_FORESEEN,
+) -> Derived:
+    """Derives what is known of a unit after its records changed from a date on; ``touched`` are judged in any case.
+
+    ``known``: what this transaction has read of the unit, where nothing of it changed since. ``foreseen``: what was
+    worked out before it; the rest is left to `service.records.follow`.
+    """
+    known = known or known_unit(store, Units(store).hold(serial))
+    places = places_of(known)
+    stale = needs_judging(places, since)
+    references = {p.session.id for p in places if p.is_reference}
+    if references != known.records.references:
+        Derivations(store).put_references(known.unit, references)
+    now = _fitting(way, serial, known, stale, foreseen)
+    diagnosed = _ask_again(way, known, since, [p.session.id for p in now], _as_before(known, since, touched))
+    put(known, now, foreseen, diagnosed)
+    left = [p for p in stale if p not in now]
+    Derivations(store).wait([p.session.id for p in left])
+    own = _own(left, touched, way.at_once)
+    is_left = bool(left) or any(p.session.id in diagnosed for p in now)
+    latest = sum_up(store, way, serial) if not is_left or len(own) < len(left) else None
+    groups = Groups(store).of_unit(serial)
+    WorkQueue(store, WorkKind.GROUP).ask_each((group.place for group in groups), way.at)
+    shared = (group.place for group in groups if group.level is not Level.UNIT)
+    WorkQueue(store, WorkKind.SUMMARY).ask_each(shared, way.at)
+    return Derived((*(p.session.id for p in now), *own), len(left) - len(own), latest, is_left)
+
+
+def _fitting(
+    way: Deriving, serial: str, known: KnownUnit, stale: Sequence[Place], foreseen: Foreseen
+) -> tuple[Place, ...]:
+    """Of the sessions that are to be judged those that were judged so before the transaction."""
+    found = [p for p in stale if p.session.id in foreseen.outcomes]
+    if not found:
+        return ()
+    return fitting(judging(known, serial, found, way.files, way.coverage_factor, way.at), found, foreseen)
+
+
+def _as_before(known: KnownUnit, since: datetime, touched: Collection[str]) -> tuple[str, ...]:
+    """Sessions whose diagnosis looks at nothing that has changed: a change of a record is none for itself, and another
+    calibration is none for any."""
+    own = known.records.diagnosed
+    return tuple(id for id in touched if id in known.made or (id in own and own[id] <= since))
+
+
+def _ask_again(
+    way: Deriving, known: KnownUnit, since: datetime, judged: Collection[str], same: Collection[str]
+) -> frozenset[str]:
+    """Diagnoses that looked at what has changed are asked for again, and those that are being made look again; the
+    sessions that keep theirs."""
+    store, own = known.store, known.records
+    Fleet(store).touch(known.unit)
+    if any(at >= since or id in judged for id, at in own.waiting.items() if id not in known.made):
+        Derivations(store).look_again(known.unit, since, judged)
+    gone: tuple[str, ...] = ()
+    if any(at >= since and id not in same for id, at in own.diagnosed.items()):
+        gone = Derivations(store).forget_diagnoses(known.unit, since, same)
+        WorkQueue(store, WorkKind.DIAGNOSIS).ask_once(gone, way.at)
+    return frozenset(own.diagnosed.keys() - {*gone})
+
+
+def _own(left: Sequence[Place], touched: Sequence[str], most: int | None) -> tuple[str, ...]:
+    """Which of those that are left whoever changed the records judges."""
+    few = most is None or len(left) <= most
+    return tuple(p.session.id for p in left if few or p.session.id in touched)
+
+
+def sum_up(store: Store, way: Deriving, serial: str) -> StoredSession | None:
+    """The outlook, the unit's line and its flags; the latest session that counts."""
+    unit = Units(store).key(serial)
+    was = Fleet(store).refresh(unit)
+    latest = was.latest
+    occasion = Occasion(unit, None if latest is None else latest.id, way.at)
+    if latest is None:
+        Outlooks(store).drop(unit)
+        WorkQueue(store, WorkKind.OUTLOOK).drop(serial)
+        settle_sessions(store, occasion)
+        flag_drift(store, occasion, None)
+        no_longer_overdue(store, occasion, None)
+        return None
+    if was.before is None:
+        Fleet(store).count_flags(unit)
+    tell_verdict(store, occasion, latest, was)
+    settle_sessions(store, occasion)
+    if way.outlook:
+        WorkQueue(store, WorkKind.OUTLOOK).ask_again(serial, way.at)
+    return latest

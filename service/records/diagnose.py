@@ -1,0 +1,202 @@
+"""Flow: what the simulation gets wrong about a stored session, found once and kept.
+
+A session without a diagnosis is one whose diagnosis is pending. An upload asks for it within its own transaction, and
+processes beside the requests make it, or else whoever reads it first: see `service.work.loop`. So an
+acknowledged upload is never left without one.
+"""
+
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from estimator import diagnose as find_causes
+from estimator.errors import SessionError
+from estimator.results import COVERAGE
+from estimator.session import DIAGNOSED, CalibrationSession
+from service.diagnosis.document import inapplicable_to_dict, read_diagnosis
+from service.diagnosis.records import StoredDiagnosis, state_of
+from service.diagnosis.store import Diagnoses
+from service.diagnosis.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
+from service.groups.changes import as_evidence, keep_statistics, kept_before
+from service.ingest import read_upload
+from service.ingest.checked import dated
+from service.judging.reservations import UNCHECKED
+from service.kit.failure_words import with_last_try
+from service.kit.log import log
+from service.models.store import Models
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.change_state import question_diagnosed
+from service.records.derive_again import NOTHING_LEFT, Derived, Deriving
+from service.records.flagging.diagnosis import flag_diagnosis
+from service.records.follow import follow
+from service.records.keep_noise import keep_noise
+from service.records.weigh import Weighed, weigh, weighing_of
+from service.sessions.records import DiagnosisState, StoredSession
+from service.sessions.states import RecordState
+from service.sessions.store import Sessions
+from service.settings import VERSION
+from service.storage import Files, Storage
+from service.storage.audit import Audit
+from service.storage.files import LOST
+from service.storage.json_text import json_text
+from service.storage.lock_order import outside_writing
+from service.storage.store import Store
+from service.units.store import Services, Units
+
+MOST_EARLIER = 10
+"""Earlier sessions of the unit that a diagnosis looks at."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A stored session with what its diagnosis looks at."""
+
+    session: StoredSession
+    earlier: tuple[StoredSession, ...]
+    """Of the same unit and epoch, oldest first."""
+    model_revision: int
+
+
+def task_of(store: Store, id: str) -> Task:
+    """What the diagnosis of a session looks at."""
+    session = Sessions(store).get(id)
+    since, _ = Services(store).around(Units(store).key(session.unit), session.started_at)
+    revisions = Models(store).of_session(id)
+    return Task(
+        session, Sessions(store).before(session, since, MOST_EARLIER), max((r.id for r in revisions), default=0)
+    )
+
+
+def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = COVERAGE) -> StoredDiagnosis:
+    """The diagnosis of a session: the stored one, or a new one that is stored.
+
+    Where what it looks at changes meanwhile it is made anew.
+    """
+    way = Deriving(storage.files, coverage_factor, now)
+    while True:
+        with storage.database.reading() as store:
+            known = known_of(store, id)
+            if known is not None:
+                return known
+            task, asked = task_of(store, id), WorkQueue(store, WorkKind.DIAGNOSIS).get(id)
+        made = _made(storage, task, now)
+        with storage.database.writing() as store:
+            kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
+        if kept is not None:
+            follow(storage, way, task.session.unit, kept)
+            keep_noise(storage, id, now)
+            if made.state is not DiagnosisState.FAILED:
+                keep_statistics(storage, id, now)
+            return made
+
+
+def give_up(storage: Storage, id: str, now: datetime) -> None:
+    """Stores of a session that the program failed at its diagnosis; this version does not try again."""
+    with storage.database.reading() as store:
+        task, asked = task_of(store, id), WorkQueue(store, WorkKind.DIAGNOSIS).get(id)
+    log.error("diagnosis given up", session=id, estimator_version=VERSION)
+    summary = with_last_try(fault_of_the_program(id), "" if asked is None else asked.failed)
+    made, way = _failed(task, summary, now), Deriving(storage.files, COVERAGE, now)
+    with storage.database.writing() as store:
+        _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
+
+
+def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket: str | None) -> Derived | None:
+    """Where it is of what is known now it is stored, unless another one was made meanwhile, and what is left of what
+    follows is returned; None where it is not."""
+    Units(store).hold(unit)
+    if not WorkQueue(store, WorkKind.DIAGNOSIS).settle(made.session, ticket):
+        return None
+    derived = None
+    if Diagnoses(store).add_once(made):
+        details = {"state": made.state.value, "summary": made.summary}
+        Audit(store).write(way.at, "diagnosis", "diagnose", made.session, details)
+        flag_diagnosis(store, made, way.at)
+        if made.found is not None:
+            derived = question_diagnosed(store, way, made.session, made.found)
+    return derived or NOTHING_LEFT
+
+
+def known_of(store: Store, id: str) -> StoredDiagnosis | None:
+    """The stored diagnosis; None where there is none, or where an earlier version of the program failed to make it."""
+    found = Diagnoses(store).get(id)
+    failed_before = found is not None and found.state is DiagnosisState.FAILED and found.estimator_version != VERSION
+    return None if failed_before else found
+
+
+@outside_writing
+def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
+    """Reads the stored bytes again and looks for causes, where the programme is one that can show any."""
+    if task.session.programme not in DIAGNOSED:
+        nothing = json_text(inapplicable_to_dict(task.session.unit))
+        return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
+    try:
+        return _found(storage, task, now)
+    except SessionError as fault:
+        return _failed(task, cannot_be_diagnosed(fault), now)
+
+
+def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
+    """The session's causes, and its verdict with them in the model."""
+    session = _read(storage.files, task.session)
+    earlier = _comparable(storage.files, task, session)
+    with storage.database.reading() as store:
+        kept = kept_before(store, task.session)
+    found = find_causes(session, tuple(earlier.values()), records=as_evidence(session, kept, earlier))
+    document = json_text(found.to_dict())
+    read = read_diagnosis(document)
+    with storage.database.reading() as store:
+        by = weighing_of(store, task.session.id, session.block)
+    weighed = Weighed(None, ()) if read is None else weigh(session, read, by)
+    return replace(
+        _nothing_found(task, state_of(found), summary_of(found), now),
+        found=read,
+        document=document,
+        verdict_after=weighed.verdict_after,
+        reservations=weighed.reservations,
+    )
+
+
+def _failed(task: Task, summary: str, now: datetime) -> StoredDiagnosis:
+    """Why there is none: the verdict was not checked."""
+    return replace(_nothing_found(task, DiagnosisState.FAILED, summary, now), reservations=UNCHECKED)
+
+
+def _nothing_found(task: Task, state: DiagnosisState, summary: str, now: datetime) -> StoredDiagnosis:
+    """What it came to in one line, and no more."""
+    return StoredDiagnosis(
+        session=task.session.id,
+        model_revision=task.model_revision,
+        state=state,
+        summary=summary,
+        found=None,
+        document=None,
+        verdict_after=None,
+        estimator_version=VERSION,
+        created_at=now,
+    )
+
+
+def _read(files: Files, stored: StoredSession) -> CalibrationSession:
+    return dated(read_upload(files.content(stored.sha256), stored.filename), stored.started_at)
+
+
+def _comparable(files: Files, task: Task, session: CalibrationSession) -> dict[str, CalibrationSession]:
+    """Earlier sessions of the same sensors measured in the same way, oldest first, by their identifier; a lost file is
+    passed over.
+
+    One that is questioned is compared with none: it cannot be as it says, and everything about it would seem new.
+    """
+    found = {}
+    for past in () if task.session.state is RecordState.QUESTIONED else task.earlier:
+        try:
+            earlier = _read(files, past)
+        except (*LOST, SessionError):
+            continue
+        if _sensors(earlier) == _sensors(session):
+            found[past.id] = earlier
+    return found
+
+
+def _sensors(session: CalibrationSession) -> list[tuple[str, str]]:
+    return [(sensor.name, sensor.kind) for sensor in session.sensors]

@@ -1,0 +1,1 @@
+"""What raises flags and settles them, one reason a file."""

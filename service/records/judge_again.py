@@ -1,0 +1,153 @@
+"""Step: sessions judged as their places say: worked out with no transaction open that others wait for, and put down
+within one, where it still holds.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from estimator.errors import SessionError
+from estimator.parity import parity_check
+from estimator.parity.as_calibration import parity_calibration
+from estimator.results import Calibration
+from estimator.session import IN_SERVICE
+from service.ingest import read_upload
+from service.judging.calibrate import Comparison
+from service.judging.judge import judge, judge_recording
+from service.judging.known_unit import KnownUnit
+from service.judging.records import Decided
+from service.judging.store import Derivations
+from service.records.epochs import Place, placed
+from service.records.flagging.verdict import told_by
+from service.records.keep import Made, made
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.decision import Judged, Opening
+from service.sessions.history_store import History
+from service.sessions.records import UNWEIGHED
+from service.sessions.store import Sessions
+from service.storage import Files
+from service.storage.files import LOST
+from service.types.records import UnitType
+from service.types.store import TypeThroughTime, UnitTypes, held_at
+
+NOTHING_TO_COMPARE = (
+    "No calibration of the unit is accepted in this epoch, and a recording in service is compared with one."
+)
+
+
+@dataclass(frozen=True)
+class Judging:
+    """What sessions of a unit are judged by."""
+
+    files: Files
+    coverage_factor: float
+    at: datetime
+    """When what is stored now is computed."""
+    of_type: TypeThroughTime
+    computed: Mapping[str, datetime]
+    """When the calibrations of sessions that are stored were computed."""
+
+    def unit_type(self, id: str) -> UnitType:
+        """With the tolerances that held when the calibration of a session was computed."""
+        return held_at(self.of_type, self.computed.get(id, self.at))
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """How a session is judged at its place, by a revision of the tolerances."""
+
+    basis: str
+    unit_type: UnitType
+    judged: Judged
+    moved: Made | None = None
+    """Of a recording in service that can be compared: the calibration that it moves."""
+
+
+@dataclass(frozen=True)
+class Foreseen:
+    """How sessions are judged if nothing changes until their transaction."""
+
+    outcomes: Mapping[str, Outcome] = field(default_factory=dict)
+    references: Mapping[tuple[str, int], Calibration] = field(default_factory=dict)
+    """Those that they are judged against, by session and revision: they never change under one."""
+
+
+def places_of(known: KnownUnit) -> tuple[Place, ...]:
+    """The unit's accepted sessions, each with its reference."""
+    own = known.records
+    return placed(own.counted, own.breaks, own.choices, known.is_blind)
+
+
+def judging(
+    known: KnownUnit, serial: str, places: Sequence[Place], files: Files, coverage_factor: float, at: datetime
+) -> Judging:
+    """What some of a unit's sessions are judged by."""
+    computed = Derivations(known.store).computed_at([p.session.id for p in places if p.session.id not in known.made])
+    return Judging(files, coverage_factor, at, UnitTypes(known.store).of_unit_through_time(serial), computed)
+
+
+def judged(known: KnownUnit, by: Judging, places: Sequence[Place]) -> Foreseen:
+    """The numerical part, on what is stored."""
+    against = [p.reference for p in places if p.reference is not None]
+    known.read_all([*(p.session.id for p in places), *(one.id for one in against)])
+    return Foreseen(
+        {place.session.id: _outcome(known, by, place) for place in places},
+        {(one.id, one.revision): known.calibration(one.id) for one in against},
+    )
+
+
+def _outcome(known: KnownUnit, by: Judging, place: Place) -> Outcome:
+    unit_type = by.unit_type(place.session.id)
+    if place.session.programme == IN_SERVICE:
+        return _of_recording(known, by, place, unit_type)
+    own = known.calibration(place.session.id)
+    against = None if place.is_reference or place.reference is None else known.calibration(place.reference.id)
+    opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
+    return Outcome(place.basis, unit_type, judge(own, against, unit_type, by.coverage_factor, opening=opening))
+
+
+def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitType) -> Outcome:
+    """A recording in service moves the calibration that it is compared with, so it is compared anew."""
+    own, id = known.calibration(place.session.id), place.session.id
+    if place.reference is None:
+        return Outcome(place.basis, unit_type, Judged(own, (), NOTHING_TO_COMPARE, is_reference=False))
+    sha256, filename = known.file(id)
+    try:
+        source = read_upload(by.files.content(sha256), filename)
+    except (*LOST, SessionError) as lost:
+        return Outcome(place.basis, unit_type, Judged(own, (), f"It cannot be compared: {lost}", is_reference=False))
+    reference = known.calibration(place.reference.id)
+    found = Comparison(reference, parity_check(source, reference))
+    moved = parity_calibration(found.result, reference)
+    decided = judge_recording(moved, found, unit_type, by.coverage_factor)
+    return Outcome(place.basis, unit_type, decided, made(moved))
+
+
+def fitting(by: Judging, places: Sequence[Place], foreseen: Foreseen) -> tuple[Place, ...]:
+    """The places that were foreseen so."""
+    return tuple(p for p in places if _fits(by, p, foreseen.outcomes.get(p.session.id)))
+
+
+def _fits(by: Judging, place: Place, found: Outcome | None) -> bool:
+    return found is not None and (found.basis, found.unit_type) == (place.basis, by.unit_type(place.session.id))
+
+
+def put(known: KnownUnit, places: Sequence[Place], foreseen: Foreseen, diagnosed: Collection[str]) -> None:
+    """Puts down what was worked out of sessions. Those that are diagnosed are still to be weighed."""
+    decided = []
+    for place in places:
+        own, outcome = place.session, foreseen.outcomes[place.session.id]
+        basis = (UNWEIGHED if own.id in diagnosed else "") + place.basis
+        told = told_by(own.at, outcome.judged)
+        decided.append(Decided(own.id, own.revision, outcome.judged, basis, told, is_first=own.id in known.made))
+        if own.programme == IN_SERVICE:
+            _move(known, own.id, outcome.moved)
+    Derivations(known.store).put_judged(decided)
+
+
+def _move(known: KnownUnit, id: str, moved: Made | None) -> None:
+    session = Sessions(known.store).get(id)
+    History(known.store).drop(session)
+    if moved is not None:
+        Calibrations(known.store).put(id, session.revision, moved.packed)
+        History(known.store).add(known.unit, ((session, moved.values),))

@@ -1,0 +1,284 @@
+"""Engineers accept causes and what groups show into models, and withdraw them.
+
+The size is the group's: no session fits it again. Whose model it becomes part of was found with it.
+
+What a group of sessions showed goes out of every session that it concerned.
+"""
+
+from dataclasses import replace
+from datetime import datetime
+from math import exp, hypot
+
+from estimator.causes import find
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Gain
+from estimator.errors import Problem
+from estimator.groups import GroupFinding
+from estimator.groups.fixed import EMPIRICAL
+from estimator.groups.results import EmpiricalTerm
+from service.diagnosis.records import StoredDiagnosis
+from service.diagnosis.words.causes import UNKNOWN_CAUSE, cause_on
+from service.errors import ConflictError, RefusedError
+from service.groups.changes import tell_own
+from service.groups.document import read_group
+from service.groups.records import Group, GroupShown
+from service.groups.words.learned_term import equation_of
+from service.jobs.changes import tell_job
+from service.models.records import SCOPES, Evidence, ModelRevision, NewLasting, NewModel, Pooled, Scope
+from service.models.rules import in_force, pooled_of
+from service.models.store import Models, Recomputations
+from service.records.flagging.lasting import settle_accepted
+from service.records.refresh_group import current, members_of
+from service.sessions.records import DiagnosisState, StoredSession
+from service.sessions.store import Sessions
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.store import Store
+from service.types.store import UnitTypes
+
+
+def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, now: datetime) -> ModelRevision:
+    """Adds a numbered revision with its evidence; RefusedError where the session does not show the cause, ConflictError
+    where it could not be diagnosed."""
+    if diagnosis.state is DiagnosisState.FAILED:
+        raise ConflictError(diagnosis.summary)
+    if diagnosis.found is None:
+        raise _not_shown(new.cause, ())
+    finding = _finding(diagnosis.found.findings, new.cause)
+    with storage.database.writing() as store:
+        session = Sessions(store).get(diagnosis.session)
+        unit_type = UnitTypes(store).of_unit(session.unit).name
+        accepted = ModelRevision(
+            id=0,
+            scope=new.scope,
+            subject=_subject(new, session, unit_type, finding.sensors),
+            cause=new.cause,
+            sensors=finding.sensors,
+            session=session.id,
+            evidence=_evidence(finding, diagnosis.found.gain),
+            accepted_by=new.by,
+            note=new.note,
+            accepted_at=now,
+        )
+        revision = Models(store).add(accepted)
+        tell_own(store, revision.scope, revision.subject)
+        details = {"cause": new.cause, "sensors": list(finding.sensors), "session": session.id, "note": new.note}
+        Audit(store).write(
+            now, new.by, "accept model", f"{new.scope} {revision.subject}", {"revision": revision.id, **details}
+        )
+        return revision
+
+
+def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
+    """The finding that is accepted, under its own name or under that of an equal alternative.
+
+    What only several sessions show together is accepted from those, at the size that they found.
+    """
+    findings = tuple(f for f in findings if f.over_sessions is None)
+    named = [f for f in findings if f.cause == wanted]
+    equal = [_as_alternative(f, wanted) for f in findings if wanted in f.alternatives and wanted != UNKNOWN_CAUSE]
+    if not named and not equal:
+        raise _not_shown(wanted, findings)
+    known = find(wanted)
+    if known is None or not known.can_be_modelled:
+        raise _refused(
+            "cause",
+            f"{wanted!r} is a matter of this one record or of what changed since earlier sessions, not a property "
+            "that a model can hold; correct the record and upload it again, or act on the unit",
+        )
+    return (*named, *equal)[0]
+
+
+def _as_alternative(finding: Finding, wanted: str) -> Finding:
+    """The finding with the sensors of the alternative; its amplitude is another quantity and is left out."""
+    sensors = next((s.sensors for s in finding.separations if s.cause == wanted), finding.sensors)
+    return replace(finding, sensors=sensors, amplitude=(), sigma=(), units=(), nonlinear_each=({},))
+
+
+def _evidence(finding: Finding, gain: Gain) -> Evidence:
+    return Evidence(
+        p_value=finding.p_value,
+        strength=finding.strength,
+        amplitude=finding.amplitude,
+        sigma=finding.sigma,
+        units=finding.units,
+        nonlinear=finding.nonlinear,
+        alternatives=finding.alternatives,
+        sentence=finding.sentence,
+        gain=gain,
+    )
+
+
+def _subject(new: NewModel, session: StoredSession, unit_type: str, sensors: tuple[str, ...]) -> str:
+    match new.scope:
+        case Scope.UNIT:
+            return session.unit
+        case Scope.UNIT_TYPE:
+            return unit_type
+        case Scope.STAND:
+            return _stand(session, sensors)
+
+
+def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
+    if sensors:
+        found = " and ".join(sensors)
+        raise _refused("scope", f"is 'stand', but the cause acts on {found}; accept it for the unit or the unit type")
+    if session.stand is None:
+        raise _refused("scope", "is 'stand', but the session names no stand; accept it for the unit or the unit type")
+    return session.stand
+
+
+def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
+    shown = ", ".join(f.cause for f in findings) or "none"
+    return _refused("cause", f"{wanted!r} is not among the causes that this session shows ({shown})")
+
+
+def _refused(field: str, message: str) -> RefusedError:
+    return RefusedError("The cause cannot be accepted.", (Problem(field, message),))
+
+
+MOST = 700.0
+"""ln of the largest number that a double holds, about."""
+NOT_MADE = "What these sessions show together is being worked out with their latest records: ask for it, then accept."
+
+
+def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetime) -> ModelRevision:
+    """Adds a numbered revision with its evidence, and asks for every session that it concerns to be computed again.
+
+    RefusedError where the group does not show the cause, ConflictError where its answer is not of its sessions of now.
+    """
+    with storage.database.writing() as store:
+        answer = current(store, group)
+        if answer is None or answer.document is None:
+            raise ConflictError(NOT_MADE)
+        shown = read_group(answer.document)
+        taken = _term(shown, new) if new.cause == EMPIRICAL else _lasting_finding(shown, new)
+        scope = SCOPES[taken.level]
+        revision = Models(store).add(
+            ModelRevision(
+                id=0,
+                scope=scope,
+                subject=taken.subject,
+                cause=new.cause,
+                sensors=taken.sensors,
+                session=_latest(store, group),
+                evidence=term_evidence(taken, shown) if isinstance(taken, EmpiricalTerm) else evidence_of(taken, shown),
+                accepted_by=new.by,
+                note=new.note,
+                accepted_at=now,
+            )
+        )
+        if isinstance(taken, GroupFinding):
+            settle_accepted(store, revision, taken, now)
+        tell_own(store, scope, taken.subject)
+        units = Recomputations(store).ask(revision.id, scope, taken.subject, now)
+        tell_job(store, revision, units, now)
+        details = {"revision": revision.id, "cause": new.cause, "sensors": list(taken.sensors), "units": units}
+        shows = {"group": f"{SCOPES[group.level.value]} {group.name}", "sessions": shown.sessions, "note": new.note}
+        Audit(store).write(now, new.by, "accept model", f"{scope} {taken.subject}", details | shows)
+        return revision
+
+
+def evidence_of(finding: GroupFinding, shown: GroupShown) -> Evidence:
+    """The finding as a revision keeps it; 1/e bounds the probability of such evidence without an effect (Markov)."""
+    gain = shown.gain
+    return Evidence(
+        p_value=min(1.0, 1 / finding.e_value),
+        strength=finding.strength,
+        amplitude=finding.amplitude,
+        sigma=tuple(float("nan") if sigma is None else sigma for sigma in finding.sigma),
+        units=finding.units,
+        nonlinear={} if finding.shape is None else {"s": finding.shape},
+        alternatives=finding.alternatives,
+        sentence=finding.sentence,
+        gain=None,
+        pooled=Pooled(
+            sessions=shown.sessions,
+            first=shown.first,
+            last=shown.last,
+            form=finding.form,
+            since=finding.since,
+            kind=finding.kind,
+            shape=finding.shape,
+            spread=finding.spread,
+            e_value=finding.e_value,
+            fitted=0 if gain is None else gain.fitted,
+            held_out=0 if gain is None else gain.held_out,
+            log_score=None if gain is None else gain.log_score,
+        ),
+    )
+
+
+def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> Evidence:
+    """A learned term as a revision keeps it: its evidence is what it gains on the sessions that took no part."""
+    return Evidence(
+        p_value=min(1.0, exp(-max(term.gain, 0.0))),
+        strength=hypot(*(a / s for a, s in zip(term.amplitude, term.sigma, strict=True))),
+        amplitude=term.amplitude,
+        sigma=term.sigma,
+        units=term.units,
+        nonlinear={},
+        alternatives=(),
+        sentence=equation_of(term),
+        gain=None,
+        pooled=Pooled(
+            sessions=shown.sessions,
+            first=shown.first,
+            last=shown.last,
+            form="same",
+            since=None,
+            kind="",
+            shape=None,
+            spread=(0.0,),
+            e_value=exp(min(term.gain, MOST)),
+            fitted=0,
+            held_out=0,
+            log_score=term.gain,
+            words=term.words,
+        ),
+    )
+
+
+def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
+    """The learned term that is meant."""
+    found = [t for t in shown.terms if t.level and t.subject and new.sensors in ((), t.sensors)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise _refused("sensors", "must say which is meant: these sessions taught several terms")
+    raise _refused("cause", "no term was learned from these sessions")
+
+
+def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
+    """The one that is meant."""
+    found = [f for f in shown.findings if f.cause == new.cause and new.sensors in ((), f.sensors)]
+    if len(found) == 1 and not found[0].subject:
+        raise _refused("cause", f"{new.cause!r} belongs to a stand or a type, and the sessions name none")
+    if len(found) == 1:
+        return found[0]
+    if found:
+        places = " or ".join(", ".join(f.sensors) or "none" for f in found)
+        raise _refused("sensors", f"must say which is meant: these sessions show {new.cause!r} on {places}")
+    names = ", ".join(cause_on(f.cause, f.sensors) for f in shown.findings) or "none"
+    raise _refused("cause", f"{new.cause!r} is not among the causes that these sessions show together ({names})")
+
+
+def _latest(store: Store, group: Group) -> str:
+    return members_of(store, group).pooled[-1].session
+
+
+def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: datetime) -> ModelRevision:
+    """Adds the revision that withdraws another; ConflictError where that one is not in force."""
+    with storage.database.writing() as store:
+        known = Models(store).get(revision)
+        if known not in in_force(Models(store).of_subject(known.scope, known.subject)):
+            raise ConflictError(f"Revision {known.id} is not in force: withdrawn before, or a withdrawal itself.")
+        made = Models(store).add(
+            replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
+        )
+        tell_own(store, known.scope, known.subject)
+        if pooled_of(known) is not None:
+            tell_job(store, made, Recomputations(store).ask(made.id, known.scope, known.subject, now), now)
+        details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
+        Audit(store).write(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
+        return made

@@ -1,0 +1,257 @@
+"""A unit's stored sessions computed again under the models in force."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from pydantic import computed_field
+
+from estimator.errors import SessionError
+from estimator.results import Calibration
+from estimator.session import IN_SERVICE
+from service.ingest import read_upload
+from service.ingest.checked import as_checked
+from service.jobs.records import JobFailure, Piece
+from service.jobs.store import Jobs
+from service.jobs.words import left_in_words
+from service.judging.calibrate import Basis, calibrate, rests_on_model
+from service.judging.known_unit import known_unit
+from service.judging.moved import furthest, moved_parameters, moved_verdicts
+from service.judging.store import Derivations
+from service.kit.answer import Hidden, answer
+from service.models.records import (
+    LeftSession,
+    Model,
+    ModelRevision,
+    MovedParameter,
+    MovedVerdict,
+    Recomputed,
+    Scope,
+    Task,
+)
+from service.models.rules import model_of
+from service.models.store import Models, Recomputations
+from service.records.derive_again import NOTHING_FORESEEN, Derived, Deriving, derive_again
+from service.records.follow import follow
+from service.records.foresee import foresee_revisions
+from service.records.judge_again import Foreseen
+from service.records.keep import Made, keep, made
+from service.records.reception import Reception
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.history_store import History
+from service.sessions.noise_store import Noises
+from service.sessions.records import ParameterValue, StoredSession
+from service.sessions.store import Sessions
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.files import LOST
+from service.storage.store import Store
+from service.units.store import Units
+
+
+@answer
+@dataclass(frozen=True)
+class Recalibrated:
+    """What became of a unit's stored sessions."""
+
+    unit: str
+    """Serial number of the unit."""
+    sessions: int
+    """How many it has."""
+    recomputed: int
+    """How many have a new calibration under the model in force."""
+    unchanged: int
+    """How many had one already."""
+    kept: Hidden[tuple[LeftSession, ...]]
+    """Sessions that cannot be calibrated under it, or whose file is lost; they keep what they have."""
+    revision: int
+    """The latest model revision that any of them rests on; 0 is the baseline."""
+    verdicts: Hidden[tuple[MovedVerdict, ...]] = ()
+    """Sessions of the unit that have another verdict since."""
+    furthest: Hidden[MovedParameter | None] = None
+    """The parameter that moved most."""
+
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
+    @property
+    def left(self) -> int:
+        """How many cannot be calibrated under it and keep what they have."""
+        return len(self.kept)
+
+
+def nothing(store: Store, done: Recalibrated) -> None:
+    """What else is done with it unless somebody says so."""
+
+
+def recalibrate(
+    storage: Storage,
+    serial: str,
+    now: datetime,
+    *,
+    coverage_factor: float = 2.0,
+    who: str = "engineer",
+    until: int | None = None,
+    then: Callable[[Store, Recalibrated], None] = nothing,
+) -> Recalibrated:
+    """Computes every session of a unit under its model, those that do not count too, and judges what rests on them.
+
+    ``until``: the last revision that counts, so that what each of several moved can be told apart; None for all.
+    ``then`` belongs to the transaction that puts it in force.
+    """
+    sources = _sources(storage, serial, until)
+    outcomes = [_recalibrated(storage, source) for source in sources]
+    stored = [source.session for source in sources]
+    new = [one for one in outcomes if isinstance(one, _Recomputed)]
+    way, derived = Deriving(storage.files, coverage_factor, now, at_once=None), None
+    foreseen = _foreseen(storage, way, serial, new)
+    with storage.database.writing() as store:
+        if new:
+            Units(store).hold(serial)
+        before = {session.id: session for session in Sessions(store).of_unit(serial)}
+        put = [replace(one, session=before[one.session.id]) for one in new]
+        put = [one for one in put if one.session.revision < one.model.revision]
+        if put:
+            derived = _put_in_force(store, way, serial, put, foreseen)
+        after = {session.id: session for session in Sessions(store).of_unit(serial)}
+        _write_down(store, way, [(before[one.session.id], after[one.session.id]) for one in put], who)
+        done = _told(serial, stored, outcomes, tuple(moved_verdicts(before, tuple(after.values()))))
+        then(store, done)
+    if derived is not None:
+        follow(storage, way, serial, derived)
+    return done
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A stored session with what it is computed again by."""
+
+    session: StoredSession
+    model: Model
+    """In force now."""
+    values: tuple[ParameterValue, ...]
+    """As they were computed before."""
+    recording: Calibration | None
+    """The calibration of a recording in service."""
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether another model concerns it than the one that it was computed under."""
+        return self.model.revision > self.session.revision and rests_on_model(self.session.programme)
+
+
+def _sources(storage: Storage, serial: str, until: int | None) -> list[_Source]:
+    """Every session of a unit, read at once."""
+    with storage.database.reading() as store:
+        unit, stored = Units(store).key(serial), Sessions(store).of_unit(serial)
+        revisions = [r for r in Models(store).of_unit(serial) if until is None or r.id <= until]
+        models = {s.id: model_of(_concerning(revisions, s.stand), s.started_at) for s in stored}
+        behind = [s for s in stored if models[s.id].revision > s.revision]
+        values = History(store).in_force(unit) if behind else {}
+        recordings = Calibrations(store).in_force([s.id for s in behind if s.programme == IN_SERVICE])
+    return [_Source(s, models[s.id], values.get(s.id, ()), recordings.get(s.id)) for s in stored]
+
+
+def _concerning(revisions: Iterable[ModelRevision], stand: str | None) -> list[ModelRevision]:
+    """Of a unit's revisions those that concern its sessions on a stand."""
+    return [r for r in revisions if r.scope is not Scope.STAND or r.subject == stand]
+
+
+def _told(
+    serial: str,
+    stored: Sequence[StoredSession],
+    outcomes: "Sequence[_Recomputed | LeftSession | None]",
+    moved: tuple[MovedVerdict, ...],
+) -> Recalibrated:
+    pairs = zip(outcomes, stored, strict=True)
+    used = [one.model.revision if isinstance(one, _Recomputed) else own.revision for one, own in pairs]
+    made = [one for one in outcomes if isinstance(one, _Recomputed)]
+    return Recalibrated(
+        unit=serial,
+        sessions=len(stored),
+        recomputed=len(made),
+        unchanged=outcomes.count(None),
+        kept=tuple(one for one in outcomes if isinstance(one, LeftSession)),
+        revision=max(used, default=0),
+        verdicts=moved,
+        furthest=furthest([one for each in made for one in each.moved]),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Recomputed:
+    """A session computed again."""
+
+    session: StoredSession
+    model: Model
+    made: Made
+    moved: tuple[MovedParameter, ...]
+
+
+def _recalibrated(storage: Storage, source: _Source) -> _Recomputed | LeftSession | None:
+    """One session under the model in force, why it cannot be, or None where it is already.
+
+    A recording keeps its calibration here: it is compared anew with the reference that was computed again.
+    """
+    stored, model = source.session, source.model
+    if not source.is_behind:
+        return None
+    if source.recording is not None:
+        return _Recomputed(stored, model, made(source.recording), ())
+    try:
+        session = read_upload(storage.files.content(stored.sha256), stored.filename)
+        found = calibrate(as_checked(session, stored.started_at, stored.unit), Basis(model, None)).calibration
+    except (*LOST, SessionError) as fault:
+        return LeftSession(stored.id, str(fault))
+    own = made(found)
+    return _Recomputed(stored, model, own, tuple(moved_parameters(stored.id, source.values, own.values)))
+
+
+def _foreseen(storage: Storage, way: Deriving, serial: str, new: Sequence[_Recomputed]) -> Foreseen:
+    if not new:
+        return NOTHING_FORESEEN
+    made = {one.session.id: (one.model.revision, one.made.calibration) for one in new}
+    with storage.database.reading() as store:
+        return foresee_revisions(store, way, serial, made, min(one.session.started_at for one in new))
+
+
+def _put_in_force(store: Store, way: Deriving, serial: str, new: Sequence[_Recomputed], foreseen: Foreseen) -> Derived:
+    """Other calibrations beside the ones before, in force from now on, with what follows from them, also of sessions
+    that are judged against one of them."""
+    unit = Units(store).key(serial)
+    revisions = {one.session.id: one.model.revision for one in new}
+    Derivations(store).put_revisions(revisions)
+    keep(store, unit, [(replace(one.session, revision=one.model.revision), one.made) for one in new], way.at)
+    Noises(store).carry(revisions)
+    made = {one.session.id: one.made.calibration for one in new}
+    known, since = known_unit(store, unit, made, foreseen.references), min(one.session.started_at for one in new)
+    return derive_again(store, way, serial, since, tuple(made), known=known, foreseen=foreseen)
+
+
+def _write_down(store: Store, way: Deriving, changed: Sequence[tuple[StoredSession, StoredSession]], who: str) -> None:
+    for was, now in changed:
+        details = {"revision": now.revision, "verdict": now.verdict.value, "before": was.verdict.value}
+        Audit(store).write(way.at, who, "recalibrate", now.id, details)
+
+
+def recompute_beside(reception: Reception, now: datetime) -> None:
+    """Wakes whoever works beside the requests; where nobody does, it is done at once."""
+    reception.ring()
+    while not reception.is_dated_later:
+        with reception.storage.database.reading() as store:
+            waiting = Recomputations(store).waiting(now, 1)
+        if not waiting:
+            return
+        recompute(reception.storage, waiting[0], now, reception.coverage_factor)
+
+
+def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: float) -> None:
+    """Nothing is overwritten: earlier results stay readable under their revision."""
+
+    def settle(store: Store, done: Recalibrated) -> None:
+        outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)
+        if Recomputations(store).settle(task, outcome, now):
+            left = JobFailure(task.unit, left_in_words(done.left)) if done.left else None
+            Jobs(store).count_unit(task.revision, Piece(done.recomputed, len(done.verdicts), left), now)
+
+    with storage.database.reading() as store:
+        who = Models(store).get(task.revision).accepted_by
+    recalibrate(storage, task.unit, now, coverage_factor=coverage_factor, who=who, until=task.revision, then=settle)

@@ -1,0 +1,106 @@
+"""Flow: a session gives way to another one: a corrected file, the right unit, the right date. Both stay on record."""
+
+from datetime import datetime
+
+from estimator.errors import SessionError
+from service.errors import ConflictError
+from service.ingest import read_upload
+from service.ingest.checked import as_checked
+from service.judging.known_unit import known_unit
+from service.judging.plausible import doubts
+from service.kit.arriving_files import Replaced
+from service.records.change_state import change
+from service.records.derive_again import Derived, Deriving, derive_again
+from service.records.follow import follow
+from service.sessions.records import StoredSession
+from service.sessions.states import RecordKind, RecordState, Step
+from service.sessions.states_store import States
+from service.sessions.store import Sessions
+from service.storage import Storage
+from service.storage.files import LOST
+from service.storage.store import Store
+from service.units.store import Units
+
+REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
+"""States of a session that another one can stand for."""
+
+
+def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: str) -> tuple[StoredSession, Derived]:
+    """Says that a stored session stands for another one; ConflictError where either does not count."""
+    settled = settled_by(storage, replaced.session, by)
+    with storage.database.writing() as store:
+        derived = supersede(store, way, replaced, Sessions(store).get(by), settled)
+    for serial, own in derived.items():
+        follow(storage, way, serial, own)
+    with storage.database.reading() as store:
+        session = Sessions(store).get(replaced.session)
+        return session, derived[session.unit]
+
+
+def supersede(
+    store: Store, way: Deriving, replaced: Replaced, by: StoredSession, settled: str | None
+) -> dict[str, Derived]:
+    """The same within a transaction; derives what is known of the units concerned.
+
+    ``settled``: the doubt that the other session is in and that this answers, of `settled_by`.
+    """
+    is_settled = _is_in_doubt_for(store, by, settled)
+    known = give_way(store, way.at, replaced, by)
+    touched = (known.id, by.id)
+    if is_settled:
+        change(store, by, RecordState.ACCEPTED, Step(replaced.who, way.at, replaced.why))
+    derived = {known.unit: derive_again(store, way, known.unit, known.started_at, touched)}
+    if is_settled and by.unit != known.unit:
+        derived[by.unit] = derive_again(store, way, by.unit, by.started_at, touched)
+    return derived
+
+
+def settled_by(storage: Storage, replaced: str, by: str) -> str | None:
+    """The one doubt that a questioned session is in, where it is that it holds the readings of the session which it
+    supersedes now."""
+    with storage.database.reading() as store:
+        session = Sessions(store).get(by)
+    if session.state is not RecordState.QUESTIONED:
+        return None
+    try:
+        source = read_upload(storage.files.content(session.sha256), session.filename)
+    except (*LOST, SessionError):
+        return None
+    with storage.database.reading() as store:
+        known = known_unit(store, Units(store).key(session.unit))
+        found = doubts(known, as_checked(source, session.started_at, session.unit), known.calibration(by), (by,))
+    return found[0].text if [doubt.stands_for for doubt in found] == [replaced] else None
+
+
+def _is_in_doubt_for(store: Store, session: StoredSession, why: str | None) -> bool:
+    """Whether a session is questioned for a reason and no other."""
+    if why is None or session.state is not RecordState.QUESTIONED:
+        return False
+    return States(store).of(RecordKind.SESSION, session.id)[-1].why == why
+
+
+def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) -> StoredSession:
+    """Writes down that a session gives way to another, and returns it as it was."""
+    Units(store).hold(Sessions(store).get(replaced.session).unit)
+    known = Sessions(store).get(replaced.session)
+    if known.id == by.id:
+        raise ConflictError(f"Session {known.id} cannot stand for itself: the file holds what is stored already.")
+    if known.state not in REPLACEABLE:
+        raise ConflictError(f"Session {known.id} is {known.state} already, so nothing stands for it.")
+    if by.state not in REPLACEABLE:
+        raise ConflictError(f"Session {by.id} is {by.state} itself, so it stands for none.")
+    change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=by.id)
+    return known
+
+
+def successor_of(storage: Storage, id: str) -> str:
+    """The session that can only be meant as the corrected one: uploaded later, of the same unit, block and date."""
+    with storage.database.reading() as store:
+        known = Sessions(store).get(id)
+        found = Sessions(store).corrected(known)
+    if len(found) != 1:
+        raise ConflictError(
+            f"Which session stands for {id} cannot be told: name it in `superseded_by`. "
+            f"Uploaded later of the same unit and date: {len(found)}."
+        )
+    return found[0]

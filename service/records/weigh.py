@@ -1,0 +1,163 @@
+"""Step: what a diagnosis means for its session's verdict: the verdict with the named causes, and the reservations."""
+
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from estimator.errors import SessionError
+from estimator.results import Calibration
+from estimator.session import CalibrationSession
+from service.diagnosis.records import Diagnosed
+from service.diagnosis.store import Diagnoses
+from service.ingest import read_upload
+from service.judging.cause_sizes import Yardstick
+from service.judging.records import Counted
+from service.judging.reference import reference_of
+from service.judging.reservations import UNCHECKED, Doubted, reservations_of
+from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
+from service.judging.store import Derivations
+from service.judging.temperatures import Covered, covered_by, worth_of
+from service.models.rules import in_force, places_of
+from service.models.store import Models
+from service.outlook.store import Outlooks
+from service.sessions.calibrations_store import Calibrations
+from service.sessions.decision import Verdict, nominal_factor_of
+from service.sessions.doubt import Reservation
+from service.sessions.records import StoredSession
+from service.sessions.store import Sessions
+from service.storage import Storage
+from service.storage.files import LOST
+from service.storage.lock_order import outside_writing
+from service.storage.store import Store
+from service.types.rules import tolerances_of
+from service.types.store import UnitTypes, held_at
+from service.units.store import Units
+
+MOST_EARLIER = 50
+"""Sessions before one whose temperatures count: those of many years."""
+
+
+@dataclass(frozen=True, eq=False)
+class Weighing:
+    """What is stored that a diagnosis is weighed by."""
+
+    verdict: Verdict | None
+    """In force; None of a reference, or where nothing was judged."""
+    basis: Basis | None
+    """None where there is nothing to judge by."""
+    tolerances: dict[tuple[str, str], float]
+    known: frozenset[tuple[str, str]]
+    """Causes in the model in force, with the sensor or an empty name."""
+    temperatures: Covered | None
+    """Of the session, beside those of its unit; None where nothing says them."""
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """What a diagnosis means for the verdict."""
+
+    verdict_after: Verdict | None
+    """With the named causes in the model; None where none was named, or where nothing was judged."""
+    reservations: tuple[Reservation, ...]
+
+
+def weighing_of(store: Store, id: str, block: str) -> Weighing:
+    """What a session of a block was judged by; a reference by the tolerances that held when it was computed, too."""
+    stored, decisions = Sessions(store).get(id), Sessions(store).decisions(id)
+    computed = Derivations(store).computed_at([id])[id]
+    unit_type = held_at(UnitTypes(store).of_unit_through_time(stored.unit), computed)
+    unit = Units(store).key(stored.unit)
+    found = reference_of(store, unit, block, stored.programme, stored.started_at)
+    is_judged = bool(decisions) and found.session is not None and not stored.is_reference
+    basis, temperatures = None, None
+    if is_judged and found.session is not None:
+        basis = Basis(Calibrations(store).get(found.session), unit_type, nominal_factor_of(decisions))
+        temperatures = _temperatures(store, stored, basis.reference, found.since)
+    accepted = in_force([r for r in Models(store).of_session(id) if r.id <= stored.revision])
+    sensors = Calibrations(store).get(id).sensors if accepted else ()
+    return Weighing(
+        verdict=stored.verdict if is_judged else None,
+        basis=basis,
+        tolerances=tolerances_of(unit_type),
+        known=frozenset((r.cause, place) for r in accepted for place in places_of(r, sensors)),
+        temperatures=temperatures,
+    )
+
+
+def _temperatures(
+    store: Store, session: StoredSession, reference: Calibration, since: datetime | None
+) -> Covered | None:
+    """A session's temperature beside those of its unit; with its history where it lies outside them."""
+    seen = covered_by(session, reference.residuals, Sessions(store).before(session, since, MOST_EARLIER))
+    if seen is None or not seen.is_far:
+        return seen
+    unit, at = Units(store).key(session.unit), session.started_at
+    changes = tuple(row for row in Outlooks(store).changes(unit, since) if row.at < at)
+    references = tuple(row for row in Outlooks(store).references(unit, since) if row.at < at)
+    return replace(seen, changes=changes, references=references)
+
+
+@outside_writing
+def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighed:
+    """The numerical part, with no store at hand."""
+    after = by.basis.verdict_of(found.calibration) if by.basis is not None and found.findings else None
+    others: tuple[Otherwise, ...] = ()
+    if by.basis is not None:
+        others = tuple(verdicts_under_alternatives(session, found.findings, by.basis))
+    if after is not None:
+        first = found.findings[0]
+        causes = tuple(finding.cause for finding in found.findings)
+        others = (Otherwise(causes, first.sensors, after, named=True), *others)
+    doubted = Doubted(
+        verdict=by.verdict,
+        findings=found.findings,
+        structures=found.structures,
+        noise=found.noise,
+        by=Yardstick(found.calibration, found.residuals_before, by.tolerances),
+        otherwise=others,
+        known=by.known,
+        temperatures=by.temperatures,
+        worth=worth_of(by.temperatures) if by.temperatures is not None and by.temperatures.is_far else None,
+    )
+    return Weighed(after, reservations_of(doubted))
+
+
+@dataclass(frozen=True)
+class Weighable:
+    """What a diagnosis is weighed beside, as far as it changes."""
+
+    basis: str | None
+    document: str | None
+    """The diagnosis; None where there is none, or where it found nothing to weigh."""
+
+
+@dataclass(frozen=True)
+class WeighedAgain:
+    """The reservations of a verdict."""
+
+    id: str
+    of: Weighable
+    reservations: tuple[Reservation, ...] | None
+    """None where there is nothing to weigh."""
+
+
+def weighable(store: Store, session: Counted) -> Weighable:
+    """As it is now."""
+    made = Diagnoses(store).get(session.id)
+    return Weighable(session.rests_on, None if made is None or made.found is None else made.document)
+
+
+def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
+    """After another calibration or verdict of a session came into force: what it is said with; where its file is lost
+    or can no longer be read, that nobody could look. No transaction is open."""
+    id = session.id
+    with storage.database.reading() as store:
+        of, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)
+    if made is None or made.found is None:
+        return WeighedAgain(id, of, None)
+    try:
+        source = read_upload(storage.files.content(stored.sha256), stored.filename)
+    except (*LOST, SessionError):
+        return WeighedAgain(id, of, UNCHECKED)
+    with storage.database.reading() as store:
+        by = weighing_of(store, id, source.block)
+    return WeighedAgain(id, of, weigh(source, made.found, by).reservations)

@@ -1,0 +1,1 @@
+"""Stored sessions: calibrations, decisions, histories, noise at rest."""

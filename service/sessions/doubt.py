@@ -1,0 +1,142 @@
+"""Why a session cannot be as its file says, what would correct it, and what a verdict is reserved for."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from service.kit.answer import answer
+from service.sessions.decision import Verdict
+
+
+class Remedy(StrEnum):
+    """What a corrected file does to the first one."""
+
+    READINGS = "readings"
+    """The readings of some sensors, and their standard errors, times a factor."""
+    NOMINAL = "nominal scale"
+    """The nominal scale factor of some sensors times a factor."""
+    BOTH = "readings and nominal scale"
+    """Both times a factor."""
+    EXCHANGE = "exchange"
+    """The readings of two sensors, one for the other."""
+    UNIT = "unit"
+    """The serial number of the unit."""
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A corrected file that can be made of the first one."""
+
+    remedy: Remedy
+    sensors: tuple[str, ...] = ()
+    factor: float = 1.0
+    unit: str = ""
+    """Which it is of, where that is what is corrected."""
+
+    @property
+    def text(self) -> str:
+        """What it does, as the corrected file's notes say it."""
+        who = " and ".join(self.sensors) if len(self.sensors) < 3 else f"{self.sensors[0]}–{self.sensors[-1]}"
+        if self.remedy is Remedy.UNIT:
+            return f"unit {self.unit}"
+        if self.remedy is Remedy.EXCHANGE:
+            return f"readings of {who} exchanged"
+        return f"{self.remedy.value} of {who} × {self.factor:.6g}"
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """One thing that cannot be as the file says."""
+
+    what: str
+    """Beyond what physics allows, with the numbers."""
+    slip: str
+    """What has probably happened."""
+    correction: Correction | None = None
+    """None where no factor and no exchange puts it right."""
+    stands_for: str | None = None
+    """The session that this one counts twice with, and could stand for."""
+
+    @property
+    def text(self) -> str:
+        """In a sentence or two."""
+        remedy = "" if self.correction is None else f" A file with the {self.correction.text} would put it right."
+        if self.stands_for is not None:
+            remedy = " Together they would count twice: say which one counts."
+        return f"{self.what}: {self.slip}.{remedy}"
+
+
+@dataclass(frozen=True)
+class Remedies:
+    """What would put a questioned session right."""
+
+    correction: str = ""
+    """What a corrected file would hold otherwise; empty where nothing is known."""
+    stands_for: str | None = None
+    """The session that it could stand for."""
+    unit: str = ""
+    """Which it probably is of; empty where that is not in doubt."""
+
+
+def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
+    """All corrections in one file, and the first session that it could stand for."""
+    found = tuple(doubts)
+    known = tuple(doubt.correction for doubt in found if doubt.correction is not None)
+    stands_for = next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None)
+    return Remedies(", ".join(one.text for one in known), stands_for, next((one.unit for one in known if one.unit), ""))
+
+
+class DoubtKind(StrEnum):
+    """Why a verdict carries a reservation, in the order in which reservations are told."""
+
+    RECORD = "record"
+    """The file says something else than what was done."""
+    NOT_CHECKED = "not-checked"
+    """No causes could be looked for."""
+    PENDING = "pending"
+    """Causes are still being looked for: told to programs, which read a list; people are told in the verdict."""
+    TEMPERATURE = "temperature"
+    """It was measured far from the temperatures of the unit's reference and earlier sessions."""
+    CAUSE = "cause"
+    """A named cause is large beside the tolerance."""
+    OTHER_MODEL = "other-model"
+    """The verdict is another under a model that the readings leave standing."""
+    UNEXPLAINED = "unexplained"
+    """Structure that no known cause explains is large beside the tolerance."""
+    STATED_ERRORS = "stated-errors"
+    """The readings contradict the standard errors that the file states."""
+
+
+@answer
+@dataclass(frozen=True)
+class Reservation:
+    """One thing that speaks against taking a verdict as it stands."""
+
+    kind: DoubtKind
+    """`record`: the file is wrong. `not-checked`: no causes could be looked for. `pending`: they are still being looked
+    for; ask again. `temperature`: it was measured far from the temperatures of the unit's reference and earlier
+    sessions, which can make or hide a change. `cause`: a named cause takes more than a third of a tolerance.
+    `other-model`: the verdict is another under a model that the readings leave standing. `unexplained`: so does
+    structure that no known cause explains. `stated-errors`: the readings contradict the standard errors of the file."""
+    text: str
+    """What is the matter, as a clause that stands after `but`."""
+    advice: str
+    """What to do about it, as a clause."""
+    sensors: tuple[str, ...] = ()
+    """That it concerns; empty where it concerns all, or none in particular."""
+    cause: str | None = None
+    """The named cause."""
+    parameter: str | None = None
+    """Whose tolerance the size is held against."""
+    size: float | None = None
+    """In the tolerance's unit, SI; relative for a scale factor."""
+    uncertainty: float | None = None
+    """Standard uncertainty of the size."""
+    share: float | None = None
+    """Size by tolerance."""
+    verdict: Verdict | None = None
+    """That the session would have under the other model."""
+
+
+Reservations = tuple[Reservation, ...] | None
+"""Of a verdict; None while causes are still being looked for."""

@@ -1,0 +1,323 @@
+"""Parameters through time, one row a session, sensor and parameter, with what was decided of it.
+
+Histories have thousands of points: their columns are read, not whole rows as objects, and of a decision only those that
+a point tells.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from math import hypot
+from typing import Any, NamedTuple
+
+from sqlalchemy import ColumnElement, delete, func, select, true
+
+from estimator.allan.results import TERMS, interval_of
+from service.sessions.decision import Verdict
+from service.sessions.records import HistoryPoint, ParameterValue, StoredSession
+from service.sessions.states_store import IS_ACCEPTED
+from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
+from service.storage.queries import Queries
+from service.types.tables import UnitTypeRow
+from service.units.tables import UnitRow
+
+DECIDED = (
+    (DecisionRow.session_id == ParameterRow.session_id)
+    & (DecisionRow.revision == ParameterRow.revision)
+    & (DecisionRow.sensor == ParameterRow.sensor)
+    & (DecisionRow.parameter == ParameterRow.parameter)
+)
+"""The decision on a parameter, under the same model revision."""
+IS_JUDGED = ParameterRow.parameter.not_in(TERMS)
+"""Parameters that a calibration gives: the terms of noise stand beside them and are never judged."""
+
+
+class StoredPoint(NamedTuple):
+    """What a query of points selects, in the order of `POINT`; what was decided is None where nothing was."""
+
+    session: str
+    at: datetime
+    sensor: str
+    kind: str
+    parameter: str
+    value: float | None
+    u: float | None
+    axis_x: float | None
+    axis_y: float | None
+    axis_z: float | None
+    revision: int
+    is_reference: bool
+    verdict: str | None
+    judged_value: float | None
+    reference: float | None
+    deviation: float | None
+    uncertainty: float | None
+    expanded: float | None
+    coverage_factor: float | None
+    tolerance: float | None
+    common: float | None
+    common_sigma: float | None
+
+
+POINT = (
+    ParameterRow.session_id,
+    ParameterRow.at,
+    ParameterRow.sensor,
+    ParameterRow.kind,
+    ParameterRow.parameter,
+    ParameterRow.value,
+    ParameterRow.u,
+    ParameterRow.axis_x,
+    ParameterRow.axis_y,
+    ParameterRow.axis_z,
+    ParameterRow.revision,
+    SessionRow.is_reference,
+    DecisionRow.verdict,
+    DecisionRow.value,
+    DecisionRow.reference,
+    DecisionRow.deviation,
+    DecisionRow.uncertainty,
+    DecisionRow.expanded,
+    DecisionRow.coverage_factor,
+    DecisionRow.tolerance,
+    DecisionRow.common,
+    DecisionRow.common_sigma,
+)
+"""The columns; decisions are joined from outside."""
+
+
+def point_record(row: StoredPoint, *, raw: bool = False) -> HistoryPoint:
+    """A stored parameter with what was decided of it, or, ``raw``, with what the whole block did left in."""
+    seen = _Seen(row, raw)
+    value, u = seen.value, seen.u
+    lower, upper = _band(row, value, u)
+    return HistoryPoint(
+        session=row.session,
+        at=row.at,
+        sensor=row.sensor,
+        kind=row.kind,
+        parameter=row.parameter,
+        value=value,
+        u=u,
+        lower=lower,
+        upper=upper,
+        reference=row.reference,
+        deviation=seen.deviation,
+        expanded=seen.expanded,
+        tolerance=_tolerance(row),
+        verdict=Verdict.UNDECIDABLE if row.verdict is None else Verdict(row.verdict),
+        is_reference=row.is_reference,
+        axis=_axis(row),
+        revision=row.revision,
+    )
+
+
+def _band(row: StoredPoint, value: float | None, u: float | None) -> tuple[float | None, float | None]:
+    """value ± U; of a term of noise where it lies with 95 %."""
+    if value is None or u is None:
+        return None, None
+    if row.parameter in TERMS:
+        return interval_of(value, u)
+    if row.coverage_factor is None:
+        return None, None
+    return value - row.coverage_factor * u, value + row.coverage_factor * u
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A parameter as it was judged, or as it was measured."""
+
+    row: StoredPoint
+    raw: bool
+
+    @property
+    def value(self) -> float | None:
+        """For the axis the angle from the reference, without the turn of the whole block unless it is to stay."""
+        own = self.row
+        if own.parameter != "axis" or own.verdict is None:
+            return own.value
+        return own.judged_value if self.raw or own.deviation is None else own.deviation
+
+    @property
+    def u(self) -> float | None:
+        """One sigma of the value."""
+        own = self.row
+        if own.parameter != "axis" or own.uncertainty is None:
+            return own.u
+        return hypot(own.uncertainty, self._together)
+
+    @property
+    def deviation(self) -> float | None:
+        """From the reference."""
+        own = self.row
+        if own.common is None or not self.raw:
+            return own.deviation
+        if own.parameter == "axis":
+            return own.judged_value
+        return None if not own.reference or own.judged_value is None else own.judged_value / own.reference - 1
+
+    @property
+    def expanded(self) -> float | None:
+        """U of the deviation."""
+        own = self.row
+        if own.expanded is None or own.coverage_factor is None:
+            return None
+        return hypot(own.expanded, own.coverage_factor * self._together)
+
+    @property
+    def _together(self) -> float:
+        """One sigma of what the whole block did, where that is left in."""
+        return (self.row.common_sigma or 0.0) if self.raw else 0.0
+
+
+def _tolerance(row: StoredPoint) -> float | None:
+    """In the unit of the value: a scale's tolerance is relative to its reference."""
+    if row.parameter != "scale" or row.tolerance is None:
+        return row.tolerance
+    return None if row.reference is None else row.tolerance * abs(row.reference)
+
+
+def _axis(row: StoredPoint) -> tuple[float, float, float] | None:
+    if row.axis_x is None or row.axis_y is None or row.axis_z is None:
+        return None
+    return row.axis_x, row.axis_y, row.axis_z
+
+
+@dataclass(frozen=True)
+class HistoryQuery:
+    """Which part of a unit's history is wanted."""
+
+    parameter: str | None = None
+    sensor: str | None = None
+    since: datetime | None = None
+    until: datetime | None = None
+    offset: int = 0
+    limit: int = 10_000
+    revision: int | None = None
+    """As computed under this model revision or the last one before it; None for what is in force."""
+    newest: bool = False
+    """Whether offset and limit count from the newest point back."""
+    raw: bool = False
+    """Whether what the whole block did is left in."""
+    noise: bool = False
+    """Whether the terms of noise are wanted beside what is judged; one that is asked for by its name always is."""
+
+
+class History(Queries):
+    """Parameters through time."""
+
+    def add(self, unit: int, new: Iterable[tuple[StoredSession, Iterable[ParameterValue]]]) -> None:
+        """Stores the parameters of sessions under their model revisions, sensor after sensor."""
+        self.insert_many(ParameterRow, [row for record, values in new for row in _rows(unit, record, values)])
+
+    def drop(self, record: StoredSession) -> None:
+        """Takes out what a session gave under its model revision: a recording moves another calibration now."""
+        own = (ParameterRow.session_id == record.id, ParameterRow.revision == record.revision)
+        self._session.execute(delete(ParameterRow).where(*own, IS_JUDGED))
+
+    def points(self, unit: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
+        """The wanted part of a unit's history, oldest first, in one query."""
+        query = (
+            select(*POINT)
+            .join(SessionRow, SessionRow.id == ParameterRow.session_id)
+            .outerjoin(DecisionRow, DECIDED)
+            .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision), IS_ACCEPTED)
+        )
+        if wanted.parameter is None and not wanted.noise:
+            query = query.where(IS_JUDGED)
+        if wanted.parameter is not None:
+            query = query.where(ParameterRow.parameter == wanted.parameter)
+        if wanted.sensor is not None:
+            query = query.where(ParameterRow.sensor == wanted.sensor)
+        if wanted.since is not None:
+            query = query.where(ParameterRow.at >= wanted.since)
+        if wanted.until is not None:
+            query = query.where(ParameterRow.at < wanted.until)
+        order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
+        query = query.order_by(*(column.desc() if wanted.newest else column for column in order))
+        found = [
+            point_record(StoredPoint._make(row), raw=wanted.raw)
+            for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))
+        ]
+        return tuple(reversed(found)) if wanted.newest else tuple(found)
+
+    def in_force(self, unit: int) -> dict[str, tuple[ParameterValue, ...]]:
+        """The parameters of a unit's sessions under their revisions in force, by session."""
+        names = ("sensor", "sensor_index", "kind", "parameter", "value", "u", "axis_x", "axis_y", "axis_z")
+        columns = (getattr(ParameterRow, name) for name in names)
+        own = (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
+        query = (
+            select(ParameterRow.session_id, *columns)
+            .join(SessionRow, own)
+            .where(ParameterRow.unit_id == unit, IS_JUDGED)
+        )
+        found: dict[str, list[ParameterValue]] = {}
+        rows: Iterable[Any] = self._session.execute(query)
+        for row in rows:
+            found.setdefault(row.session_id, []).append(_parameter_value(row))
+        return {session: tuple(values) for session, values in found.items()}
+
+    def references_of_type(self, name: str, but: str, most: int, *, simulated: bool) -> tuple[ParameterValue, ...]:
+        """The parameters of the newest reference sessions of a type's measured or simulated units, without one unit."""
+        newest = (
+            select(SessionRow.id, SessionRow.revision)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.name == name, UnitRow.serial != but, UnitRow.simulated.is_(simulated))
+            .where(SessionRow.is_reference, IS_ACCEPTED)
+            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .limit(most)
+            .subquery()
+        )
+        own = (ParameterRow.session_id == newest.c.id) & (ParameterRow.revision == newest.c.revision)
+        rows = self._session.scalars(select(ParameterRow).join(newest, own).where(IS_JUDGED))
+        return tuple(_parameter_value(row) for row in rows)
+
+    def references_by_unit(
+        self, name: str, most: int, serials: Sequence[str] | None = None
+    ) -> dict[str, dict[tuple[str, str], ParameterValue]]:
+        """The parameters of the newest reference sessions of a type's units, or of some of them, by serial number,
+        sensor and parameter."""
+        wanted = (
+            select(SessionRow.id, SessionRow.revision, UnitRow.serial)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.name == name, SessionRow.is_reference, IS_ACCEPTED)
+            .where(UnitRow.serial.in_(serials) if serials is not None else true())
+            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .limit(most)
+            .subquery()
+        )
+        own = (ParameterRow.session_id == wanted.c.id) & (ParameterRow.revision == wanted.c.revision)
+        rows = self._session.execute(select(wanted.c.serial, ParameterRow).join(wanted, own).where(IS_JUDGED))
+        found: dict[str, dict[tuple[str, str], ParameterValue]] = {}
+        for serial, row in rows:
+            found.setdefault(serial, {}).setdefault((row.sensor, row.parameter), _parameter_value(row))
+        return found
+
+
+def _rows(unit: int, record: StoredSession, values: Iterable[ParameterValue]) -> Iterator[dict[str, Any]]:
+    own = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
+    for value in values:
+        x, y, z = value.axis or (None, None, None)
+        seen = {name: getattr(value, name) for name in ("sensor", "sensor_index", "kind", "parameter", "value", "u")}
+        yield {**own, **seen, "axis_x": x, "axis_y": y, "axis_z": z}
+
+
+def _parameter_value(row: Any) -> ParameterValue:
+    """Of a row of `ParameterRow`, or of its columns."""
+    axis = None
+    if row.axis_x is not None and row.axis_y is not None and row.axis_z is not None:
+        axis = (row.axis_x, row.axis_y, row.axis_z)
+    return ParameterValue(row.sensor, row.sensor_index, row.kind, row.parameter, row.value, row.u, axis)
+
+
+def _revision(wanted: int | None) -> ColumnElement[int]:
+    """The revision of a session that is in force, or the last one up to the wanted."""
+    if wanted is None:
+        return SessionRow.revision.expression
+    return (
+        select(func.max(CalibrationRow.revision))
+        .where(CalibrationRow.session_id == ParameterRow.session_id, CalibrationRow.revision <= wanted)
+        .scalar_subquery()
+    )

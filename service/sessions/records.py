@@ -1,0 +1,239 @@
+"""Stored sessions, lists of them, and the history of their parameters."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+from pydantic import computed_field
+
+from service.kit.answer import Hidden, answer
+from service.kit.moments import epoch_ms
+from service.sessions.decision import Verdict
+from service.sessions.doubt import Reservations
+from service.sessions.states import RecordState
+
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+"""What a calibration gives of every sensor."""
+
+
+ALL_PARAMETERS = (*PARAMETERS, "misalignment")
+"""With what only a turntable shows."""
+
+
+@answer
+@dataclass(frozen=True)
+class StoredSession:
+    """One stored session."""
+
+    id: str
+    """The first 20 digits of the content's SHA-256."""
+    unit: str
+    """Serial number of the unit."""
+    sha256: str
+    """SHA-256 of the uploaded bytes."""
+    filename: str
+    """What the file was called when it was uploaded."""
+    size: int
+    """Bytes."""
+    programme: str
+    """How it was measured."""
+    stand: str | None
+    """The stand, if one was used."""
+    operator: str
+    """Who measured, as the file says."""
+    notes: str
+    """Notes of the file."""
+    started_at: datetime
+    """When it was measured, UTC; the upload's time if the file does not say."""
+    uploaded_at: datetime
+    """When it was uploaded, UTC."""
+    verdict: Verdict
+    """The worst of the session's parameters."""
+    reason: str
+    """Why the verdict is what it is, in one sentence."""
+    is_reference: bool
+    """Whether later sessions are judged against this one."""
+    simulated: bool
+    """Whether it was simulated, not measured."""
+    revision: int = 0
+    """Model revision that its calibration in force was made under; 0 is the baseline."""
+    stage: str | None = None
+    """`as-found`, `as-left`, or null where neither was said."""
+    reservations: Hidden[Reservations] = ()
+    """What the verdict is said with."""
+    state: RecordState = RecordState.ACCEPTED
+    """Only an accepted session tells of its unit."""
+    superseded_by: str | None = None
+    """The session that stands for a superseded one."""
+    temperature: Hidden[float | None] = None
+    """°C, the mean over the session; None where it was not recorded."""
+    is_check: bool = False
+    """Whether it is only a check, which moves no due date unless it is a reference."""
+
+
+@dataclass(frozen=True)
+class Digests:
+    """By which a session is recognised, whatever its file's bytes."""
+
+    content_digest: str
+    """Of everything that it says."""
+    readings_digest: str
+    """Of its readings alone."""
+
+
+@dataclass(frozen=True)
+class ParameterValue:
+    """One parameter of one sensor as a session measured it."""
+
+    sensor: str
+    sensor_index: int
+    kind: str
+    parameter: str
+    value: float | None
+    """SI; None for the axis, which has components instead."""
+    u: float | None
+    """Standard uncertainty; for the axis the root of the trace of its covariance, rad."""
+    axis: tuple[float, float, float] | None
+
+
+@answer
+@dataclass(frozen=True)
+class Receipt:
+    """The answer to an upload."""
+
+    id: str
+    """The session's id, made from the content: the same bytes have the same id."""
+    unit: str
+    """Serial number of the unit."""
+    verdict: Verdict
+    """Of the session: the worst of its parameters."""
+    reason: str
+    """Why, in one sentence."""
+    created: bool
+    """False when the same bytes were already stored."""
+    is_reference: bool
+    """Whether later sessions are judged against this one; then its own verdict is `undecidable`."""
+    reservations: Hidden[Reservations] = None
+    """What the verdict is said with."""
+    state: RecordState = RecordState.ACCEPTED
+    """`questioned` where the file cannot be as it says; then it tells nothing."""
+    is_check: bool = False
+    """Whether it is only a check; of what was stored before, as that was."""
+
+
+class SessionOrder(StrEnum):
+    """What sessions are listed by; the date of measurement and the identifier order those that are alike."""
+
+    MEASURED = "measured"
+    """The newest first."""
+    UPLOADED = "uploaded"
+    """The last that came first."""
+    VERDICT = "verdict"
+    """Worst first."""
+    UNIT = "unit"
+
+
+@dataclass(frozen=True)
+class SessionQuery:
+    """Which sessions are wanted."""
+
+    text: str | None = None
+    """Part of the unit's serial number, small and capital letters alike."""
+    unit: str | None = None
+    """The whole serial number."""
+    unit_type: str | None = None
+    stand: str | None = None
+    since: datetime | None = None
+    """Measured then or later."""
+    until: datetime | None = None
+    """Measured before."""
+    state: RecordState | None = None
+    verdict: Verdict | None = None
+    is_reference: bool | None = None
+    """Whether later sessions are judged against it; None where either will do."""
+    reserved: bool = False
+    """Only those whose verdict is said with a reservation."""
+    order: SessionOrder = SessionOrder.MEASURED
+    backwards: bool = False
+    after: str | None = None
+    """The session that the list goes on after; one that is not there begins the list anew."""
+    before: str | None = None
+    """The session that it ends before."""
+    offset: int = 0
+    """How many are left out first, where a page has a number instead of a place."""
+    limit: int = 100
+
+
+@answer
+@dataclass(frozen=True)
+class HistoryPoint:
+    """One parameter of one sensor at one session, ready for drawing a band."""
+
+    session: str
+    """Id of the session."""
+    at: datetime
+    """When it was measured, UTC."""
+    sensor: str
+    """Name of the sensor."""
+    kind: str
+    """`accelerometer` or `gyroscope`."""
+    parameter: str
+    """`scale`, `bias`, `quadratic`, `axis`, `misalignment`, or a term of noise at rest."""
+    value: float | None
+    """SI; for the axis the angle from the reference axis as judged, rad."""
+    u: float | None
+    """Standard uncertainty of the value."""
+    lower: float | None
+    """Value minus expanded uncertainty; of a term of noise the end of its 95 % interval."""
+    upper: float | None
+    """Value plus expanded uncertainty; of a term of noise the end of its 95 % interval."""
+    reference: float | None
+    """The value that it is judged against."""
+    deviation: float | None
+    """From the reference, as it was judged: relative for scale, else SI."""
+    expanded: float | None
+    """U of the deviation, of both sessions."""
+    tolerance: float | None
+    """In the unit of the value; null where it is not judged."""
+    verdict: Verdict
+    """The state of this parameter at this session."""
+    is_reference: bool
+    """Whether the session is one that later ones are judged against."""
+    axis: tuple[float, float, float] | None
+    """For the axis: its components in block axes."""
+    revision: int = 0
+    """Model revision that it was computed under; 0 is the baseline."""
+
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
+    @property
+    def at_ms(self) -> int:
+        """`at` in milliseconds since 1970."""
+        return epoch_ms(self.at)
+
+
+class DiagnosisState(StrEnum):
+    """What a diagnosis came to; not applicable: no causes are looked for in sessions of its programme."""
+
+    NOTHING = "nothing wrong"
+    NAMED = "named"
+    UNDECIDED = "cannot tell which"
+    UNEXPLAINED = "unexplained"
+    FAILED = "failed"
+    NOT_APPLICABLE = "not applicable"
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether something is wrong that people should hear of."""
+        return self in (DiagnosisState.NAMED, DiagnosisState.UNDECIDED, DiagnosisState.UNEXPLAINED)
+
+
+@dataclass(frozen=True)
+class DiagnosisSummary:
+    """A session's diagnosis in one line."""
+
+    state: DiagnosisState
+    summary: str
+
+
+UNWEIGHED = "~"
+"""Heads the basis of a verdict beside which a diagnosis is still to be weighed."""

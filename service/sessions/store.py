@@ -1,0 +1,303 @@
+"""Sessions and their decisions."""
+
+from collections.abc import Collection
+from dataclasses import asdict, fields, replace
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, Select, and_, bindparam, or_, select, update
+from sqlalchemy.orm import InstrumentedAttribute
+
+from estimator.health.common_motion import CommonMotion
+from estimator.session import CALIBRATIONS
+from service.diagnosis.tables import DiagnosisRow
+from service.errors import NotFoundError
+from service.kit.arriving_files import DEMONSTRATION
+from service.sessions.decision import Decision, Verdict
+from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionQuery, StoredSession
+from service.sessions.reservation_document import reservations_from_list
+from service.sessions.states import RecordState
+from service.sessions.states_store import IS_ACCEPTED
+from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow
+from service.sessions.wanted_store import KEYS, beyond, conditions, ordered
+from service.stands.tables import StandRow
+from service.storage.audit_table import AuditRow
+from service.storage.queries import Queries, lists
+from service.types.tables import UnitTypeRow
+from service.units.tables import UnitRow
+
+NOT_JUDGED = ""
+"""What the verdict rests on of a session that is still to be judged, or judged again."""
+ELSEWHERE = ("unit", "stand", "verdict", "state", "reservations")
+"""Fields of a session that are no plain column of its row."""
+
+
+def is_waiting(basis: InstrumentedAttribute[str | None]) -> ColumnElement[bool]:
+    """Whether a session is to be judged, or to be weighed beside its verdict."""
+    return or_(basis == NOT_JUDGED, basis.startswith(UNWEIGHED))
+
+
+class Sessions(Queries):
+    """Uploaded sessions and their decisions."""
+
+    def by_hash(self, sha256: str) -> StoredSession | None:
+        """The session made of these bytes, if they were uploaded before."""
+        found = self._session.execute(_BY_HASH, {"sha256": sha256}).one_or_none()
+        return None if found is None else session_record(*found)
+
+    def same(self, sha256: str, digest: str) -> StoredSession | None:
+        """The session made of these bytes, or else of this content, whatever the format of its file."""
+        rows = self._session.execute(_SAME, {"sha256": sha256, "digest": digest})
+        found = [session_record(*row) for row in rows]
+        return min(found, key=lambda one: one.sha256 != sha256, default=None)
+
+    def get(self, id: str) -> StoredSession:
+        """One session."""
+        found = self._session.execute(_BY_ID, {"id": id}).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no session {id!r}.")
+        return session_record(*found)
+
+    def only_demonstration(self) -> bool:
+        """Whether there is a demonstration to look at, and nothing that anybody uploaded."""
+        is_real = select(UnitRow.id).where(UnitRow.simulated.is_(False)).limit(1)
+        is_any = select(UnitRow.id).limit(1)
+        is_own = select(AuditRow.id).where(AuditRow.action == "upload", AuditRow.who != DEMONSTRATION).limit(1)
+        found = (self._session.scalar(query) is not None for query in (is_any, is_real, is_own))
+        return tuple(found) == (True, False, False)
+
+    def any_stands(self, unit: str) -> bool:
+        """Whether a unit has a session that counts or waits for somebody to say whether it does."""
+        states = (RecordState.ACCEPTED, RecordState.QUESTIONED)
+        own = select(SessionRow.id).join(UnitRow, UnitRow.id == SessionRow.unit_id).where(UnitRow.serial == unit)
+        return self._session.scalar(own.where(SessionRow.state.in_(states)).limit(1)) is not None
+
+    def page(self, unit: str | None, offset: int, limit: int) -> tuple[StoredSession, ...]:
+        """Sessions, newest measurement first, of one unit or of all."""
+        query = session_rows().order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
+        if unit is not None:
+            query = query.where(UnitRow.serial == unit)
+        return tuple(session_record(*found) for found in self._session.execute(query.offset(offset).limit(limit)))
+
+    def wanted(self, query: SessionQuery) -> tuple[StoredSession, ...]:
+        """The wanted sessions in the wanted order; one more query where the list goes on from a session."""
+        place = self._place(query)
+        if place is None:
+            query = replace(query, after=None, before=None)
+        rows = (
+            session_rows().where(*conditions(query)).order_by(*ordered(query)).offset(query.offset).limit(query.limit)
+        )
+        if place is not None:
+            rows = rows.where(beyond(query, place))
+        found = tuple(session_record(*row) for row in self._session.execute(rows))
+        return found if query.before is None else found[::-1]
+
+    def _place(self, query: SessionQuery) -> tuple[Any, ...] | None:
+        """Keys of the session that a list goes on from."""
+        named = query.after if query.before is None else query.before
+        if named is None:
+            return None
+        keys = select(*KEYS[query.order]).select_from(SessionRow).join(UnitRow, UnitRow.id == SessionRow.unit_id)
+        row = self._session.execute(keys.where(SessionRow.id == named)).one_or_none()
+        return None if row is None else tuple(row)
+
+    def reference(
+        self,
+        unit: int,
+        block: str,
+        since: datetime | None,
+        until: datetime | None,
+        programmes: tuple[str, ...] = CALIBRATIONS,
+    ) -> str | None:
+        """The session that others of the block, epoch and programmes are judged against."""
+        return self._session.scalar(reference_query(unit, block, since, until, programmes))
+
+    def of_readings(self, digest: str, but_unit: int, but: Collection[str]) -> StoredSession | None:
+        """The first session of another unit that counts and has the same readings, other than ``but``."""
+        same = SessionRow.readings_digest == digest, SessionRow.unit_id != but_unit, SessionRow.id.not_in(but)
+        query = session_rows().where(*same, IS_ACCEPTED).order_by(SessionRow.uploaded_at, SessionRow.id).limit(1)
+        found = self._session.execute(query).one_or_none()
+        return None if found is None else session_record(*found)
+
+    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, digests: Digests) -> None:
+        """Stores a session that is still to be judged; its hash is unique."""
+        values = asdict(record)
+        del values["unit"], values["stand"], values["reservations"]
+        own = {"unit_id": unit, "stand_id": stand, "block": block, **asdict(digests), "basis": NOT_JUDGED}
+        self.insert_many(SessionRow, ({**values, **own},))
+
+    def set_stage(self, id: str, stage: str | None) -> None:
+        """Says of a session whether it shows the unit as found or as left."""
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(stage=stage))
+        self._session.expire_all()
+
+    def set_check(self, id: str, is_check: bool) -> None:
+        """Says of a session whether it is a check, which moves no date."""
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(is_check=is_check))
+        self._session.expire_all()
+
+    def of_unit(self, serial: str) -> tuple[StoredSession, ...]:
+        """All sessions of a unit, oldest first."""
+        query = session_rows().where(UnitRow.serial == serial).order_by(SessionRow.started_at, SessionRow.id)
+        return tuple(session_record(*found) for found in self._session.execute(query))
+
+    def latest_like(self, serial: str | None, unit_type: str | None) -> StoredSession | None:
+        """The last accepted session of a unit, or of a type's units, calibrations first; of all units with neither."""
+        query = session_rows().where(IS_ACCEPTED)
+        if serial is not None:
+            query = query.where(UnitRow.serial == serial)
+        if unit_type is not None:
+            of_type = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
+            query = query.where(UnitRow.unit_type_id == of_type)
+        calibrates = SessionRow.programme.in_(CALIBRATIONS)
+        found = self._session.execute(
+            query.order_by(calibrates.desc(), SessionRow.started_at.desc(), SessionRow.id).limit(1)
+        ).first()
+        return None if found is None else session_record(*found)
+
+    def before(self, session: StoredSession, since: datetime | None, most: int) -> tuple[StoredSession, ...]:
+        """The last sessions of the unit's same programme before one and not before a time, oldest first."""
+        query = session_rows().where(
+            UnitRow.serial == session.unit,
+            SessionRow.programme == session.programme,
+            SessionRow.started_at < session.started_at,
+            IS_ACCEPTED,
+        )
+        if since is not None:
+            query = query.where(SessionRow.started_at >= since)
+        latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)
+        return tuple(session_record(*found) for found in self._session.execute(latest))[::-1]
+
+    def corrected(self, session: StoredSession) -> tuple[str, ...]:
+        """Sessions, accepted or questioned, that were uploaded later than one, of the same unit, programme and date."""
+        query = session_rows().where(
+            UnitRow.serial == session.unit,
+            SessionRow.programme == session.programme,
+            SessionRow.started_at == session.started_at,
+            SessionRow.uploaded_at >= session.uploaded_at,
+            SessionRow.id != session.id,
+            SessionRow.state.in_((RecordState.ACCEPTED, RecordState.QUESTIONED)),
+        )
+        return tuple(row.id for row, *_ in self._session.execute(query.order_by(SessionRow.id)))
+
+    def without_diagnosis(self, after: str, limit: int, version: str) -> tuple[str, ...]:
+        """Ids of sessions, from an id on, that were never diagnosed, or on which another version failed."""
+        query = (
+            select(SessionRow.id)
+            .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+            .where(
+                or_(
+                    DiagnosisRow.session_id.is_(None),
+                    and_(DiagnosisRow.state == DiagnosisState.FAILED, DiagnosisRow.estimator_version != version),
+                ),
+                SessionRow.id > after,
+            )
+        )
+        return tuple(self._session.scalars(query.order_by(SessionRow.id).limit(limit)))
+
+    def motions(self, id: str) -> tuple[CommonMotion, ...]:
+        """What all sensors of a session did together under the revision in force."""
+        rows = self._session.scalars(
+            select(CommonMotionRow)
+            .join(SessionRow, SessionRow.id == CommonMotionRow.session_id)
+            .where(CommonMotionRow.session_id == id, CommonMotionRow.revision == SessionRow.revision)
+            .order_by(CommonMotionRow.kind, CommonMotionRow.quantity)
+        )
+        return tuple(motion_record(row) for row in rows)
+
+    def decisions(self, id: str) -> tuple[Decision, ...]:
+        """What was decided of a session's parameters under the revision in force, in the order of its sensors."""
+        rows = self._session.scalars(
+            select(DecisionRow)
+            .join(SessionRow, SessionRow.id == DecisionRow.session_id)
+            .where(DecisionRow.session_id == id, DecisionRow.revision == SessionRow.revision)
+            .order_by(DecisionRow.position)
+        )
+        return tuple(decision_record(row) for row in rows)
+
+    def judged(self, id: str) -> tuple[tuple[Decision, ...], tuple[CommonMotion, ...]]:
+        """Both, in one query."""
+        of, revision = lists("decisions", "motions"), SessionRow.revision
+        decided = (DecisionRow.session_id == SessionRow.id) & (DecisionRow.revision == revision)
+        moved = (CommonMotionRow.session_id == SessionRow.id) & (CommonMotionRow.revision == revision)
+        query = (
+            select(DecisionRow, CommonMotionRow)
+            .select_from(of)
+            .join(SessionRow, SessionRow.id == id)
+            .outerjoin(DecisionRow, (of.c.list == "decisions") & decided)
+            .outerjoin(CommonMotionRow, (of.c.list == "motions") & moved)
+            .order_by(DecisionRow.position, CommonMotionRow.kind, CommonMotionRow.quantity)
+        )
+        rows = self._session.execute(query).all()
+        decisions = tuple(decision_record(row) for row, _ in rows if row is not None)
+        return decisions, tuple(motion_record(row) for _, row in rows if row is not None)
+
+
+def reference_query(
+    unit: int,
+    block: str,
+    since: datetime | None,
+    until: datetime | None,
+    programmes: tuple[str, ...] = CALIBRATIONS,
+) -> Select[str]:
+    """The id of the session that others of the block, epoch and programmes are judged against."""
+    row = SessionRow
+    own = (row.unit_id == unit, row.block == block, row.programme.in_(programmes), row.is_reference, IS_ACCEPTED)
+    query = select(row.id).where(*own)
+    if since is not None:
+        query = query.where(row.started_at >= since)
+    if until is not None:
+        query = query.where(row.started_at < until)
+    return query.order_by(row.started_at, row.id).limit(1)
+
+
+def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:
+    """The decision that a verdict hangs on, as the store keeps it beside the verdict."""
+    if worst is None:
+        return {"worst_sensor": None, "worst_parameter": None, "margin": None}
+    return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
+
+
+def session_rows() -> Select[SessionRow, str, str, str | None, list[Any] | None]:
+    """Sessions with what their records hold besides."""
+    return (
+        select(SessionRow, UnitRow.serial, StandRow.name, DiagnosisRow.session_id, DiagnosisRow.reservations)
+        .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+        .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+        .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+    )
+
+
+_BY_ID = session_rows().where(SessionRow.id == bindparam("id"))
+_BY_HASH = session_rows().where(SessionRow.sha256 == bindparam("sha256"))
+_SAME = session_rows().where(
+    (SessionRow.sha256 == bindparam("sha256")) | (SessionRow.content_digest == bindparam("digest"))
+)
+FIELDS = tuple(f.name for f in fields(StoredSession) if f.name not in ELSEWHERE)
+"""Plain columns of a session's row."""
+
+
+def session_record(
+    row: SessionRow, unit: str, stand: str | None, diagnosed: str | None, reservations: list[Any] | None
+) -> StoredSession:
+    """A stored session, of a row of `session_rows`."""
+    own = {name: getattr(row, name) for name in FIELDS}
+    verdict, state = Verdict(row.verdict), RecordState(row.state)
+    said_with = reservations_from_list(diagnosed, reservations)
+    return StoredSession(unit=unit, stand=stand, verdict=verdict, state=state, reservations=said_with, **own)
+
+
+def decision_record(row: DecisionRow) -> Decision:
+    """A stored decision."""
+    own = {f.name: _plain(getattr(row, f.name)) for f in fields(Decision) if f.name != "verdict"}
+    return Decision(verdict=Verdict(row.verdict), **own)
+
+
+def motion_record(row: CommonMotionRow) -> CommonMotion:
+    """A stored common motion."""
+    return CommonMotion(**{f.name: _plain(getattr(row, f.name)) for f in fields(CommonMotion)})
+
+
+def _plain(value: Any) -> Any:
+    """JSON's lists are the tuples that they were."""
+    return tuple(map(_plain, value)) if isinstance(value, list) else value

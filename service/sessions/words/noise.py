@@ -1,0 +1,96 @@
+"""The terms of noise at rest in words: their sizes, what a record does not decide, and what became larger."""
+
+from collections.abc import Sequence
+from itertools import groupby
+
+import numpy as np
+
+from estimator.allan.growth import Course, Growth, growth
+from estimator.allan.results import TERMS, interval_of
+from service.kit.measures import NOISE, THIN, decimals, in_measure, number
+from service.sessions.records import HistoryPoint
+
+Points = Sequence[HistoryPoint]
+"""One term of one sensor, oldest first."""
+NAMES = {
+    "white-noise": "White noise N",
+    "bias-instability": "Bias instability B",
+    "random-walk": "Random walk K",
+    "quantisation": "Quantisation Q",
+}
+"""The one that most records decide first."""
+MEANINGS = {
+    "white-noise": "What an average over one second scatters by, at rest: velocity or angle random walk.",
+    "bias-instability": "Flicker of the zero at rest: no average, however long, is better than about two thirds of it.",
+    "random-walk": "How the zero walks away at rest, from an average of one second to the next.",
+    "quantisation": "Rounding of the counted velocity or angle, at rest.",
+}
+NOT_DECIDED = "not decided by a record of this length"
+SEVERAL = 3
+"""Sensors of a kind, from which on all of them together are told in one sentence."""
+LEVEL = 0.01
+"""Chance that a unit whose noise is the same is said to have become noisier, over all its sensors and terms."""
+
+
+def size_in_words(kind: str, name: str, value: float | None, sigma: float | None) -> str:
+    """``0.0401 °/√h (0.0393 to 0.0409)``: a term, SI, and where it lies with 95 %."""
+    if value is None or sigma is None:
+        return NOT_DECIDED
+    measure = NOISE[kind, name]
+    digits = decimals(sigma * measure.factor)
+    low, high = (number(in_measure(end, measure), digits) for end in interval_of(value, sigma))
+    return f"{number(in_measure(value, measure), digits)}{THIN}{measure.label} ({low} to {high})"
+
+
+def term_in_words(point: HistoryPoint) -> str:
+    """The same of a point of the history."""
+    return size_in_words(point.kind, point.parameter, point.value, point.u)
+
+
+def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
+    """What is larger in the newest record than before, in a sentence each; ``points`` of one unit, oldest first."""
+    decided = [p for p in points if p.parameter in TERMS and p.value and p.u]
+    if not decided:
+        return ()
+    newest = decided[-1].session
+    courses = [list(own) for _, own in groupby(sorted(decided, key=_place), key=_place)]
+    told = [own for own in courses if len(own) > 1 and own[-1].session == newest]
+    return tuple(s for own in _by_term(told) for s in _sentences(own, growth(_sizes(own), LEVEL / len(told))))
+
+
+def _sizes(courses: Sequence[Points]) -> list[Course]:
+    return [Course(np.array([p.value for p in own]), np.array([p.u for p in own])) for own in courses]
+
+
+def _by_term(courses: Sequence[Points]) -> list[list[Points]]:
+    """Those of one term of one kind of sensor together."""
+    return [list(own) for _, own in groupby(sorted(courses, key=_term), key=_term)]
+
+
+def _term(course: Points) -> tuple[str, str]:
+    return course[0].kind, course[0].parameter
+
+
+def _sentences(courses: Sequence[Points], found: Sequence[Growth]) -> tuple[str, ...]:
+    """One a sensor, or one of all: what makes every sensor noisier is hardly each of them."""
+    larger = [(own[-1], one) for own, one in zip(courses, found, strict=True) if one.is_larger]
+    if len(larger) < max(SEVERAL, len(courses)):
+        return tuple(_sentence(last, one) for last, one in larger)
+    last, times = larger[0][0], sorted(one.times for _, one in larger)
+    sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
+    return (
+        f"{NAMES[last.parameter]} is larger in all {sensors}: {least} to {most} times what it was. Look at the bench "
+        "and at what runs beside it first.",
+    )
+
+
+def _place(point: HistoryPoint) -> tuple[str, str]:
+    return point.sensor, point.parameter
+
+
+def _sentence(last: HistoryPoint, found: Growth) -> str:
+    measure = NOISE[last.kind, last.parameter]
+    return (
+        f"{NAMES[last.parameter]} of {last.sensor} is {number(found.times, 2)} times what it was: "
+        f"{term_in_words(last)}, before {number(in_measure(found.usual, measure))}{THIN}{measure.label}."
+    )

@@ -1,0 +1,1 @@
+"""Stands: their health, as the units measured on them show it, and their certificates."""

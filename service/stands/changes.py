@@ -1,0 +1,23 @@
+"""Flow: the certificate of a stand's own calibration, which the numbers of every session on it hang on."""
+
+from datetime import datetime
+
+from estimator.errors import Problem
+from service.errors import RefusedError
+from service.stands.paper_records import StandCertificate
+from service.stands.store import StandCertificates
+from service.storage import Storage
+from service.storage.audit import Audit
+
+
+def record_stand_certificate(storage: Storage, new: StandCertificate, now: datetime, *, who: str) -> StandCertificate:
+    """Keeps a certificate; one of a number that is there takes its place, and the same again changes nothing."""
+    if new.valid_until < new.issued_on:
+        fault = Problem("valid_until", f"lies before the day of issue, {new.issued_on}; check both dates")
+        raise RefusedError("The certificate cannot be used.", (fault,))
+    with storage.database.writing() as store:
+        if new not in StandCertificates(store).of_stand(new.stand):
+            StandCertificates(store).add(new, who, now)
+            details = {"number": new.number, "valid_until": new.valid_until.isoformat()}
+            Audit(store).write(now, who, "stand-certificate", new.stand, details)
+    return new

@@ -1,0 +1,104 @@
+"""The stands' own health, from what the units measured on them did together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from functools import lru_cache
+
+import numpy as np
+
+from estimator.health.common_motion import sigma_of, size_of
+from estimator.health.stands import Motion, StandShift, StandState, stand_states
+from service.kit.names import YEAR
+from service.stands.records import MotionOnStand, StandCondition, StandEvidence, StandSeating
+from service.stands.store import Stands
+from service.stands.words import reason_of
+from service.storage.store import Store
+
+
+def stand_health(store: Store) -> tuple[StandCondition, ...]:
+    """Every stand with its condition and the evidence, by name."""
+    every = Stands(store).motions()
+    whole = [motion for motion in every if motion.is_whole]
+    quantities = dict.fromkeys((motion.kind, motion.quantity) for motion in whole)
+    found = [one for of in quantities for one in _found(tuple(m for m in whole if (m.kind, m.quantity) == of))]
+    return tuple(_condition(stand, every, found) for stand in sorted({motion.stand for motion in every}))
+
+
+@dataclass(frozen=True)
+class _Found:
+    """One quantity of one stand."""
+
+    kind: str
+    quantity: str
+    start: datetime
+    """Of the years."""
+    state: StandState
+
+    @property
+    def seating(self) -> StandSeating:
+        return StandSeating(self.kind, self.quantity, self.state.seating)
+
+    @property
+    def worst(self) -> StandEvidence | None:
+        """The most evident shift, or what chance may explain."""
+        worst = self.state.worst
+        return None if worst is None else self._evidence(worst)
+
+    @property
+    def shifts(self) -> list[StandEvidence]:
+        return [self._evidence(shift) for shift in self.state.shifts]
+
+    def _evidence(self, shift: StandShift) -> StandEvidence:
+        return StandEvidence(
+            kind=self.kind,
+            quantity=self.quantity,
+            since=self.start + shift.since * YEAR,
+            until=None if shift.until is None else self.start + shift.until * YEAR,
+            value=shift.value,
+            size=size_of(self.quantity, shift.value),
+            sigma=sigma_of(shift.value, shift.covariance),
+            chi2=shift.chi2,
+            p_value=shift.p_value,
+            units=shift.units,
+            agreeing=shift.agreeing,
+            has_shifted=bool(self.state.shifts),
+        )
+
+
+@lru_cache(maxsize=8)
+def _found(own: tuple[MotionOnStand, ...]) -> tuple[_Found, ...]:
+    """What the motions of one quantity say of every stand; by years from the first of them.
+
+    Pages ask for it again and again between two uploads: what was worked out of the same motions is kept.
+    """
+    kind, quantity, start = own[0].kind, own[0].quantity, own[0].at
+    motions = [
+        Motion(
+            stand=motion.stand,
+            unit=f"{motion.unit}/{motion.epoch}",
+            time=(motion.at - start) / YEAR,
+            value=np.array(motion.value),
+            covariance=np.array(motion.covariance),
+        )
+        for motion in own
+    ]
+    return tuple(_Found(kind, quantity, start, state) for state in stand_states(motions))
+
+
+def _condition(stand: str, motions: Sequence[MotionOnStand], found: Sequence[_Found]) -> StandCondition:
+    own = [one for one in found if one.state.stand == stand]
+    evidence = tuple(one.worst for one in own if one.worst is not None)
+    shifts = tuple(sorted((shift for one in own for shift in one.shifts), key=lambda shift: shift.since))
+    seating = tuple(one.seating for one in own)
+    here = [motion for motion in motions if motion.stand == stand]
+    return StandCondition(
+        stand=stand,
+        sessions=len({(m.unit, m.at) for m in here if m.is_whole}),
+        has_shifted=any(shift.until is None for shift in shifts),
+        reason=reason_of(evidence, shifts, seating),
+        evidence=evidence,
+        shifts=shifts,
+        seating=seating,
+        unreadable=tuple(dict.fromkeys(motion.session for motion in here if not motion.is_whole)),
+    )

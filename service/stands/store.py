@@ -1,0 +1,189 @@
+"""Common motions by stand, stands' conditions, and the certificates of stands."""
+
+from collections.abc import Sequence
+from datetime import date, datetime
+from typing import Any
+
+from sqlalchemy import Integer, Select, cast, delete, func, select
+
+from estimator.health.common_motion import SEPARATED
+from service.errors import NotFoundError
+from service.fleet.tables import ConditionRow
+from service.sessions.states_store import IS_ACCEPTED
+from service.sessions.tables import CommonMotionRow, SessionRow
+from service.stands.paper_records import StandCertificate
+from service.stands.records import STILL, KnownStand, MotionOnStand, StandCondition, StandUse
+from service.stands.tables import StandCertificateRow, StandConditionRow, StandRow, StandTallyRow
+from service.storage.documents import STORED
+from service.storage.queries import Queries
+from service.types.telling_store import tells_of_stand
+from service.units.tables import UnitRow
+
+MOST = 4000
+"""Rows, the newest, that stands are judged by."""
+
+
+class Stands(Queries):
+    """What stands do to the units that are measured on them."""
+
+    def last_measured(self, stand: str, since: datetime) -> tuple[str, ...]:
+        """Serial numbers of the units whose latest session was on a stand, at a time or later."""
+        query = (
+            select(UnitRow.serial)
+            .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)
+            .join(StandRow, StandRow.id == ConditionRow.stand_id)
+            .where(StandRow.name == stand, ConditionRow.last_at >= since)
+        )
+        return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
+
+    def every(self) -> tuple[KnownStand, ...]:
+        """How much each stand is used and its own health, by name, in one query."""
+        return tuple(_known(*row) for row in self._session.execute(_stands().order_by(StandRow.name)))
+
+    def one(self, stand: str) -> KnownStand:
+        """The same of one stand; NotFoundError where there is none of that name."""
+        found = self._session.execute(_stands().where(StandRow.name == stand)).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no stand {stand!r}: no session was measured on one of that name.")
+        return _known(*found)
+
+    def conditions(self) -> tuple[StandCondition, ...]:
+        """Every stand's own health as it was last made, by name."""
+        query = select(StandConditionRow.document).join(StandRow, StandRow.id == StandConditionRow.stand_id)
+        return tuple(STORED.read(StandCondition, one) for one in self._session.scalars(query.order_by(StandRow.name)))
+
+    def put_conditions(self, found: Sequence[StandCondition], at: datetime) -> None:
+        """Rewrites what is known of all stands."""
+        keys = {name: key for key, name in self._session.execute(select(StandRow.id, StandRow.name))}
+        known = [keys[one.stand] for one in found]
+        self._session.execute(delete(StandConditionRow).where(StandConditionRow.stand_id.not_in(known)))
+        for one in sorted(found, key=lambda one: keys[one.stand]):
+            own = {"shifts": len(one.shifts), "document": STORED.written(one), "made_at": at}
+            self._session.merge(StandConditionRow(stand_id=keys[one.stand], **own))
+        self._session.flush()
+
+    def motions(self) -> tuple[MotionOnStand, ...]:
+        """The newest common motions on any stand, oldest first, in one query; a reference session's is zero."""
+        is_reference = func.sum(cast(SessionRow.is_reference, Integer))
+        epoch = is_reference.over(
+            partition_by=(SessionRow.unit_id, SessionRow.block), order_by=(SessionRow.started_at, SessionRow.id)
+        )
+        numbered = select(SessionRow.id, epoch.label("epoch")).where(IS_ACCEPTED).subquery()
+        query = (
+            select(SessionRow, StandRow.name, UnitRow.serial, numbered.c.epoch, CommonMotionRow)
+            .join(StandRow, StandRow.id == SessionRow.stand_id)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(numbered, numbered.c.id == SessionRow.id)
+            .outerjoin(
+                CommonMotionRow,
+                (CommonMotionRow.session_id == SessionRow.id)
+                & (CommonMotionRow.revision == SessionRow.revision)
+                & (CommonMotionRow.state == SEPARATED),
+            )
+            .where(
+                SessionRow.is_reference | CommonMotionRow.session_id.is_not(None),
+                tells_of_stand(StandRow.id.expression),
+            )
+            .order_by(SessionRow.started_at.desc(), SessionRow.id, CommonMotionRow.kind, CommonMotionRow.quantity)
+            .limit(MOST)
+        )
+        found: list[MotionOnStand] = []
+        for session, stand, unit, number, motion in self._session.execute(query):
+            found += _motions(session, stand, unit, number, motion)
+        return tuple(reversed(found))
+
+
+def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
+    """The document of its own health, then the fields of `StandUse`."""
+    last = select(func.max(SessionRow.started_at)).where(SessionRow.stand_id == StandRow.id, IS_ACCEPTED)
+    counts = (func.coalesce(StandTallyRow.sessions, 0), func.coalesce(StandTallyRow.units, 0))
+    return (
+        select(StandConditionRow.document, StandRow.name, *counts, last.scalar_subquery())
+        .select_from(StandRow)
+        .outerjoin(StandTallyRow, StandTallyRow.stand_id == StandRow.id)
+        .outerjoin(StandConditionRow, StandConditionRow.stand_id == StandRow.id)
+    )
+
+
+def _known(document: dict[str, Any] | None, *use: Any) -> KnownStand:
+    return KnownStand(StandUse(*use), None if document is None else STORED.read(StandCondition, document))
+
+
+def _motions(
+    session: SessionRow, stand: str, unit: str, epoch: int, motion: CommonMotionRow | None
+) -> list[MotionOnStand]:
+    """One; of a reference one of each quantity, zero by definition."""
+    if motion is not None:
+        covariance = tuple(map(_tuple, _tuple(motion.covariance)))
+        made = (motion.kind, motion.quantity, _tuple(motion.value), covariance)
+        return [MotionOnStand(stand, unit, epoch, session.started_at, *made, session.id)]
+    return [
+        MotionOnStand(stand, unit, epoch, session.started_at, session.block, quantity, *still, session.id)
+        for quantity, still in STILL.items()
+    ]
+
+
+def _tuple(stored: Any) -> tuple[Any, ...]:
+    """A stored list; empty where something else is stored, which `MotionOnStand.is_whole` tells."""
+    return tuple(stored) if isinstance(stored, list) else ()
+
+
+class StandCertificates(Queries):
+    """Certificates by stand; a row is written once."""
+
+    def every(self) -> dict[str, tuple[StandCertificate, ...]]:
+        """All stands by name, each with its certificates as they were last recorded, oldest issue first."""
+        query = (
+            select(StandRow.name, StandCertificateRow)
+            .outerjoin(StandCertificateRow, StandCertificateRow.stand_id == StandRow.id)
+            .order_by(StandRow.name, StandCertificateRow.id)
+        )
+        found: dict[str, list[StandCertificate]] = {}
+        for name, row in self._session.execute(query):
+            own = found.setdefault(name, [])
+            if row is not None:
+                own.append(_certificate(name, row))
+        return {name: _by_issue(own) for name, own in found.items()}
+
+    def of_stand(self, stand: str) -> tuple[StandCertificate, ...]:
+        """The certificates of one stand as they were last recorded, oldest issue first."""
+        query = (
+            select(StandCertificateRow)
+            .join(StandRow, StandRow.id == StandCertificateRow.stand_id)
+            .where(StandRow.name == stand)
+            .order_by(StandCertificateRow.id)
+        )
+        return _by_issue([_certificate(stand, row) for row in self._session.scalars(query)])
+
+    def known(self, stand: str) -> tuple[StandCertificate, ...]:
+        """The same of a stand that must be known."""
+        self._key(stand)
+        return self.of_stand(stand)
+
+    def on(self, stand: str, day: date) -> StandCertificate | None:
+        """The latest certificate of a stand that was issued by a day, whether it still held or not."""
+        issued = [certificate for certificate in self.of_stand(stand) if certificate.issued_on <= day]
+        return issued[-1] if issued else None
+
+    def add(self, new: StandCertificate, who: str, now: datetime) -> None:
+        """Stores a certificate of a stand that is known."""
+        values = {**vars(new), "stand_id": self._key(new.stand), "who": who, "recorded_at": now}
+        del values["stand"]
+        self._session.add(StandCertificateRow(**values))
+        self._session.flush()
+
+    def _key(self, stand: str) -> int:
+        key = self._session.scalar(select(StandRow.id).where(StandRow.name == stand))
+        if key is None:
+            raise NotFoundError(f"There is no stand {stand!r}: no session was measured on one of that name.")
+        return key
+
+
+def _by_issue(recorded: Sequence[StandCertificate]) -> tuple[StandCertificate, ...]:
+    """Of one number the last that was recorded; of one day of issue the last recorded comes last."""
+    last = {certificate.number: place for place, certificate in enumerate(recorded)}
+    return tuple(sorted((recorded[place] for place in sorted(last.values())), key=lambda c: c.issued_on))
+
+
+def _certificate(stand: str, row: StandCertificateRow) -> StandCertificate:
+    return StandCertificate(stand, row.number, row.issued_by, row.issued_on, row.valid_until)

@@ -1,0 +1,131 @@
+"""What the units measured on a stand show of it, and whether it may be used, in words."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date, timedelta
+
+from estimator.health.common_motion import AXES
+from estimator.session import ACCELEROMETER
+from service.kit.measures import COVERAGE, deviation_measure, in_words, measured, signed
+from service.kit.names import day_of
+from service.stands.paper_records import StandCertificate
+from service.stands.records import StandCondition, StandEvidence, StandSeating
+
+STEADY = "Nothing that all units measured on it have in common."
+TOO_FEW = "Fewer than three units tell of it."
+JUDGED = "The units are judged without it."
+
+
+def reason_of(
+    evidence: Sequence[StandEvidence], shifts: Sequence[StandEvidence], seating: Sequence[StandSeating]
+) -> str:
+    """What the stand does to every block, since when, what to do, and how blocks are seated anyway."""
+    if not shifts:
+        return " ".join([STEADY, *_seating(seating)]) if evidence else TOO_FEW
+    lasting = [shift for shift in shifts if shift.until is None]
+    told = [_shift(shift) for shift in (*lasting, *(shift for shift in shifts if shift.until is not None))]
+    advice = "Check stand and fixture." if lasting else "It is back where it was: note what was done to it."
+    return " ".join([*told, advice, JUDGED, *_seating(seating)])
+
+
+def _shift(shift: StandEvidence) -> str:
+    """What it does, or did, on how many units it was seen, and when."""
+    seen = f"seen on {shift.agreeing} of {shift.units} units"
+    when = f"since {day_of(shift.since)}"
+    if shift.until is not None:
+        when = f"from {day_of(shift.since)} until before {day_of(shift.until)}"
+    by = f"{size_of_shift(shift)}, {seen} {when}."
+    if shift.quantity == AXES:
+        return f"It {'turns' if shift.until is None else 'turned'} every block by {by}"
+    return f"It {'changes' if shift.until is None else 'changed'} every scale factor by {by}"
+
+
+def size_of_shift(shift: StandEvidence) -> str:
+    """``15.3 ± 0.4 arcsec``, ± U."""
+    parameter, write = ("axis", measured) if shift.quantity == AXES else ("scale", signed)
+    return write(shift.size, COVERAGE * shift.sigma, deviation_measure(shift.kind, parameter, shift.size))
+
+
+def kind_of_shift(kind: str, quantity: str) -> str:
+    """``Turn of every block``: what a stand does, by the sensors that show it."""
+    what = "Turn of every block" if quantity == AXES else "Change of every scale factor"
+    return what if kind == ACCELEROMETER else f"{what}, by gyros"
+
+
+def scatter_of(own: StandSeating) -> str:
+    """``±0.4 arcsec about each axis``: from one mounting to the next, ± U."""
+    parameter, of = ("axis", "about each axis") if own.quantity == AXES else ("scale", "of all scale factors")
+    return f"±{in_words(own.kind, parameter, COVERAGE * own.tau)} {of}"
+
+
+def _seating(seating: Sequence[StandSeating]) -> list[str]:
+    """How blocks are seated, ± U."""
+    return [
+        f"From one mounting to the next a block sits within {scatter_of(own)}."
+        for own in seating
+        if own.quantity == AXES
+    ][:1]
+
+
+NONE = "No certificate on record: sessions on this stand state no traceability."
+NOT_YET = "Its certificate is issued on {issued}, which is still to come: until then sessions state no traceability."
+HOLDS = "Sessions on this stand are traceable until {until}."
+EXPIRED = "Its certificate expired on {until}: traceability of sessions after that day is interrupted."
+SOON = timedelta(days=30)
+"""In which a laboratory can still have a stand calibrated before its certificate ends."""
+
+
+@dataclass(frozen=True)
+class StandWord:
+    """What the crew does with a stand today, and why."""
+
+    key: str
+    """Name of the icon and the style."""
+    word: str
+    advice: str
+    """What to do."""
+
+
+READY = StandWord("pass", "Ready to use", "Nothing that is on record speaks against it.")
+SOON_OVER = StandWord("conditional-pass", "Ready to use", "Its certificate ends soon: have the stand calibrated.")
+NOT_STATED = StandWord("undecidable", "Usable, traceability not stated", "Record the certificate of the stand.")
+CHECK = StandWord("conditional-fail", "Check before use", "Check stand and fixture before a unit is mounted.")
+EXPIRED_TODAY = StandWord("fail", "Not traceable today", "Have the stand calibrated, or record its new certificate.")
+WORDS = (EXPIRED_TODAY, CHECK, NOT_STATED, SOON_OVER, READY)
+"""Worst first."""
+
+
+def held(certificates: Sequence[StandCertificate], today: date) -> StandCertificate | None:
+    """The latest certificate that was issued by today, whether it still holds or not; they come by issue."""
+    issued = [certificate for certificate in certificates if certificate.issued_on <= today]
+    return issued[-1] if issued else None
+
+
+def certificate_in_words(certificates: Sequence[StandCertificate], today: date) -> str:
+    """What sessions of today would hang on."""
+    latest = held(certificates, today)
+    if latest is None:
+        return NOT_YET.format(issued=day_of(certificates[0].issued_on)) if certificates else NONE
+    return (HOLDS if latest.valid_until >= today else EXPIRED).format(until=day_of(latest.valid_until))
+
+
+def stand_word(
+    condition: StandCondition | None, certificates: Sequence[StandCertificate], flags: int, today: date
+) -> StandWord:
+    """The worst that is known of it; ``flags``: how many are open that find it at fault."""
+    shifted = condition is not None and condition.has_shifted
+    found = [_certificate_word(held(certificates, today), today), CHECK if shifted or flags else READY]
+    return min(found, key=WORDS.index)
+
+
+def condition_in_words(condition: StandCondition | None) -> str:
+    """What the units measured on it show."""
+    return TOO_FEW if condition is None else condition.reason
+
+
+def _certificate_word(latest: StandCertificate | None, today: date) -> StandWord:
+    if latest is None:
+        return NOT_STATED
+    if latest.valid_until < today:
+        return EXPIRED_TODAY
+    return SOON_OVER if latest.valid_until < today + SOON else READY

@@ -1,0 +1,134 @@
+"""The audit trail: a chain of hashes, so that a line that is changed, left out or put in between shows.
+
+h_i = SHA-256 of the JSON of [h_(i−1), at, who, account, action, subject, details], with h_0 of zeros. Lines are chained
+just before their transaction commits, one transaction after the other.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from hashlib import sha256
+from typing import Any
+
+from sqlalchemy import select, text
+
+from service.kit.answer import answer
+from service.storage.audit_table import AuditRow
+from service.storage.queries import Queries
+from service.storage.store import Store
+
+FIRST = "0" * 64
+"""Before the first line."""
+LOCK = 0x696D_7568
+"""Number of PostgreSQL's advisory lock under which lines are chained."""
+WRITTEN = "audit"
+"""Lines that wait for the end of their transaction, in the session's own notes."""
+
+
+@answer
+@dataclass(frozen=True)
+class AuditLine:
+    """Who did what when."""
+
+    id: int
+    """Number of the line."""
+    at: datetime
+    """When, UTC."""
+    who: str
+    """As they said, or as their account is named."""
+    account: str
+    """Account that was signed in, with the token that acted for it."""
+    action: str
+    """What was done."""
+    subject: str
+    """To what: a session, a unit, a type, a stand, an account."""
+    details: dict[str, Any]
+    """What before, what after and why, as far as the action has them."""
+    hash: str
+    """SHA-256 of this line and of the one before it."""
+
+
+@answer
+@dataclass(frozen=True)
+class AuditCheck:
+    """Whether the trail is as it was written."""
+
+    lines: int
+    """How many there are."""
+    last: str
+    """Hash of the last line; kept elsewhere, it shows later that none was cut off."""
+    broken: int | None
+    """First line that does not follow from the ones before it; null: none."""
+
+
+class Audit(Queries):
+    """Who did what when."""
+
+    def __init__(self, store: Store) -> None:
+        super().__init__(store)
+        self._account = store.account
+
+    def write(self, at: datetime, who: str, action: str, subject: str, details: dict[str, Any]) -> None:
+        """Records who did what; never changed afterwards."""
+        row = AuditRow(at=at.astimezone(UTC), who=who, action=action, subject=subject, details=details)
+        row.account = self._account
+        self._session.info.setdefault(WRITTEN, []).append(row)
+
+    def seal(self) -> None:
+        """Chains the lines that this transaction wrote; the last thing that it does."""
+        written: list[AuditRow] = self._session.info.pop(WRITTEN, [])
+        if not written:
+            return
+        self._session.flush()
+        if self._session.get_bind().dialect.name == "postgresql":  # SQLite has one writer anyway
+            self._session.execute(text("SELECT pg_advisory_xact_lock(:number)"), {"number": LOCK})
+        last = self.last()
+        for row in written:
+            row.hash = last = _hash(last, row)
+        names = ("at", "who", "account", "action", "subject", "details", "hash")
+        self.insert_many(AuditRow, [{name: getattr(row, name) for name in names} for row in written])
+
+    def page(self, most: int, before: int | None = None, subject: str | None = None) -> tuple[AuditLine, ...]:
+        """Lines, the newest first: of one subject, and before a line where one is given."""
+        wanted = select(AuditRow).order_by(AuditRow.id.desc()).limit(most)
+        if before is not None:
+            wanted = wanted.where(AuditRow.id < before)
+        if subject is not None:
+            wanted = wanted.where(AuditRow.subject == subject)
+        return tuple(_line(row) for row in self._session.scalars(wanted))
+
+    def who_did(self, action: str, subject: str, times: Sequence[datetime]) -> dict[datetime, str]:
+        """Who did something to a subject, by when; times at which nobody did have no key."""
+        done = select(AuditRow.at, AuditRow.who).where(
+            AuditRow.action == action, AuditRow.subject == subject, AuditRow.at.in_(times)
+        )
+        return {at: who for at, who in self._session.execute(done)}  # noqa: C416 - rows are no pairs
+
+    def check(self) -> AuditCheck:
+        """Works out the chain again, from the first line."""
+        last, lines, broken = FIRST, 0, None
+        for row in self._session.scalars(select(AuditRow).order_by(AuditRow.id).execution_options(yield_per=1000)):
+            lines += 1
+            if broken is None and row.hash != _hash(last, row):
+                broken = row.id
+            last = row.hash
+        return AuditCheck(lines, last, broken)
+
+    def has(self, hash: str) -> bool:
+        """Whether a line of this hash is in the trail."""
+        return self._session.scalar(select(AuditRow.id).where(AuditRow.hash == hash).limit(1)) is not None
+
+    def last(self) -> str:
+        """The hash of the last line."""
+        return self._session.scalar(select(AuditRow.hash).order_by(AuditRow.id.desc()).limit(1)) or FIRST
+
+
+def _hash(last: str, row: AuditRow) -> str:
+    at = row.at.isoformat(timespec="microseconds")
+    line: list[Any] = [last, at, row.who, row.account, row.action, row.subject, row.details]
+    return sha256(json.dumps(line, sort_keys=True, ensure_ascii=False).encode()).hexdigest()
+
+
+def _line(row: AuditRow) -> AuditLine:
+    return AuditLine(row.id, row.at, row.who, row.account, row.action, row.subject, row.details, row.hash)

@@ -1,0 +1,1 @@
+"""Kinds of unit: their nominal model and their tolerances, revision by revision."""

@@ -1,0 +1,129 @@
+"""Unit types with their tolerances, and what other tolerances would change."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.kit.answer import answer
+from service.sessions.decision import Verdict
+
+
+@answer
+@dataclass(frozen=True)
+class Tolerances:
+    """Largest allowed deviations from the reference; null where a parameter is not judged."""
+
+    scale: float | None
+    """Relative: 1e-6 is 1 ppm."""
+    bias: float | None
+    """m/s² (rad/s)."""
+    quadratic: float | None
+    """s²/m (s/rad)."""
+    axis: float | None
+    """rad."""
+
+
+@answer
+@dataclass(frozen=True)
+class UnitType:
+    """A kind of unit: nominal axes and tolerances that all its units share."""
+
+    name: str
+    """Name of the type."""
+    block: str
+    """`accelerometer` or `gyroscope`."""
+    sensors: tuple[str, ...]
+    """Names of the sensors."""
+    nominal_axes: tuple[tuple[float, float, float], ...]
+    """Unit vectors in block axes."""
+    nominal_scales: tuple[float, ...]
+    """Reading unit per m/s² (rad/s)."""
+    tolerances: Tolerances
+    """Of the sensors of the block's own kind."""
+    gyro_tolerances: Tolerances | None
+    """Of the gyros of a block of accelerometers."""
+    revision: int
+    """Counts up with every change of tolerances; decisions name theirs."""
+    maximum_interval_days: float = 365.0
+    """Longest time from a session to the next calibration."""
+
+
+@dataclass(frozen=True)
+class ToleranceRevision:
+    """Tolerances of a type as they held from a time on."""
+
+    revision: int
+    since: datetime
+    tolerances: Tolerances
+    gyro_tolerances: Tolerances | None
+
+
+@dataclass(frozen=True)
+class TypeUse:
+    """The units of a type by their condition."""
+
+    units: int
+    verdicts: dict[Verdict, int]
+    """Of units with an accepted session; every verdict is a key."""
+
+
+@dataclass(frozen=True)
+class WantedTolerances:
+    """What somebody thinks of setting."""
+
+    tolerances: Tolerances
+    gyro_tolerances: Tolerances | None
+
+
+@dataclass(frozen=True)
+class LatestSession:
+    """The session that a unit's verdict is of."""
+
+    unit: str
+    key: int
+    """Of the unit."""
+    session: str
+    started_at: datetime
+    block: str
+    programme: str
+    is_reference: bool
+    verdict: Verdict
+
+
+@answer
+@dataclass(frozen=True)
+class VerdictChange:
+    """A unit that would have another verdict."""
+
+    unit: str
+    """Serial number."""
+    session: str
+    """Id of its latest session."""
+    before: Verdict
+    """As it is stored."""
+    after: Verdict
+    """Under the other tolerances."""
+    sensor: str
+    """The sensor that it hangs on; empty where nothing would be judged."""
+    parameter: str
+    """The parameter that it hangs on."""
+    reason: str
+    """Why, in one sentence."""
+
+
+@answer
+@dataclass(frozen=True)
+class TolerancePreview:
+    """What other tolerances would change."""
+
+    units: int
+    """Units of the type with a session that counts."""
+    judged: int
+    """Those whose latest session was judged by the other tolerances."""
+    references: int
+    """Those whose latest session is judged against nothing."""
+    recordings: int
+    """Those whose latest session is a recording in service that no calibration stands beside."""
+    beyond: int
+    """Those that were not looked at, because there are so many."""
+    changes: tuple[VerdictChange, ...]
+    """Units that would have another verdict, the worst first."""

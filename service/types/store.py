@@ -1,0 +1,202 @@
+"""Unit types and the revisions of their tolerances."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from datetime import datetime
+
+from sqlalchemy import Select, bindparam, func, select
+
+from estimator.session import CALIBRATIONS
+from service.errors import NotFoundError
+from service.fleet.tables import FleetTallyRow
+from service.sessions.decision import Verdict
+from service.sessions.states_store import IS_ACCEPTED
+from service.sessions.tables import ParameterRow, SessionRow
+from service.storage.queries import Queries
+from service.types.records import ToleranceRevision, Tolerances, TypeUse, UnitType
+from service.types.tables import ToleranceRow, UnitTypeRow
+from service.units.tables import UnitRow
+
+TypeThroughTime = tuple[tuple[datetime, UnitType], ...]
+"""A type with every revision of its tolerances, and since when each holds; oldest first."""
+
+
+class UnitTypes(Queries):
+    """Kinds of unit and their tolerances."""
+
+    def add_once(self, unit_type: UnitType, now: datetime) -> None:
+        """Stores a new type; one of that name that is there already stays as it is."""
+        added = self.insert_once(
+            UnitTypeRow,
+            name=unit_type.name,
+            block=unit_type.block,
+            sensors=list(unit_type.sensors),
+            nominal_axes=[list(axis) for axis in unit_type.nominal_axes],
+            nominal_scales=list(unit_type.nominal_scales),
+            revision=unit_type.revision,
+            maximum_interval_days=unit_type.maximum_interval_days,
+        )
+        if added:
+            self._add_tolerances(self._row(unit_type.name), unit_type.tolerances, unit_type.gyro_tolerances, now)
+
+    def get(self, name: str) -> UnitType:
+        """The type with the tolerances that hold now."""
+        found = self.find(name)
+        if found is None:
+            raise _missing(name)
+        return found
+
+    def find(self, name: str) -> UnitType | None:
+        """The same, where there is one of that name."""
+        found = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
+        return None if found is None else unit_type_of(*found)
+
+    def of_unit(self, serial: str) -> UnitType:
+        """The type of a unit with the tolerances that hold now."""
+        found = self._session.execute(
+            _with_tolerances().join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == serial)
+        ).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return unit_type_of(*found)
+
+    def of_unit_through_time(self, serial: str) -> TypeThroughTime:
+        """The type of a unit with every revision of its tolerances, oldest first."""
+        found = self._session.execute(_THROUGH_TIME, {"serial": serial})
+        return tuple((tolerances.since, unit_type_of(row, tolerances)) for row, tolerances in found)
+
+    def page(self, offset: int, limit: int) -> tuple[UnitType, ...]:
+        """Types by name."""
+        rows = self._session.execute(_with_tolerances().order_by(UnitTypeRow.name).offset(offset).limit(limit))
+        return tuple(unit_type_of(row, tolerances) for row, tolerances in rows)
+
+    def revisions(self, name: str) -> tuple[ToleranceRevision, ...]:
+        """Every revision of a type's tolerances, oldest first."""
+        query = select(ToleranceRow).join(UnitTypeRow).where(UnitTypeRow.name == name).order_by(ToleranceRow.revision)
+        return tuple(
+            ToleranceRevision(row.revision, row.since, *_tolerances(row)) for row in self._session.scalars(query)
+        )
+
+    def uses(self, name: str | None = None) -> dict[str, TypeUse]:
+        """Units of every type, or of one, by condition, in one query."""
+        row = FleetTallyRow
+        query = (
+            select(UnitTypeRow.name, row.severity, func.coalesce(func.sum(row.units), 0))
+            .outerjoin(row, row.unit_type_id == UnitTypeRow.id)
+            .group_by(UnitTypeRow.name, row.severity)
+        )
+        if name is not None:
+            query = query.where(UnitTypeRow.name == name)
+        found: dict[str, dict[int | None, int]] = {}
+        for of_type, severity, count in self._session.execute(query):
+            found.setdefault(of_type, {})[severity] = count
+        return {of_type: _use(counts) for of_type, counts in found.items()}
+
+    def kinds(self, name: str) -> dict[str, str]:
+        """The kind of every sensor, as the latest calibration of a unit of the type says."""
+        latest = (
+            select(SessionRow.id)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.name == name, IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
+            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .limit(1)
+        )
+        said = select(ParameterRow.sensor, ParameterRow.kind).where(ParameterRow.session_id == latest.scalar_subquery())
+        return {sensor: kind for sensor, kind in self._session.execute(said.distinct())}  # noqa: C416 - rows are no pairs
+
+    def hold(self, name: str) -> UnitType:
+        """The type, held until the transaction ends: its revisions are made one after another."""
+        row = self._session.scalar(select(UnitTypeRow).where(UnitTypeRow.name == name).with_for_update())
+        if row is None:
+            raise _missing(name)
+        return self._record(row)
+
+    def set_interval(self, name: str, days: float) -> UnitType:
+        """Another longest time from a session to the next calibration."""
+        row = self._row(name)
+        row.maximum_interval_days = days
+        self._session.flush()
+        return self._record(row)
+
+    def revise(self, name: str, tolerances: Tolerances, gyro_tolerances: Tolerances | None, now: datetime) -> UnitType:
+        """Adds the next revision of a type's tolerances; earlier ones stay."""
+        row = self._row(name)
+        row.revision += 1
+        self._add_tolerances(row, tolerances, gyro_tolerances, now)
+        return self._record(row)
+
+    def _add_tolerances(
+        self, row: UnitTypeRow, tolerances: Tolerances, gyro_tolerances: Tolerances | None, now: datetime
+    ) -> None:
+        self._session.add(
+            ToleranceRow(
+                unit_type_id=row.id,
+                revision=row.revision,
+                since=now,
+                tolerances=asdict(tolerances),
+                gyro_tolerances=None if gyro_tolerances is None else asdict(gyro_tolerances),
+            )
+        )
+        self._session.flush()
+
+    def _row(self, name: str) -> UnitTypeRow:
+        row = self._session.scalar(select(UnitTypeRow).where(UnitTypeRow.name == name))
+        if row is None:
+            raise _missing(name)
+        return row
+
+    def _record(self, row: UnitTypeRow) -> UnitType:
+        return unit_type_of(row, self._session.get_one(ToleranceRow, (row.id, row.revision)))
+
+
+_THROUGH_TIME = (
+    select(UnitTypeRow, ToleranceRow)
+    .join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
+    .join(ToleranceRow, ToleranceRow.unit_type_id == UnitTypeRow.id)
+    .where(UnitRow.serial == bindparam("serial"))
+    .order_by(ToleranceRow.revision)
+)
+
+
+def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
+    """The type with the tolerances that held at a time; with its first ones before that."""
+    return ([of for since, of in known if since <= at] or [known[0][1]])[-1]
+
+
+def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
+    """Types, each with the revision of its tolerances that holds."""
+    return select(UnitTypeRow, ToleranceRow).join(
+        ToleranceRow,
+        (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
+    )
+
+
+def _missing(name: str) -> NotFoundError:
+    return NotFoundError(f"There is no unit type {name!r}.")
+
+
+def _use(counts: Mapping[int | None, int]) -> TypeUse:
+    return TypeUse(sum(counts.values()), {verdict: counts.get(verdict.severity, 0) for verdict in Verdict})
+
+
+def _tolerances(row: ToleranceRow) -> tuple[Tolerances, Tolerances | None]:
+    """Of the block, and of the gyros of a mixed one."""
+    gyro = row.gyro_tolerances
+    return Tolerances(**row.tolerances), None if gyro is None else Tolerances(**gyro)
+
+
+def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
+    """The record of a type with one revision of its tolerances."""
+    of_block, gyro = _tolerances(tolerances)
+    return UnitType(
+        name=row.name,
+        block=row.block,
+        sensors=tuple(row.sensors),
+        nominal_axes=tuple(tuple(axis) for axis in row.nominal_axes),
+        nominal_scales=tuple(row.nominal_scales),
+        tolerances=of_block,
+        gyro_tolerances=gyro,
+        revision=tolerances.revision,
+        maximum_interval_days=row.maximum_interval_days,
+    )

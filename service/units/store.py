@@ -1,0 +1,198 @@
+"""Units by serial number, and the services that were done to them."""
+
+from dataclasses import asdict
+from datetime import datetime
+
+from sqlalchemy import Select, exists, select, update
+
+from service.errors import NotFoundError
+from service.sessions.states import RecordState
+from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
+from service.sessions.tables import SessionRow
+from service.stands.tables import StandRow
+from service.storage.queries import Queries
+from service.types.tables import UnitTypeRow
+from service.units.customer import Customer
+from service.units.records import NewService, Service
+from service.units.tables import ServiceRow, UnitRow
+
+
+class Units(Queries):
+    """Units by serial number."""
+
+    def exists(self, serial: str) -> bool:
+        """Whether a session of this unit was ever stored."""
+        return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial)) is not None
+
+    def is_simulated(self, serial: str) -> bool | None:
+        """Whether a unit's sessions are simulated, as its first one was; None where there is no such unit."""
+        if ("simulated", serial) in self._session.info:
+            return bool(self._session.info["simulated", serial])
+        return self._session.scalar(select(UnitRow.simulated).where(UnitRow.serial == serial))
+
+    def set_simulated(self, serial: str, simulated: bool) -> None:
+        """Records what a unit's sessions are from now on."""
+        own = update(UnitRow).where(UnitRow.serial == serial, UnitRow.simulated.is_not(simulated))
+        self._session.execute(own.values(simulated=simulated))
+        self._session.info.pop(("simulated", serial), None)
+
+    def set_lot(self, serial: str, lot: str | None) -> str | None:
+        """Records a unit's production lot, and returns the one before."""
+        unit = self._session.scalars(select(UnitRow).where(UnitRow.serial == serial)).one()
+        was, unit.lot = unit.lot, lot
+        self._session.flush()
+        return was
+
+    def customer(self, serial: str) -> Customer:
+        """For whom a unit is calibrated."""
+        found = self._session.execute(
+            select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
+        ).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return Customer(*found)
+
+    def set_customer(self, serial: str, new: Customer) -> None:
+        """Records for whom a unit is calibrated."""
+        unit = self._session.scalars(select(UnitRow).where(UnitRow.serial == serial)).one()
+        unit.customer, unit.customer_address = new.name, new.address
+        self._session.flush()
+
+    def of_type(self, name: str) -> tuple[str, ...]:
+        """Serial numbers of a type's units, in order."""
+        query = select(UnitRow.serial).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        return tuple(self._session.scalars(query.where(UnitTypeRow.name == name).order_by(UnitRow.serial)))
+
+    def every(self) -> tuple[str, ...]:
+        """Serial numbers of all units, in order."""
+        return tuple(self._session.scalars(select(UnitRow.serial).order_by(UnitRow.serial)))
+
+    def accepted(self, *, simulated: bool) -> tuple[tuple[str, str], ...]:
+        """Serial number and type of every unit, measured or simulated, with a session that counts."""
+        counts = exists().where(SessionRow.unit_id == UnitRow.id, IS_ACCEPTED)
+        query = select(UnitRow.serial, UnitTypeRow.name).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        rows = self._session.execute(query.where(counts, UnitRow.simulated.is_(simulated)).order_by(UnitRow.id))
+        return tuple((serial, kind) for serial, kind in rows)
+
+    def add_once(self, serial: str, unit_type: str, simulated: bool) -> None:
+        """Stores a new unit; one of that serial number that is there already stays as it is."""
+        type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
+        self.insert_once(UnitRow, serial=serial, unit_type_id=type_id, simulated=simulated)
+
+    def held(self, serial: str) -> int | None:
+        """The key of a unit that is there, with the unit held until the transaction ends: its sessions are judged one
+        after another."""
+        notes = self._session.info
+        if ("held", serial) not in notes:
+            query = select(UnitRow.id, UnitRow.simulated).where(UnitRow.serial == serial).with_for_update()
+            found = self._session.execute(query).one_or_none()
+            if found is None:
+                return None
+            notes["held", serial], notes["simulated", serial] = found
+            self.remember_unit(serial, found[0])
+        key: int = notes["held", serial]
+        return key
+
+    def hold(self, serial: str) -> int:
+        """The same of a unit that must be there."""
+        key = self.held(serial)
+        if key is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return key
+
+    def find(self, serial: str) -> int | None:
+        """The key of a unit; None where no session of it was ever stored."""
+        return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
+
+    def key(self, serial: str) -> int:
+        """The unit's key, which never changes: asked for once a transaction."""
+        known = self.remembered_unit(serial)
+        if known is not None:
+            return known
+        key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
+        if key is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        self.remember_unit(serial, key)
+        return key
+
+    def stand_key(self, name: str | None) -> int | None:
+        """The key of a stand, stored when it is new; None without a stand."""
+        if name is None:
+            return None
+        query = select(StandRow.id).where(StandRow.name == name)
+        known = self._session.scalar(query)
+        if known is None:
+            self.insert_once(StandRow, name=name)
+            known = self._session.scalar(query)
+        return known
+
+
+class Services(Queries):
+    """Adjustments, repairs, sensor swaps, new references."""
+
+    def add(self, unit: int, new: NewService, now: datetime) -> tuple[int, bool]:
+        """Records a break and returns its number and whether it is new; the same break twice is one."""
+        created = self.insert_once(ServiceRow, unit_id=unit, recorded_at=now, **asdict(new))
+        row = self._session.scalars(
+            select(ServiceRow).where(
+                ServiceRow.unit_id == unit,
+                ServiceRow.at == new.at,
+                ServiceRow.kind == new.kind,
+                ServiceRow.sensor == new.sensor,
+            )
+        ).one()
+        return row.id, created
+
+    def get(self, number: int) -> Service:
+        """One recorded break."""
+        found = self._session.execute(_services().where(ServiceRow.id == number)).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no service {number}.")
+        return service_record(*found)
+
+    def put_state(self, number: int, state: RecordState) -> None:
+        """Whether it counts as a break."""
+        self._session.execute(update(ServiceRow).where(ServiceRow.id == number).values(state=state))
+        self._session.expire_all()
+
+    def of_unit(self, serial: str) -> tuple[Service, ...]:
+        """The breaks of a unit, oldest first."""
+        return tuple(s for s in self.recorded(serial) if s.state is RecordState.ACCEPTED)
+
+    def recorded(self, serial: str) -> tuple[Service, ...]:
+        """All services of a unit, those that were withdrawn too, oldest first."""
+        query = _services().where(UnitRow.serial == serial).order_by(ServiceRow.at, ServiceRow.id)
+        return tuple(service_record(row, owner) for row, owner in self._session.execute(query))
+
+    def breaks(self, unit: int) -> tuple[datetime, ...]:
+        """When the epochs of a unit begin, its first one apart, in order."""
+        query = select(ServiceRow.at).where(ServiceRow.unit_id == unit, IS_BREAK)
+        return tuple(sorted(set(self._session.scalars(query))))
+
+    def around(self, unit: int, at: datetime) -> tuple[datetime | None, datetime | None]:
+        """The last break at or before a time and the first one after it: the epoch that the time is in."""
+        return epoch(self.breaks(unit), at)
+
+
+def epoch(breaks: tuple[datetime, ...], at: datetime) -> tuple[datetime | None, datetime | None]:
+    """The last of the breaks at or before a time and the first one after it."""
+    before, after = [b for b in breaks if b <= at], [b for b in breaks if b > at]
+    return max(before, default=None), min(after, default=None)
+
+
+def _services() -> Select[ServiceRow, str]:
+    return select(ServiceRow, UnitRow.serial).join(UnitRow, UnitRow.id == ServiceRow.unit_id)
+
+
+def service_record(row: ServiceRow, serial: str) -> Service:
+    """A stored break."""
+    return Service(
+        id=row.id,
+        unit=serial,
+        at=row.at,
+        kind=row.kind,
+        note=row.note,
+        who=row.who,
+        sensor=row.sensor,
+        state=RecordState(row.state),
+    )

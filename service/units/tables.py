@@ -1,0 +1,113 @@
+"""The tables of units, services, notes and attachments; what people said is append-only.
+
+`conditions`, `outlooks`, `flags`, `fleet_tables`, `jobs`, and of a session the revision in force, its verdict and its
+stage.
+
+unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
+    └──< units ──< services                   │
+           ├──< notes ──1 note_withdrawals    │
+           ├──< flags ──┐                     │
+           ├──< notices ┴──< deliveries >── webhooks
+           ├──1 conditions                    │
+           ├──1 outlooks, ──< histories
+           └──< sessions >────────────────────┘
+                   ├──< calibrations          refusals   what was turned away
+                   ├──< parameters            audit      who did what when, append-only
+                   ├──< decisions
+                   ├──< common_motions
+                   ├──1 diagnoses, session_statistics
+                   ├──< reference_choices     record_states   what became of sessions and services, append-only
+                   ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
+                   └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
+group_diagnoses                                what the sessions of a unit, a unit type or a stand show together
+saved_views                                    lists as people asked for them, under a name
+work                                           what is still to be done beside the requests, and who is at it
+jobs                                           long work that somebody asked for, and how far it has come
+accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
+"""
+
+from datetime import datetime
+
+from sqlalchemy import ForeignKey, String, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
+
+from service.storage.columns import BYTES
+from service.storage.tables import Base
+
+
+class UnitRow(Base):
+    """One physical IMU."""
+
+    __tablename__ = "units"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    serial: Mapped[str] = mapped_column(String(200), unique=True)
+    unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), index=True)
+    simulated: Mapped[bool]
+    lot: Mapped[str | None] = mapped_column(String(200))
+    customer: Mapped[str] = mapped_column(String(200), server_default="")
+    customer_address: Mapped[str] = mapped_column(String(2000), server_default="")
+
+
+class ServiceRow(Base):
+    """A known break in a unit's history."""
+
+    __tablename__ = "services"
+    __table_args__ = (UniqueConstraint("unit_id", "at", "kind", "sensor"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    at: Mapped[datetime]
+    kind: Mapped[str] = mapped_column(String(40))
+    note: Mapped[str]
+    recorded_at: Mapped[datetime]
+    who: Mapped[str]
+    sensor: Mapped[str] = mapped_column(String(200))
+    state: Mapped[str] = mapped_column(String(20), default="accepted")
+
+
+class NoteRow(Base):
+    """A remark on a unit's history; the database itself refuses to change or delete one."""
+
+    __tablename__ = "notes"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), index=True)
+    at: Mapped[datetime]
+    text: Mapped[str]
+    who: Mapped[str]
+    recorded_at: Mapped[datetime]
+    session_id: Mapped[str | None] = mapped_column(String(20), index=True)
+    """Of a remark on a session; without a constraint, for on SQLite that would make the table anew."""
+
+
+class WithdrawalRow(Base):
+    """Why a note no longer holds; append-only too."""
+
+    __tablename__ = "note_withdrawals"
+    note_id: Mapped[int] = mapped_column(ForeignKey("notes.id"), primary_key=True, autoincrement=False)
+    at: Mapped[datetime]
+    who: Mapped[str]
+    why: Mapped[str]
+
+
+class AttachmentRow(Base):
+    """A file that somebody attached; its bytes lie under their hash, as uploads do."""
+
+    __tablename__ = "attachments"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), index=True)
+    session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"), index=True)
+    sha256: Mapped[str] = mapped_column(String(64))
+    filename: Mapped[str]
+    size: Mapped[int] = mapped_column(BYTES)
+    text: Mapped[str]
+    who: Mapped[str]
+    at: Mapped[datetime]
+
+
+class AttachmentWithdrawalRow(Base):
+    """Why an attached file is no longer given out."""
+
+    __tablename__ = "attachment_withdrawals"
+    attachment_id: Mapped[int] = mapped_column(ForeignKey("attachments.id"), primary_key=True, autoincrement=False)
+    at: Mapped[datetime]
+    who: Mapped[str]
+    why: Mapped[str]

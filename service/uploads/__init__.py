@@ -1,0 +1,1 @@
+"""Bytes to verdict: uploads, large files, own layouts, templates."""

@@ -1,0 +1,290 @@
+"""The form of a mapping: what was corrected by hand, put into the mapping that it was made from."""
+
+import base64
+import binascii
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from math import cos, pi, radians, sin
+from typing import Annotated, Any
+
+from fastapi import Depends, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import UploadFile
+
+from estimator.errors import Problem
+from service.errors import RefusedError
+from service.ingest.layout.understand import run_words, split_unit
+from service.kit.arriving_files import SentFile, held
+from service.kit.limits import in_force
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.storage.aside import aside, set_aside
+from service.storage.files import Files
+from service.uploads.preview import is_sensor
+from service.web.dependencies import Now, PlaceOf, limited
+
+MOST_CARRIED = 4 * 1024 * 1024
+"""Bytes of a file that a page itself carries until it is confirmed; a larger one is set aside for who sent it."""
+MOST_FIELDS = 5000
+"""Of the form: two for each of 300 columns, a few for each sensor."""
+INFLATION = 1.4
+"""Of bytes written as text: 4/3, and what surrounds them."""
+CHOSEN = ("sheet", "encoding", "separator", "decimal", "header_row", "first_row")
+"""How the file is taken apart, as far as that can be chosen."""
+TEXTS = ("unit", "unit_type", "operator", "notes", "programme", "block", "stand.id")
+NUMBERS = (
+    "stand.alpha_deg", "stand.chi_deg", "site.latitude_deg", "site.gravity_m_s2", "count_time_s", "sample_rate_hz",
+    "direction_sigma_deg",
+)  # fmt: skip
+"""Facts of the session that the form asks for."""
+ORTHOGONAL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+HALF_ANGLE = radians(54.735610317245346)
+"""Of the cone on which three axes are orthogonal: its cosine is 1/√3."""
+
+
+@dataclass(frozen=True)
+class LayoutForm:
+    """What the form brought."""
+
+    file: SentFile
+    """Empty where it was not sent again."""
+    fields: Mapping[str, str]
+    mapping: dict[str, Any] | None
+    """As the page before showed it; None at first."""
+    owner: str = ""
+    """Login of who makes it; empty where nobody signs in."""
+
+    @property
+    def unit(self) -> str:
+        """The serial number as written."""
+        return self.fields.get("fact.unit", "").strip()
+
+    @property
+    def like(self) -> str:
+        """The unit type whose facts are taken."""
+        return self.fields.get("like", "")
+
+    @property
+    def is_other_type(self) -> bool:
+        """Whether another type was chosen than the facts are of."""
+        return self.like != self.fields.get("was_like", self.like)
+
+    @property
+    def is_other_unit(self) -> bool:
+        """Whether another unit was named than the facts are of."""
+        return self.unit != self.fields.get("was_unit", "")
+
+
+async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now, _: PlaceOf) -> LayoutForm:
+    most = int(in_force().whole * INFLATION)
+    body = limited(request, most, is_form=True)
+    async with body.form(max_files=1, max_fields=MOST_FIELDS, max_part_size=most) as form:
+        file, text = form.get("file"), form.get("content")
+        fields = {name: value for name, value in form.items() if isinstance(value, str) and name != "content"}
+        content = await file.read() if isinstance(file, UploadFile) else b""
+        name = file.filename if isinstance(file, UploadFile) and file.filename else fields.get("filename", "table")
+    if not content and isinstance(text, str):
+        content = _bytes(text)
+    if not content and fields.get("aside"):
+        kept = await run_in_threadpool(aside, storage.files, person.login, fields["aside"], now)
+        content = kept or b""
+    return LayoutForm(SentFile(name, content), fields, _mapping(fields.get("mapping", "")), person.login)
+
+
+@dataclass(frozen=True)
+class Carried:
+    """How a table comes back with its page: one of the two is there."""
+
+    content: str = ""
+    """Its bytes as text, where they are few."""
+    aside: str = ""
+    """The hash under which it was set aside."""
+
+
+def carried(files: Files, owner: str, file: SentFile, now: datetime) -> Carried:
+    """The bytes as text for a page to bring back; many are set aside."""
+    if len(file.content) <= MOST_CARRIED:
+        return Carried(base64.b64encode(held(file.content)).decode())
+    return Carried(aside=set_aside(files, owner, file.content, now))
+
+
+LayoutFormOf = Annotated[LayoutForm, Depends(_form)]
+
+
+def _bytes(text: str) -> bytes:
+    try:
+        return base64.b64decode(text, validate=True)
+    except binascii.Error as fault:
+        raise RefusedError(
+            "The form is damaged: upload the file again.", (Problem("content", "is damaged"),)
+        ) from fault
+
+
+def _mapping(text: str) -> dict[str, Any] | None:
+    if not text:
+        return None
+    try:
+        found = json.loads(text)
+    except ValueError as fault:
+        raise RefusedError(
+            "The form is damaged: upload the file again.", (Problem("mapping", "is damaged"),)
+        ) from fault
+    if not isinstance(found, dict) or not isinstance(found.get("columns"), list):
+        raise RefusedError("The form is damaged: upload the file again.", (Problem("mapping", "is damaged"),))
+    return found
+
+
+def corrected(form: LayoutForm) -> dict[str, Any] | None:
+    """The mapping with everything that was chosen or written; None where there is none to correct yet."""
+    if form.mapping is None:
+        return None
+    fields, before = form.fields, form.mapping
+    table = dict(before.get("table", {})) | _chosen(fields)
+    is_same = all(table.get(key) == value for key, value in before.get("table", {}).items())
+    columns = [_column(fields, k, column) for k, column in enumerate(before["columns"])] if is_same else []
+    if not is_same:
+        changed = {key for key in CHOSEN if table.get(key) != before.get("table", {}).get(key)}
+        table = {key: table[key] for key in changed}
+    return {
+        **before,
+        "table": table,
+        "columns": columns,
+        "session": _session(fields, before.get("session", {}), columns),
+    }
+
+
+def _chosen(fields: Mapping[str, str]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key in CHOSEN:
+        text = fields.get(f"table.{key}", "")
+        if text:
+            found[key] = int(text) if text.isdecimal() and key.endswith("_row") else text
+    return found
+
+
+def _column(fields: Mapping[str, str], k: int, before: Any) -> dict[str, Any]:
+    """One column as it was chosen."""
+    known = before if isinstance(before, dict) else {}
+    meaning, unit = fields.get(f"as.{k}", known.get("as") or ""), fields.get(f"unit.{k}", known.get("unit") or "")
+    heading = str(known.get("heading", ""))
+    column: dict[str, Any] = {"heading": heading, "as": meaning or None}
+    if meaning and (unit.strip() or split_unit(heading)[1]) and meaning not in ("run", "position"):
+        column["unit"] = unit.strip()
+    if meaning == "run":
+        words = known.get("words") or run_words(fields.get(f"words.{k}", "").split("\t"))
+        column["words"] = {word: fields.get(f"word.{k}.{i}", now) for i, (word, now) in enumerate(words.items())}
+    if known.get("fill_down") and meaning in ("run", "position"):
+        column["fill_down"] = True
+    return column
+
+
+def _session(fields: Mapping[str, str], before: Any, columns: list[dict[str, Any]]) -> dict[str, Any]:
+    """The facts with what was written; a field left empty states nothing."""
+    session = json.loads(json.dumps(before if isinstance(before, dict) else {}))
+    for key in (*TEXTS, *NUMBERS):
+        if f"fact.{key}" in fields:
+            _put(session, key, _value(fields[f"fact.{key}"]) if key in NUMBERS else fields[f"fact.{key}"].strip())
+    if fields.get("fact.day"):
+        session["started_at"] = _started(fields)
+    if columns:
+        session["sensors"] = _sensors(fields, session, columns)
+    return {key: value for key, value in session.items() if value not in (None, "")}
+
+
+def _started(fields: Mapping[str, str]) -> str:
+    """``2026-03-01T09:00:00+03:00``."""
+    clock = fields.get("fact.clock") or "12:00"
+    return f"{fields['fact.day']}T{clock if clock.count(':') > 1 else f'{clock}:00'}{fields.get('fact.offset') or 'Z'}"
+
+
+def moment(session: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Day, clock and offset of a session's start, as the form shows them."""
+    try:
+        at = datetime.fromisoformat(str(session.get("started_at", "")))
+    except ValueError:
+        return "", "", ""
+    offset = at.strftime("%z")
+    return at.date().isoformat(), at.strftime("%H:%M"), "Z" if offset in ("", "+0000") else f"{offset[:3]}:{offset[3:]}"
+
+
+def _put(session: dict[str, Any], key: str, value: Any) -> None:
+    parent, _, step = key.rpartition(".")
+    node = session.setdefault(parent, {}) if parent else session
+    if not isinstance(node, dict):
+        return
+    if value in (None, ""):
+        node.pop(step, None)
+        if key == "stand.id" and node:
+            node["id"] = ""
+    else:
+        node[step] = value
+    if parent and not node:
+        session.pop(parent)
+
+
+def _value(text: str) -> float | str | None:
+    """A number, with a decimal comma too; text that is none stays, so that it is refused by its name."""
+    text = text.strip()
+    try:
+        return float(text.replace(",", ".")) if text else None
+    except ValueError:
+        return text
+
+
+def _sensors(
+    fields: Mapping[str, str], session: Mapping[str, Any], columns: list[dict[str, Any]]
+) -> list[dict[str, Any]]:
+    """One a column that is read as a sensor, with what is known and what was written of it."""
+    known = {s.get("name"): s for s in session.get("sensors") or () if isinstance(s, dict)}
+    named = [column for column in columns if column["as"] and is_sensor(column["as"])]
+    axes = _arranged(fields.get("arrangement", ""), len(named))
+    found = []
+    for column, axis in zip(named, axes, strict=True):
+        name = column["as"]
+        sensor = {"reading_unit": column.get("unit", ""), **known.get(name, {}), "name": name}
+        written = {key: fields.get(f"sensor.{name}.{key}") for key in ("kind", "axis", "scale", "unit")}
+        if written["kind"]:
+            sensor["kind"] = written["kind"]
+        if written["axis"] is not None:
+            sensor["nominal_axis"] = _components(written["axis"])
+        if axis is not None:
+            sensor["nominal_axis"] = list(axis)
+        if written["scale"] is not None:
+            sensor["nominal_scale"] = _value(written["scale"])
+        if written["unit"]:
+            sensor["reading_unit"] = written["unit"].strip()
+        found.append({key: value for key, value in sensor.items() if value not in (None, "", [])})
+    return found
+
+
+def _arranged(arrangement: str, count: int) -> list[tuple[float, float, float] | None]:
+    """Axes of a usual arrangement; None where they are as written."""
+    if arrangement == "orthogonal" and count == len(ORTHOGONAL):
+        return list(ORTHOGONAL)
+    if arrangement == "cone" and count:
+        turns = [2 * pi * i / count for i in range(count)]
+        along, aside = cos(HALF_ANGLE), sin(HALF_ANGLE)
+        return [(round(aside * cos(t), 10) + 0.0, round(along, 10), round(aside * sin(t), 10) + 0.0) for t in turns]
+    return [None] * count
+
+
+def _components(text: str) -> list[float | str]:
+    """``1 0 0`` or ``1; 0; 0`` or ``1, 0, 0``; with decimal commas where spaces or semicolons part them."""
+    parts = text.replace(";", " ").split() if ";" in text or text.count(",") != 2 else text.replace(",", " ").split()
+    return [number for part in parts if (number := _value(part.strip(","))) is not None]
+
+
+def filled_in(session: Mapping[str, Any], facts: Mapping[str, Any]) -> dict[str, Any]:
+    """What was written, and of the facts what was left open; sensors by their names."""
+    named = {sensor["name"]: sensor for sensor in facts.get("sensors", ())}
+    whole = dict(session)
+    for key, value in facts.items():
+        if key == "sensors":
+            whole[key] = [{**named.get(s.get("name"), {}), **s} for s in session.get(key) or facts[key]]
+        elif isinstance(value, Mapping) and isinstance(session.get(key), Mapping):
+            whole[key] = {**value, **{k: v for k, v in session[key].items() if v not in (None, "")}}
+        else:
+            whole.setdefault(key, value)
+    return whole

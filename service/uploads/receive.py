@@ -1,0 +1,340 @@
+"""Uploaded bytes → checked → calibrated under the model in force → stored, once → derived again.
+
+The one entry of the API and of the pages. The diagnosis is asked for within the transaction that stores, and made
+beside the requests.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import Any
+
+from estimator.errors import Problem, SessionError
+from service.errors import RefusedError
+from service.ingest import in_turn, look_at
+from service.ingest.checked import Checked, check, plain_filename
+from service.ingest.digest import content_digest
+from service.ingest.layout.envelope import wrapped
+from service.ingest.layout.fingerprint import fingerprint
+from service.ingest.layout.mapping import layout_of, remembered
+from service.jobs.changes import UNFOLLOWED, Course
+from service.judging.calibrate import Calibrated, basis_of, calibrate
+from service.judging.known_unit import KnownUnit, known_unit
+from service.judging.origin import require_one_origin
+from service.judging.plausible import doubts
+from service.kit.arriving_files import Content, Received, Replaced, SentFile, held, where
+from service.models.rules import model_for
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.records.change_state import question
+from service.records.derive_again import Derived, Deriving, derive_again
+from service.records.follow import follow
+from service.records.foresee import foresee_upload
+from service.records.judge_again import Foreseen
+from service.records.keep import Made, keep, made
+from service.records.reception import Reception
+from service.records.supersede import give_way, settled_by, supersede
+from service.sessions.decision import Verdict
+from service.sessions.doubt import remedies_among
+from service.sessions.records import Digests, Receipt, StoredSession
+from service.sessions.store import Sessions
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.files import content_hash
+from service.storage.store import Store
+from service.types.rules import type_of
+from service.types.store import UnitTypes
+from service.units.store import Units
+from service.uploads.store import Layouts, Log
+
+LONGEST_MESSAGE = 1000
+"""Characters of a problem that are kept and shown: a hostile file could put megabytes into one."""
+
+
+def refuse(
+    storage: Storage, received: Received, problems: Sequence[Problem], course: Course = UNFOLLOWED
+) -> RefusedError:
+    """Records the refusal and returns the error to raise, which holds every problem."""
+    name, digest = received.filename, received.sha256
+    listed = tuple(Problem(_text(p.field), _text(p.message), p.row) for p in problems)
+    with storage.database.writing() as store:
+        number = Log(store).refusal(received.at, name, digest, received.size, listed)
+        Audit(store).write(received.at, received.who, "refuse", digest, {"filename": name, "problems": len(listed)})
+        course.refused(store, number)
+    count = "one problem" if len(listed) == 1 else f"{len(listed)} problems"
+    return RefusedError(f"{name} cannot be used: {count}. Nothing was stored.", listed)
+
+
+def _text(message: str) -> str:
+    """Printable, so that any database and any reader takes it."""
+    return "".join(c if c.isprintable() else "\ufffd" for c in message)[:LONGEST_MESSAGE]
+
+
+ID_DIGITS = 20
+"""Of the file's SHA-256: 80 bits, so that among a million sessions two share them with a chance of 4e-13."""
+
+
+def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
+    """Stores a session file with its verdict and counts it; RefusedError when it cannot be used."""
+    (outcome,) = receive_all(reception, (file,), now)
+    if isinstance(outcome, RefusedError):
+        raise outcome
+    return outcome
+
+
+def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) -> tuple[Receipt | RefusedError, ...]:
+    """The same for several files, or why one cannot be used."""
+    outcomes = tuple(_stored_or_refused(reception, file, now) for file in files)
+    for outcome in outcomes:
+        if isinstance(outcome, Receipt):
+            reception.metrics.count_upload(outcome.verdict.value if outcome.created else "stored-before")
+    reception.ring()
+    return outcomes
+
+
+def deriving(reception: Reception, now: datetime) -> Deriving:
+    """How what follows from a change is derived."""
+    later = reception.is_dated_later
+    return Deriving(reception.storage.files, reception.coverage_factor, now, is_dated_later=later)
+
+
+def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> Receipt | RefusedError:
+    k = reception.coverage_factor
+    try:
+        with in_turn(where(file.content)):
+            return upload(
+                reception.storage, file.content, file.filename, now, coverage_factor=k, who=reception.who,
+                replaces=file.replaces, is_dated_later=reception.is_dated_later, is_check=file.is_check,
+                course=reception.course,
+            )  # fmt: skip
+    except RefusedError as refusal:
+        return refusal
+
+
+def upload(
+    storage: Storage,
+    content: Content,
+    filename: str,
+    now: datetime,
+    *,
+    coverage_factor: float = 2.0,
+    who: str = "crew",
+    replaces: Replaced | None = None,
+    outlook: bool = True,
+    is_dated_later: bool = True,
+    is_check: bool = False,
+    course: Course = UNFOLLOWED,
+) -> Receipt:
+    """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
+
+    A corrected file names the session that it replaces, whatever unit or date that one is of. Raises RefusedError with
+    every problem when the file cannot be used; then only the refusal is recorded. Without ``outlook`` the unit's dates
+    stay as they were: another file of it follows. ``is_dated_later``: they are asked for, and made beside the requests.
+    ``is_check``: the session is judged and moves no date; what is stored already stays what it is.
+    """
+    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, is_check)
+    way = Deriving(storage.files, coverage_factor, now, outlook=outlook, is_dated_later=is_dated_later)
+    with storage.database.reading() as store:
+        if replaces is not None:
+            Sessions(store).get(replaces.session)
+        known = Sessions(store).by_hash(received.sha256)
+    if known is not None:
+        storage.files.put_back(content)
+        return _known(storage, way, known, replaces)
+    try:
+        new = _calibrated(storage, _checked(storage, content, received))
+    except SessionError as fault:
+        raise refuse(storage, received, fault.problems, course) from fault
+    course.keeping()
+    storage.files.keep(content)
+    ready = _ready(storage, way, received, new, replaces)
+    with storage.database.writing() as store:
+        receipt, derived = _store(store, way, received, ready, replaces)
+        course.stored(store, receipt)
+    return _followed(storage, way, receipt, derived)
+
+
+def _followed(storage: Storage, way: Deriving, receipt: Receipt, derived: Mapping[str, Derived]) -> Receipt:
+    """The receipt once all that follows is derived."""
+    for serial, own in sorted(derived.items()):
+        follow(storage, way, serial, own)
+    if not any(own.is_left for own in derived.values()):
+        return receipt
+    with storage.database.reading() as store:
+        return receipt_of(Sessions(store).get(receipt.id), created=receipt.created)
+
+
+def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Replaced | None) -> Receipt:
+    """The receipt of a session that was stored before; also that replaces the one named now."""
+    receipt = receipt_of(known, created=False)
+    if replaces is None:
+        return receipt
+    settled = settled_by(storage, replaces.session, known.id)
+    with storage.database.writing() as store:
+        derived = supersede(store, way, replaces, Sessions(store).get(known.id), settled)
+    return _followed(storage, way, receipt, derived)
+
+
+def _checked(storage: Storage, content: Content, received: Received) -> Checked:
+    def is_known(serial: str) -> bool:
+        with storage.database.reading() as store:
+            return Units(store).exists(serial)
+
+    return check(where(content), received.filename, received.at, is_known)
+
+
+def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
+    """Under the model in force, with no transaction open; SessionError where the session does not tell enough, or is
+    simulated and its unit is not."""
+    with storage.database.reading() as store:
+        require_one_origin(store, checked.session)
+        basis = basis_of(store, checked, model_for(store, checked))
+    return calibrate(checked, basis)
+
+
+@dataclass(frozen=True, eq=False)
+class _Ready:
+    """A session with all that its transaction needs not wait for."""
+
+    new: Calibrated
+    digests: Digests
+    made: Made
+    foreseen: Foreseen
+    settled: str | None
+    """Where its content is stored already, of `settled_by`."""
+
+
+def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated, replaces: Replaced | None) -> _Ready:
+    """With no transaction open that others wait for."""
+    digests = Digests(content_digest(new.checked.session), new.checked.readings_digest)
+    with storage.database.reading() as store:
+        same = None if replaces is None else Sessions(store).same(received.sha256, digests.content_digest)
+        but = None if replaces is None else replaces.session
+        foreseen = foresee_upload(store, way, _record(received, new), new, but)
+    settled = None if same is None or replaces is None else settled_by(storage, replaces.session, same.id)
+    return _Ready(new, digests, made(new.calibration), foreseen, settled)
+
+
+def _store(
+    store: Store, way: Deriving, received: Received, ready: _Ready, replaces: Replaced | None
+) -> tuple[Receipt, dict[str, Derived]]:
+    """The record, and everything that follows from it, within one transaction; by unit, what is left of that."""
+    new = ready.new
+    unit = _unit(store, received, new)
+    same = Sessions(store).same(received.sha256, ready.digests.content_digest)
+    if same is not None:
+        derived = {} if replaces is None else supersede(store, way, replaces, same, ready.settled)
+        return receipt_of(Sessions(store).get(same.id), created=False), derived
+    record = _record(received, new)
+    stand = Units(store).stand_key(record.stand)
+    Sessions(store).add(record, unit, stand, new.checked.session.block, ready.digests)
+    WorkQueue(store, WorkKind.DIAGNOSIS).ask_once((record.id,), received.at)
+    keep(store, unit, ((record, ready.made),), received.at)
+    known = known_unit(store, unit, {record.id: new.calibration}, ready.foreseen.references)
+    derived = _derived(way, known, record, ready, replaces)
+    latest = derived[record.unit].latest
+    stored = latest if latest is not None and latest.id == record.id else Sessions(store).get(record.id)
+    details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
+    Audit(store).write(received.at, received.who, "upload", stored.id, details)
+    return receipt_of(stored, created=True), derived
+
+
+def _derived(
+    way: Deriving, known: KnownUnit, record: StoredSession, ready: _Ready, replaces: Replaced | None
+) -> dict[str, Derived]:
+    """All that follows from a new session, by unit."""
+    store, shared = known.store, {record.id} | ({replaces.session} if replaces else set())
+    doubted = doubts(known, ready.new.checked, known.calibration(record.id), shared)
+    if doubted:
+        question(store, way, record, " ".join(doubt.text for doubt in doubted), remedies_among(doubted))
+    old = None if replaces is None else give_way(store, way.at, replaces, record)
+    since, derived = record.started_at, dict[str, Derived]()
+    if old is not None and old.unit == record.unit:
+        since = min(since, old.started_at)
+    elif old is not None:
+        derived[old.unit] = derive_again(store, way, old.unit, old.started_at, (old.id,))
+    if doubted or replaces:
+        known = known_unit(store, known.unit, known.made, ready.foreseen.references)
+    own = derive_again(store, way, record.unit, since, (record.id,), known=known, foreseen=ready.foreseen)
+    return derived | {record.unit: own}
+
+
+def _unit(store: Store, received: Received, new: Calibrated) -> int:
+    """The unit, stored with its type when this is its first session, and held: rivals wait here."""
+    serial = new.checked.session.unit
+    unit = Units(store).held(serial)
+    if unit is None:
+        unit_type = type_of(new.checked, new.calibration)
+        UnitTypes(store).add_once(unit_type, received.at)
+        Units(store).add_once(serial, unit_type.name, new.checked.session.is_simulated)
+        unit = Units(store).hold(serial)
+    if require_one_origin(store, new.checked.session):
+        Units(store).set_simulated(serial, new.checked.session.is_simulated)
+    return unit
+
+
+def _record(received: Received, new: Calibrated) -> StoredSession:
+    """Still to be judged."""
+    session = new.checked.session
+    return StoredSession(
+        id=received.sha256[:ID_DIGITS],
+        unit=session.unit,
+        sha256=received.sha256,
+        filename=received.filename,
+        size=received.size,
+        programme=session.programme,
+        stand=new.checked.stand,
+        operator=session.operator,
+        notes=session.notes,
+        started_at=new.checked.measured_at,
+        uploaded_at=received.at,
+        verdict=Verdict.UNDECIDABLE,
+        reason="",
+        is_reference=False,
+        simulated=session.is_simulated,
+        revision=new.model.revision,
+        stage=session.stage,
+        reservations=None,
+        temperature=None if session.temperature is None else float(session.temperature.mean()),
+        is_check=received.is_check,
+    )
+
+
+def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
+    """What an upload of a session is answered with."""
+    return Receipt(
+        id=record.id,
+        unit=record.unit,
+        verdict=record.verdict,
+        reason=record.reason,
+        created=created,
+        is_reference=record.is_reference,
+        reservations=record.reservations,
+        state=record.state,
+        is_check=record.is_check,
+    )
+
+
+NO_TABLE = "is given with a file that says itself what it is; send that without a mapping"
+
+
+def receive_mapped(reception: Reception, file: SentFile, mapping: Mapping[str, Any], now: datetime) -> Receipt:
+    """Stores the bytes, unchanged, and the mapping with them; RefusedError where they give no session."""
+    whole, layout = _complete(file, mapping)
+    receipt = receive(reception, replace(file, content=wrapped(whole, held(file.content))), now)
+    with reception.storage.database.writing() as store:
+        unit_type = UnitTypes(store).of_unit(receipt.unit).name
+        Layouts(store).remember(layout, unit_type, remembered(whole), who=reception.who, at=now)
+    return receipt
+
+
+def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
+    """The mapping with how the file is taken apart stated in full, so that it is read the same for ever."""
+    try:
+        layout_of(mapping, file.filename)
+        seen = look_at(wrapped(mapping, held(file.content)), file.filename)
+    except SessionError as fault:
+        raise RefusedError(f"{file.filename} cannot be read by this mapping.", fault.problems) from fault
+    if seen["session"]:
+        raise RefusedError(f"{file.filename} needs no mapping.", (Problem("mapping", NO_TABLE),))
+    return {**mapping, "table": dict(seen["taken"])}, fingerprint(seen)

@@ -1,0 +1,223 @@
+"""A session file to fill in: the workbook that an upload takes as it is, with units, choices and an example.
+
+Sheet `session` holds what is known of the block already and yellow cells for what is not; sheet `readings` has the
+schedule and empty cells for the readings; sheet `example` shows both filled in. Headings and keys are locked, without a
+password: nobody changes one by mistake.
+"""
+
+import io
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+import xlsxwriter
+from xlsxwriter.format import Format
+from xlsxwriter.worksheet import Worksheet
+
+from estimator.session import ACCELEROMETER, COUNTERS, GYROSCOPE, PROGRAMMES, STAGES, CalibrationSession
+from estimator.writing import session_document
+from service.ingest.session_keys import COLUMN_HINTS, KEY_HINTS, NEEDED_HERE, reading_hint, standard_error_hint
+from service.languages.language import Language
+from service.papers.sheets import OPTIONS, naive, write_text
+from service.uploads.template_wording import Wording, wording
+
+DOCUMENT = dict[str, Any]
+ASKED = ("unit", "started_at", "stage", "operator", "notes")
+"""What differs from session to session, in the order in which it is asked."""
+MEASURED = ("time_s", "temperature_c", "vibration_m_s2")
+"""Columns that are measured with the readings; what was planned of them would be untrue."""
+CHOICES = {
+    "block": (ACCELEROMETER, GYROSCOPE), "kind": (ACCELEROMETER, GYROSCOPE), "programme": PROGRAMMES,
+    "stage": STAGES, "counter": COUNTERS, "run": ("direct", "flipped"),
+}  # fmt: skip
+"""What a cell or a column may say."""
+LIMITS = {
+    "beta_deg": (-360_000, 360_000), "time_s": (0, 1e9), "temperature_c": (-100, 200), "latitude_deg": (-90, 90),
+    "height_m": (-500, 9000), "gravity_m_s2": (9.7, 9.9), "alpha_deg": (-90, 90), "chi_deg": (-90, 90),
+}  # fmt: skip
+"""Of numbers, as the reader has them."""
+MOST_PLANNED = 500
+"""Rows of a schedule that are worth giving; a log has none."""
+ROOM = 1000
+"""Rows that have choices and limits: more than any session of positions."""
+MOST_SHOWN = 100
+"""Rows of the example: a session of positions, or the beginning of a log."""
+EXAMPLE = {"unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "operator": "K. Ito", "notes": "after transport"}
+"""What the example says where it is asked."""
+AXIS_DIGITS = 10
+"""After the point, of axes: 2e-5 arcsec."""
+
+
+def session_template(pattern: CalibrationSession, made: datetime, language: Language = Language.ENGLISH) -> bytes:
+    """The workbook for the next session that is like this one."""
+    document = session_document(pattern)
+    target = io.BytesIO()
+    book = xlsxwriter.Workbook(target, {**OPTIONS, "constant_memory": False})
+    book.set_properties({"title": "imu-session/1", "author": "imu-health", "created": naive(made)})
+    words = wording(language, [sensor["name"] for sensor in document["sensors"]])
+    style = Style(_looks(book), words)
+    _session_sheet(book.add_worksheet(words.sheet("session")), style, document)
+    _readings_sheet(book.add_worksheet(words.sheet("readings")), style, document)
+    _example_sheet(book.add_worksheet(words.sheet("example")), style, document)
+    book.close()
+    return target.getvalue()
+
+
+@dataclass(frozen=True)
+class Style:
+    """How cells look, and in which words they speak."""
+
+    looks: dict[str, Format]
+    words: Wording
+
+
+def _looks(book: xlsxwriter.Workbook) -> dict[str, Format]:
+    """Locked headings; yellow where something is asked; grey hints."""
+    return {
+        "head": book.add_format({"bold": True, "bottom": 1, "bg_color": "#e8eef4"}),
+        "asked": book.add_format({"locked": False, "bg_color": "#fff2b3", "border": 1, "num_format": "@"}),
+        "reading": book.add_format({"locked": False, "bg_color": "#fff2b3", "border": 1}),
+        "given": book.add_format({"locked": False}),
+        "hint": book.add_format({"font_color": "#555555", "text_wrap": True, "valign": "top"}),
+    }
+
+
+def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
+    """Keys, values, and what they mean; yellow ones are to be filled in."""
+    sheet.set_column(0, 0, 30)
+    sheet.set_column(1, 1, 34)
+    sheet.set_column(2, 2, 80)
+    words = style.words
+    for row, (key, value) in enumerate(_rows(document)):
+        step = key.rpartition(".")[2]
+        is_asked = value in ("", None)
+        sheet.write_string(row, 0, words.key(key), style.looks["head"])
+        _write(sheet, (row, 1), words.value(step, value), style.looks["asked" if is_asked else "given"])
+        hint = words.say(KEY_HINTS.get(key) or KEY_HINTS.get(step, ""))
+        needed = f" {words.say(NEEDED_HERE)}" if is_asked and key in ("unit", "stand.id") else ""
+        sheet.write_string(row, 2, hint + needed, style.looks["hint"])
+        _check(sheet, (row, 1, row, 1), step, hint, words)
+    sheet.protect("", {"format_columns": True, "format_rows": True})
+
+
+def _rows(document: DOCUMENT) -> Iterator[tuple[str, Any]]:
+    """Keys with what is known of them, what is asked first after the format; what is filled in is measured."""
+    known = {key: value for key, value in document.items() if key not in ("table", "origin", *ASKED)}
+    yield "format", known.pop("format")
+    yield from ((key, "") for key in ASKED)
+    yield from _flat(known, "")
+
+
+def _flat(node: Mapping[str, Any], way: str) -> Iterator[tuple[str, Any]]:
+    """Dotted keys; sensors with their numbers; lists as JSON."""
+    for key, value in node.items():
+        place = f"{way}.{key}" if way else key
+        if isinstance(value, Mapping):
+            yield from _flat(value, place)
+        elif key == "sensors":
+            for number, sensor in enumerate(value, start=1):
+                yield from _flat(sensor, f"sensors[{number}]")
+        elif isinstance(value, list):
+            yield place, json.dumps(_short(value))
+        else:
+            yield place, value
+
+
+def _short(value: Any) -> Any:
+    """Axes without the digits that no computation needs."""
+    if isinstance(value, list):
+        return [_short(item) for item in value]
+    return round(value, AXIS_DIGITS) + 0.0 if isinstance(value, float) else value
+
+
+def _readings_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
+    """The schedule, and empty columns for what is measured."""
+    columns = _columns(document)
+    planned = len(next(iter(columns.values()))) <= MOST_PLANNED and "sample_rate_hz" not in document
+    _headings(sheet, style, document, list(columns))
+    sheet.set_column(0, len(columns) - 1, 14, style.looks["given"])
+    sensors = {sensor["name"] for sensor in document["sensors"]}
+    for place, (name, cells) in enumerate(columns.items()):
+        is_measured = name in MEASURED or name in sensors or name.removesuffix("_se") in sensors
+        rows = len(cells) if planned else 0
+        for row in range(rows):
+            cell = "" if is_measured else style.words.value(name, cells[row])
+            _write(sheet, (row + 1, place), cell, style.looks["reading" if name in sensors else "given"])
+        _check(sheet, (1, place, max(ROOM, rows), place), name, style.words.say(_hint(name, document)), style.words)
+    sheet.protect("", {"format_columns": True, "insert_rows": True, "delete_rows": True, "sort": True})
+
+
+def _columns(document: DOCUMENT) -> DOCUMENT:
+    """Of the table, with those for time, temperature and standard errors that a pattern may lack."""
+    table = dict(document["table"])
+    rows = len(next(iter(table.values())))
+    sensors = [sensor["name"] for sensor in document["sensors"]]
+    settings = {name: cells for name, cells in table.items() if name.removesuffix("_se") not in sensors}
+    settings = {**settings, **{name: settings.get(name, [None] * rows) for name in MEASURED[:2]}}
+    readings = {name: table[name] for name in sensors}
+    if "sample_rate_hz" in document:
+        return settings | readings
+    return settings | readings | {f"{name}_se": table.get(f"{name}_se", [None] * rows) for name in sensors}
+
+
+def _headings(sheet: Worksheet, style: Style, document: DOCUMENT, names: list[str]) -> None:
+    for place, name in enumerate(names):
+        sheet.write_string(0, place, style.words.heading(name), style.looks["head"])
+        sheet.write_comment(0, place, style.words.say(_hint(name, document)), {"author": "imu-health"})
+    sheet.freeze_panes(1, 0)
+
+
+def _hint(name: str, document: DOCUMENT) -> str:
+    """What a column holds, in which unit."""
+    for sensor in document["sensors"]:
+        if name == sensor["name"]:
+            return reading_hint(name, sensor["reading_unit"])
+        if name == f"{sensor['name']}_se":
+            return standard_error_hint(sensor["name"], sensor["reading_unit"])
+    return COLUMN_HINTS.get(name, "")
+
+
+def _example_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
+    """The first rows filled in, and what is asked beside them; an upload does not read this sheet."""
+    columns = _columns(document)
+    _headings(sheet, style, document, list(columns))
+    sheet.set_column(0, len(columns) + 2, 14)
+    for place, (name, cells) in enumerate(columns.items()):
+        for row, cell in enumerate(cells[:MOST_SHOWN]):
+            _write(sheet, (row + 1, place), style.words.value(name, cell), style.looks["given"])
+    beside = len(columns) + 1
+    sheet.set_column(beside, beside, 26)
+    sheet.set_column(beside + 1, beside + 1, 26)
+    sheet.write_string(0, beside, style.words.say("on the sheet session"), style.looks["head"])
+    for row, (key, value) in enumerate(EXAMPLE.items(), start=1):
+        sheet.write_string(row, beside, style.words.key(key), style.looks["hint"])
+        sheet.write_string(row, beside + 1, value)
+    sheet.protect()
+
+
+def _write(sheet: Worksheet, place: tuple[int, int], value: Any, look: Format) -> None:
+    """A number, a text, or an empty cell."""
+    if value in ("", None):
+        sheet.write_blank(*place, None, look)
+    elif isinstance(value, int | float):
+        sheet.write_number(*place, value, look)
+    else:
+        write_text(sheet, place, str(value), look)
+
+
+def _check(sheet: Worksheet, cells: tuple[int, int, int, int], name: str, hint: str, words: Wording) -> None:
+    """A drop-down, bounds, or the hint alone while the cell is being filled in."""
+    rule: dict[str, Any] = {"validate": "any"}
+    called = words.heading(words.key(name))
+    if name in CHOICES:
+        rule = {"validate": "list", "source": [words.value(name, choice) for choice in CHOICES[name]]}
+        rule["error_message"] = words.say(f"Choose one of the list for {called}.")
+    elif name in LIMITS:
+        low, high = LIMITS[name]
+        rule = {"validate": "decimal", "criteria": "between", "minimum": low, "maximum": high}
+        rule["error_message"] = words.say(f"{called} is a number from {low:g} to {high:g}.")
+    if hint or name in CHOICES:
+        shown = {"input_title": called[:32], "input_message": hint[:255], "ignore_blank": True}
+        sheet.data_validation(*cells, {**rule, **shown})

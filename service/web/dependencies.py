@@ -1,0 +1,81 @@
+"""What routes ask for by type: settings, clock, database, language, a place for a large upload."""
+
+from collections.abc import AsyncIterator, Iterator
+from datetime import datetime
+from typing import Annotated
+
+from fastapi import Depends, Request
+from starlette.types import Message
+
+from service.errors import TooLargeError
+from service.kit.limits import in_force
+from service.kit.metrics import Metrics
+from service.languages.language import Language, asked
+from service.settings import Settings
+from service.storage.store import Store
+from service.web.application import application_of
+
+ENVELOPE = 64 * 1024
+"""Bytes that a form may add to its files: for each of 200 a boundary and headers of some 300."""
+
+
+def _settings(request: Request) -> Settings:
+    return application_of(request).settings
+
+
+async def _place(request: Request) -> AsyncIterator[None]:
+    """Of a large upload, from before its first byte until it has been worked on."""
+    own = application_of(request)
+    with own.places.one_for(request.headers.get("content-length", ""), in_force().in_flight):
+        yield
+
+
+def _metrics(request: Request) -> Metrics:
+    return application_of(request).metrics
+
+
+def _now(request: Request) -> datetime:
+    return application_of(request).clock()
+
+
+def _reading(request: Request) -> Iterator[Store]:
+    with application_of(request).storage.database.reading() as store:
+        yield store
+
+
+def _language(request: Request) -> Language:
+    return asked(request.scope)
+
+
+LanguageOf = Annotated[Language, Depends(_language)]
+"""What is made for people is made in the language of the one who asks."""
+
+
+def limited(request: Request, most: int, *, is_form: bool) -> Request:
+    """The same request, but a body that grows beyond ``most`` bytes is stopped, whatever it announced."""
+    longest = most + (ENVELOPE if is_form else 0)
+    seen = 0
+
+    async def counted() -> Message:
+        nonlocal seen
+        message = await request.receive()
+        seen += len(message.get("body", b""))
+        if seen > longest:
+            raise TooLargeError(
+                f"An upload may hold {most:,} bytes at a time; this one is larger. Average or split it."
+            )
+        return message
+
+    return Request(request.scope, counted)
+
+
+SettingsOf = Annotated[Settings, Depends(_settings)]
+"""The settings of the service."""
+PlaceOf = Annotated[None, Depends(_place, scope="function")]
+"""A place for an upload; BusyError where all are taken."""
+MetricsOf = Annotated[Metrics, Depends(_metrics)]
+"""The figures of the service."""
+Now = Annotated[datetime, Depends(_now)]
+"""The time of the request, UTC."""
+Reading = Annotated[Store, Depends(_reading, scope="function")]
+"""The database as one read-only transaction sees it."""

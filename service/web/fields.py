@@ -1,0 +1,132 @@
+"""Kinds of value that requests share."""
+
+import re
+from dataclasses import dataclass
+from datetime import UTC, date, datetime
+from typing import Annotated, Any
+
+from fastapi import Depends, Path, Query
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, StringConstraints
+
+from service.kit.moments import EARLIEST, EPOCH, LATEST, MILLISECOND, aware, in_utc
+from service.sessions.decision import Verdict
+
+TEXT = r"^[^\x00]*$"
+"""PostgreSQL keeps any character but NUL."""
+NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
+FEWEST_MS = 100_000_000_000
+"""In milliseconds a day of March 1973, long before anything was measured; in seconds the year 5138."""
+MOST_MS = 7_258_118_400_000
+"""The start of 2200, after which nothing is kept."""
+
+
+def _counted(given: object) -> object:
+    """A bound may be counted in milliseconds since 1970, as dashboards do. Seconds would lie in 1970 and are refused,
+    for they would cut nothing, or all."""
+    if not isinstance(given, str) or not given.isdecimal():
+        return _written(given)
+    if int(given) < FEWEST_MS:
+        raise ValueError("a bare number is milliseconds since 1970; of seconds, write the date and time")
+    return EPOCH + min(int(given), MOST_MS) * MILLISECOND
+
+
+def _bounded(moment: datetime) -> datetime:
+    """Nothing is kept from before 1900 or after 2200: a bound beyond asks for the same."""
+    return min(max(aware(moment), EARLIEST), LATEST).astimezone(UTC)
+
+
+def _written(given: object) -> object:
+    """A bare number would be taken for seconds since 1970."""
+    if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
+        raise ValueError("must be a date and time like 2026-03-01T09:00:00Z")
+    return given
+
+
+def _day_written(given: object) -> object:
+    if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
+        raise ValueError("must be a day like 2026-03-01")
+    return given
+
+
+Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(in_utc)]
+"""A time; without a zone it is UTC."""
+Bound = Annotated[datetime, BeforeValidator(_counted), AfterValidator(_bounded)]
+"""A time that a list begins or ends at; without a zone it is UTC. Also as milliseconds since 1970."""
+Day = Annotated[date, BeforeValidator(_day_written)]
+"""A day, as on a calendar."""
+Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
+LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]
+Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
+Said = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=200)]
+"""A name that says something."""
+Reason = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=2000)]
+"""A text that says something."""
+Number = Annotated[int, Path(ge=1, le=2_000_000_000, description="Number of the entry.", examples=[1])]
+
+SessionId = Annotated[
+    str,
+    Path(
+        pattern=TEXT,
+        max_length=200,
+        description="The session's id: the first 20 digits of its file's SHA-256.",
+        examples=["3f9a0c5be1d24786aa10"],
+    ),
+]
+Serial = Annotated[
+    str,
+    Path(pattern=TEXT, max_length=200, description="The unit's serial number.", examples=["BA-017"]),
+]
+TypeName = Annotated[
+    str, Path(pattern=TEXT, max_length=200, description="The unit type's name.", examples=["hex-cone"])
+]
+StandName = Annotated[
+    str,
+    Path(pattern=TEXT, max_length=200, description="The stand's name, as session files give it.", examples=["ODG-1"]),
+]
+Page = Annotated[int, Query(ge=1, le=1_000_000, description="Which page, from 1.")]
+Limit = Annotated[int, Query(ge=1, le=1000, description="How many on a page.")]
+Revision = Annotated[
+    int | None,
+    Query(ge=0, le=2_000_000_000, description="Under this model revision instead of the one in force; 0: baseline."),
+]
+WantedVerdict = Annotated[Verdict | None, Query(description="Only units whose latest session has this verdict.")]
+WantedText = Annotated[Text | None, Query(alias="q", description="Part of a serial number or of a unit type's name.")]
+
+
+@dataclass(frozen=True)
+class Window:
+    """Which part of a list is wanted."""
+
+    page: int
+    limit: int
+
+    @property
+    def offset(self) -> int:
+        """How many entries come before it."""
+        return (self.page - 1) * self.limit
+
+    def next_after(self, found: int) -> int | None:
+        """The number of the next page; None after one that is not full."""
+        return self.page + 1 if found == self.limit else None
+
+    def place(self, found: int) -> dict[str, Any]:
+        """What a `Paged` answer says of its place."""
+        return {"page": self.page, "limit": self.limit, "next_page": self.next_after(found)}
+
+
+class Paged(BaseModel):
+    """One page of a list."""
+
+    page: int = Field(description="Which page this is, from 1.")
+    limit: int = Field(description="How many fit on a page.")
+    next_page: int | None = Field(description="The next page; null after the last.")
+
+
+def _window(page: Page = 1, limit: Limit = 100) -> Window:
+    return Window(page, limit)
+
+
+WindowOf = Annotated[Window, Depends(_window)]
+
+
+NO_NUL = r"^[^\x00]*$"

@@ -1,0 +1,123 @@
+"""Every error of the service as application/problem+json."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
+from starlette.routing import Match
+
+from estimator.errors import Problem
+from service.errors import AwayError, RefusedError, ServiceError, SignInError, TooOftenError
+from service.kit.log import log, request_id
+
+MEDIA_TYPE = "application/problem+json"
+"""RFC 9457."""
+UNEXPECTED = "Something went wrong that should not have. It was logged; nothing was stored half."
+"""Says nothing of the cause, which may hold what others must not read; the log has it."""
+CUT_OFF = "The request ended before it was complete. Nothing was stored."
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
+"""That a route may take."""
+BODY_PARTS = ("body", "query", "path", "header")
+"""What FastAPI puts before the name of a field."""
+
+
+def add_problem_handlers(app: FastAPI) -> None:
+    """Gives every error of the application the one shape."""
+    app.add_exception_handler(ServiceError, _service_error)
+    app.add_exception_handler(RequestValidationError, _invalid_request)
+    app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(ClientDisconnect, _cut_off)
+    app.add_exception_handler(Exception, _unexpected)
+
+
+def problem(
+    status: int,
+    detail: str,
+    problems: Sequence[Problem] | None = None,
+    headers: Mapping[str, str] | None = None,
+    id: str | None = None,
+) -> JSONResponse:
+    """The answer to a request that was not carried out; ``id`` where it is not known from what surrounds it."""
+    content: dict[str, Any] = {
+        "type": "about:blank",
+        "title": HTTPStatus(status).phrase,
+        "status": status,
+        "detail": detail,
+    }
+    known = id or request_id()
+    if known is not None:
+        content["request_id"] = known
+    if problems is not None:
+        content["problems"] = [{"field": p.field, "row": p.row, "message": p.message} for p in problems]
+    return JSONResponse(content, status, headers, MEDIA_TYPE)
+
+
+def _service_error(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, ServiceError)
+    headers = {"Retry-After": str(error.retry_after)} if isinstance(error, AwayError | TooOftenError) else None
+    if isinstance(error, SignInError):
+        headers = {"WWW-Authenticate": "Bearer"}
+    found = error.problems if isinstance(error, RefusedError) else None
+    return problem(error.status, error.detail, found, headers)
+
+
+def _invalid_request(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, RequestValidationError)
+    found = [Problem(_place(fault["loc"]), fault["msg"]) for fault in error.errors()]
+    return problem(422, "The request cannot be used.", found)
+
+
+def _place(location: Sequence[int | str]) -> str:
+    """``body.kind`` of FastAPI is ``kind`` to the one who asked."""
+    parts = location[1:] if location and location[0] in BODY_PARTS and len(location) > 1 else location
+    return ".".join(map(str, parts))
+
+
+def _http_error(request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, HTTPException)
+    details = {
+        404: f"There is nothing at {request.url.path}.",
+        405: f"{request.method} is not possible at {request.url.path}.",
+    }
+    headers = {"Allow": _allowed(request)} if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED else error.headers
+    return problem(error.status_code, details.get(error.status_code, error.detail), None, headers)
+
+
+def _cut_off(_: Request, error: Exception) -> JSONResponse:
+    """Nobody is there to read this; it is one line in the log and no fault of the service."""
+    return problem(400, CUT_OFF)
+
+
+def _allowed(request: Request) -> str:
+    """Every method that is taken where the request went; the framework names those of one route.
+
+    What only a more general route takes is left out: /units/X/lot can be read as the page of a unit named "X/lot".
+    """
+    template = getattr(request.scope.get("route"), "path", None)
+    every = _every(request.app.router.routes)
+    own = {m for route in every if route.path in (template, request.scope["path"]) for m in route.methods}
+    asked = ((m, "GET" if m == "HEAD" else m) for m in METHODS)  # HEAD is answered wherever GET is
+    return ", ".join(m for m, by in asked if by in own and _is_taken(request, by))
+
+
+def _is_taken(request: Request, method: str) -> bool:
+    scope = {**request.scope, "method": method}
+    return any(route.matches(scope)[0] is Match.FULL for route in request.app.router.routes)
+
+
+def _every(routes: Iterable[Any]) -> Iterator[Any]:
+    """The routes themselves, out of the routers that hold them."""
+    for route in routes:
+        held = getattr(route, "original_router", None)
+        yield from (route,) if held is None else _every(held.routes)
+
+
+def _unexpected(request: Request, error: Exception) -> JSONResponse:
+    """The one boundary for what nobody foresaw."""
+    log.error("request failed", request_id=request.state.request_id, exc_info=error)
+    return problem(500, UNEXPECTED, id=request.state.request_id)

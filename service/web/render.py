@@ -1,0 +1,119 @@
+"""From a frozen context to a page: the one Jinja environment and what every template may use."""
+
+import json
+from collections.abc import MutableMapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl, quote, urlencode
+
+from fastapi import Request
+from fastapi.responses import HTMLResponse
+from jinja2 import Environment, StrictUndefined, pass_context
+from jinja2.runtime import Context
+from markupsafe import Markup, escape
+
+from service.kit.names import day_of, heading, spaced
+from service.kit.person import EVERYBODY, Person, Role
+from service.languages.language import QUERY, Language, asked
+from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED
+from service.sessions.words.reservations import but
+from service.web.assets import asset_url
+from service.web.spoken import Spoken
+
+TEMPLATES = Path(__file__).parent / "templates"
+
+
+def embed(data: Any) -> Markup:
+    """JSON for a data block of a page; nothing in it can end the block."""
+    text = json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return Markup(text.replace("<", "\\u003c"))  # noqa: S704 - no tag can begin in it
+
+
+@pass_context
+def _may(context: Context, role: str) -> bool:
+    """Whether the one who looks may do what a role may; what they may not is not offered."""
+    return _person(context).may(Role(role))
+
+
+@pass_context
+def _your_name(context: Context) -> Markup:
+    """Under what a form is sent: the account's name, or a field for it where nobody signs in."""
+    name, say = _person(context).name, context.environment.filters["translated"]
+    if name:
+        field = Markup('<input type="hidden" name="by" value="{}"><p class="quiet">{}</p>')
+        return field.format(name, say("As {name}").format(name=name))
+    field = Markup('<label>{} <input name="by" required maxlength="200" autocomplete="name"></label>')
+    return field.format(say("Your name"))
+
+
+@pass_context
+def _csrf_field(context: Context) -> Markup:
+    """What proves that a form is of the page that this browser was given."""
+    csrf = _person(context).csrf
+    return Markup('<input type="hidden" name="csrf" value="{}">').format(csrf) if csrf else Markup("")
+
+
+@pass_context
+def _csrf_query(context: Context) -> str:
+    """The same, for the address of an upload."""
+    csrf = _person(context).csrf
+    return f"?csrf={csrf}" if csrf else ""
+
+
+def _person(context: Context) -> Person:
+    person: Person = context["person"]
+    return person
+
+
+def as_sentence(text: str) -> str:
+    """With a capital letter, before it is said in a language."""
+    return text[:1].upper() + text[1:]
+
+
+@lru_cache
+def _environment(language: Language) -> Environment:
+    """The templates in a language; English ones are what is written in the files."""
+    spoken = Spoken(language)
+    environment = Environment(
+        loader=spoken.templates(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.globals.update(
+        asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE, RESERVED), reserved=RESERVED
+    )
+    environment.globals.update(may=_may, your_name=_your_name, csrf_field=_csrf_field, csrf_query=_csrf_query)
+    environment.filters.update(but=but, day=day_of, heading=heading, spaced=spaced, as_sentence=as_sentence)
+    environment.filters.update(
+        as_written=escape,
+        translated=spoken.say,
+        plural_form=spoken.plural,
+        embed=lambda data: embed(spoken.chart(data)),
+    )
+    return environment
+
+
+def render(request: Request, template: str, page: Any, status: int = 200) -> HTMLResponse:
+    """The page of a frozen context in the language of the one who asks; templates see it as ``page``."""
+    person = getattr(request.state, "person", EVERYBODY)  # an address that no route took offers what it may
+    language = asked(request.scope)
+    found = _environment(language).get_template(template)
+    text = found.render(
+        page=page,
+        path=request.scope["path"],
+        person=person,
+        language=language,
+        languages=[(one, _address(request.scope, one)) for one in Language],
+    )
+    return HTMLResponse(text, status, headers={"Cache-Control": "no-cache"})
+
+
+def _address(scope: MutableMapping[str, Any], language: Language) -> str:
+    """Of the same page in another language; of what a form answered, the fleet's."""
+    if scope.get("method", "GET") not in ("GET", "HEAD"):
+        return f"/?{urlencode({QUERY: language.value})}"
+    asked_for = [pair for pair in parse_qsl(scope["query_string"].decode("latin-1")) if pair[0] != QUERY]
+    return f"{quote(scope['path'])}?{urlencode([*asked_for, (QUERY, language.value)])}"

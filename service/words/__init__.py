@@ -1,1 +1,0 @@
-"""Every sentence made from results: one fact is said in one way."""
