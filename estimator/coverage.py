@@ -40,6 +40,11 @@ def nominal_factor(k: float, dof: float | None) -> float:
     return float(ndtri(stdtr(max(dof, LEAST), k)))
 
 
+def known_to(dof: float | None) -> float | None:
+    """Degrees of freedom of a variance, `LEAST` at least; None where it is known."""
+    return None if dof is None else max(dof, LEAST)
+
+
 def chance(z: float, dof: float | None) -> float:
     """Probability that a normal number of mean 0 and deviation 1, Student's with ``dof`` degrees, is at most ``z``."""
     return float(ndtr(z) if dof is None else stdtr(max(dof, LEAST), z))

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from scipy.stats import chi2 as chi2_distribution
 
 from estimator.alignment.axes import Triad, of_kind, require_alive, triad
 from estimator.alignment.coarse import Coarse, coarse
@@ -42,6 +41,7 @@ from estimator.arrays import eigh
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
+from estimator.significance import p_value
 
 STEP = 1.0
 """s; the filter's step, as nearly as whole rows allow: short beside every turn and the Schuler period, long enough that
@@ -237,13 +237,13 @@ def _fit(record: Record, filtered: Filtered) -> Fit:
     n = len(filtered.last.x)
     values, vectors = eigh(relative(filtered.last.P)[2:13, 2:13])
     dof = filtered.measured - n
-    p_value = float(chi2_distribution.sf(filtered.chi2, dof))
-    factor = max(1.0, filtered.chi2 / dof) if p_value < UNLIKELY else 1.0
+    chance = float(p_value(filtered.chi2, dof))
+    factor = max(1.0, filtered.chi2 / dof) if chance < UNLIKELY else 1.0
     step = record.motion.row * record.per_step
     return Fit(
         chi2=filtered.chi2,
         dof=dof,
-        p_value=p_value if record.noise.stated else None,
+        p_value=chance if record.noise.stated else None,
         residual_rms=float(np.sqrt(np.mean(filtered.innovations**2)) / step),
         noise="stated" if record.noise.stated else "estimated",
         covariance_factor=factor,

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import f as f_distribution
 
 from estimator.alignment.align import Record, table_wobble
 from estimator.alignment.axes import inputs_of, of_kind
@@ -21,6 +20,7 @@ from estimator.alignment.pieces import Pieces, pieces
 from estimator.alignment.turned import RIVALS, Felt, felt
 from estimator.applied_vector import gravity
 from estimator.session import ACCELEROMETER, Array, Sensor
+from estimator.significance import p_value as chance_of
 
 LEVEL = 0.003
 """False-alarm rate over all accelerometers of a session, as in diagnoses of calibrations."""
@@ -132,7 +132,7 @@ def _shared(each: Sequence[Felt], sensors: Sequence[Sensor]) -> tuple[float, tup
     if columns < 1 or freedom <= 0:
         return 1.0, (origin, np.linalg.inv(information))
     apart = max(square - float(weighted @ origin), 0.0)
-    return float(f_distribution.sf(apart / columns, columns, freedom)), (origin, np.linalg.inv(information))
+    return float(chance_of(apart, columns, freedom)), (origin, np.linalg.inv(information))
 
 
 def _place(one: Felt, sensor: Sensor) -> tuple[Array, Array]:

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.stats import chi2 as chi2_distribution
 
 from estimator.alignment.axes import TINY, Triad, triad
 from estimator.alignment.positions import interval
@@ -24,6 +23,7 @@ from estimator.applied_vector import EARTH_RATE
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Fit
 from estimator.session import GYROSCOPE, RATE_TABLE, Array, CalibrationSession
+from estimator.significance import p_value
 from estimator.wording import counted
 
 NAMES = ("E_xz", "E_yz", "kappa_z", "eps_x", "eps_y", "eps_z")
@@ -178,13 +178,13 @@ def _noise(gyros: Triad, scatter: Array, dof: int, rms: float, leverage: float) 
     covariance = (scatter if stated is None else stated) + TINY**2 * np.eye(3)
     axes = 3 if stated is not None else 1
     chi2 = axes * dof * float(np.trace(np.linalg.solve(covariance, scatter))) / 3
-    p_value = None if stated is None else float(chi2_distribution.sf(chi2, axes * dof))
-    unlikely = p_value is not None and p_value < UNLIKELY
+    chance = None if stated is None else float(p_value(chi2, axes * dof))
+    unlikely = chance is not None and chance < UNLIKELY
     student = dof / (dof - 2) if stated is None else 1.0
     fit = Fit(
         chi2=chi2,
         dof=axes * dof,
-        p_value=p_value,
+        p_value=chance,
         residual_rms=rms,
         noise="estimated" if stated is None else "stated",
         covariance_factor=max(chi2 / (axes * dof), 1.0) if unlikely else student,

@@ -21,11 +21,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.stats import f as f_distribution
 
 from estimator.alignment.levers import UPRIGHT
 from estimator.alignment.pieces import Pieces
 from estimator.session import Array
+from estimator.significance import p_value
 
 FLAT = 1e-9
 """Part of the largest singular value below which a direction of columns counts as none."""
@@ -84,7 +84,7 @@ class Felt:
         chi2, columns = self.drop[model]
         if columns == 0 or self.freedom <= 0:
             return 1.0
-        return float(f_distribution.sf(chi2 / columns / excess, columns, self.freedom))
+        return float(p_value(chi2 / excess, columns, self.freedom))
 
     def worth(self, model: str, pieces: int) -> float:
         """Drop of χ² less the price of the columns (BIC), twice the natural logarithm of the evidence."""

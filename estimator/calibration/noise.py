@@ -208,8 +208,3 @@ def with_the_others(energy: Array, freedom: Array, expected: Array) -> tuple[Arr
     usual = special.fdtri(np.maximum(freedom, 1.0), ALIKE, 1 - CONTRADICTED)
     borrows = energy < usual * expected * np.maximum(freedom, 1.0)
     return energy + np.where(borrows, ALIKE * expected, 0.0), freedom + np.where(borrows, ALIKE, 0.0)
-
-
-def p_value(chi2: Array, dof: Array) -> Array:
-    """The probability of a χ² (S,) at least this large; 1 where no degrees of freedom (S,) are left to judge by."""
-    return np.where(dof > 0, special.chdtrc(np.maximum(dof, 1), np.maximum(chi2, 0.0)), 1.0)

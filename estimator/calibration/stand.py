@@ -17,6 +17,7 @@ from estimator.calibration.stand_report import Reports, Solved
 from estimator.forward import measured
 from estimator.parameters import SensorParameters, nominal
 from estimator.session import Array, CalibrationSession
+from estimator.significance import p_value
 
 
 def calibrate_stand(sessions: Sequence[CalibrationSession]) -> Reports:
@@ -103,9 +104,9 @@ def judged(solution: Fitted, stated: Array) -> tuple[Spectrum, Array, Array]:
     """
     seen = spectrum(solution.information)
     dof = solution.readings - seen.rank
-    p_value = noise.p_value(solution.chi2, dof)
-    doubtful = stated & (p_value < noise.SUSPICIOUS) & (solution.chi2 > dof)
+    chance = p_value(solution.chi2, dof)
+    doubtful = stated & (chance < noise.SUSPICIOUS) & (solution.chi2 > dof)
     factor = np.where(doubtful, solution.chi2 / np.maximum(dof, 1), 1.0)
     if not doubtful.any():
-        return seen, p_value, factor
-    return spectrum(solution.information / factor[:, None, None, None]), p_value, factor
+        return seen, chance, factor
+    return spectrum(solution.information / factor[:, None, None, None]), chance, factor

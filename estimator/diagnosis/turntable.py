@@ -17,6 +17,7 @@ from estimator.diagnosis.explanation.detection_limits import required
 from estimator.diagnosis.results import Diagnosis, Finding, Gain, Limit, Rival, Score, Separation, Structure
 from estimator.results import ARCSEC, COVERAGE
 from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.significance import family_wise
 
 CENTIMETRE, MICRO_G = 0.01, STANDARD_GRAVITY * 1e-6
 """m, m/s²."""
@@ -88,7 +89,7 @@ def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
         sentence=said,
         advice=CAUSE.correct if arms.stated else CAUSE.advice,
         sensors=(name,),
-        p_value=min(1.0, arm.felt.p_value("lever arm") * len(arms.found)),
+        p_value=family_wise(arm.felt.p_value("lever arm"), len(arms.found)),
         strength=_strength(arm, "lever arm"),
         amplitude=tuple(map(float, arm.place)),
         sigma=tuple(map(float, np.sqrt(np.diag(arm.covariance)))),

@@ -12,7 +12,6 @@ import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.scatter import equivalent_chi2
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.layout import EVERY, Hypothesis
@@ -21,6 +20,7 @@ from estimator.groups.scores import batch, inverse
 from estimator.groups.statistics import HARMONIC, SessionStatistics
 from estimator.groups.weighing import LEFT, weighed_forms
 from estimator.session import Array
+from estimator.significance import equivalent_chi2
 
 Key = tuple[str, ...]
 """A candidate of a place: a cause with its shape, or the words of a term."""

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import chdtrc
 
 from estimator.groups.scores import inverse
 from estimator.session import Array
+from estimator.significance import p_value
 
 TAUS = np.concatenate([[0.0], np.geomspace(0.05, 100.0, 48)])
 """τ in units of one session's sigma: below, sessions are alike to a part in a thousand; above, only τ counts."""
@@ -47,7 +47,7 @@ def mean_of(U: Array, F: Array) -> Mean:
     freedom -= int(np.linalg.matrix_rank(f.sum(axis=0), tol=1e-6, hermitian=True))
     each = float((u * (np.linalg.pinv(f, rcond=1e-6, hermitian=True) @ u[..., None])[..., 0]).sum())
     q = _heterogeneity(u, f, 0.0, each)
-    p = float(chdtrc(freedom, max(q, 0.0))) if freedom > 0 else 1.0
+    p = float(p_value(q, freedom))
     spread = np.sqrt(_mandel_paule(u, f, freedom, each)) if freedom > 0 and q > freedom else 0.0
     alone = inverse(f.sum(axis=0))
     value, covariance = _over_spreads(u, f) if freedom > 0 else (alone @ u.sum(axis=0), alone)

@@ -8,7 +8,6 @@ structure on the sensors concerned is as sure as a name must be, the name is tak
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtrc
 
 from estimator.groups.evidence import ALPHA, SAME, SINCE, VARYING
 from estimator.groups.layout import STAND, Hypothesis, Layout
@@ -17,6 +16,7 @@ from estimator.groups.scores import batch, inverse
 from estimator.groups.statistics import SessionStatistics
 from estimator.groups.weighing import Scale, weigh
 from estimator.session import Array
+from estimator.significance import p_value
 
 ENOUGH = float(-np.log(ALPHA))
 """ln e-value of a name."""
@@ -176,7 +176,7 @@ def shown_by_one(pool: Pool, place: Place, form: int, since: int) -> int | None:
         own = rest & (np.arange(len(U)) >= since)
         total, used = batch(U[own].sum(axis=0)[None], F[own].sum(axis=0)[None])
         statistic, q = float(total[0]), int(used[0])
-    return None if q > 0 and chdtrc(q, statistic) < STILL else strongest
+    return None if q > 0 and p_value(statistic, q) < STILL else strongest
 
 
 def within_reason(pool: Pool, place: Place) -> bool:

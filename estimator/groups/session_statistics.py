@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import chdtr, chdtrc
+from scipy.special import chdtr
 
 from estimator.calibration.calibrate import averaged
 from estimator.causes.catalogue import CATALOGUE
@@ -25,13 +25,13 @@ from estimator.diagnosis.residuals.flipped_run import about_its_flip
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.start import as_they_scatter
-from estimator.diagnosis.signatures.scatter import equivalent_chi2
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.scores import Scores, eigen_scores
 from estimator.groups.statistics import Block, SessionStatistics, quantised, shared
 from estimator.moments import in_utc
 from estimator.session import Array, CalibrationSession
+from estimator.significance import equivalent_chi2, p_value
 
 LEFT_OUT = re.compile(r"reading (\d+) left out")
 MUTE = 1e9
@@ -171,7 +171,7 @@ def without_outliers(seen: Seen) -> Seen:
         energy, whole = of_sensors(seen, left**2)[sensors], of_sensors(seen, freedom)[sensors]
         own = left**2 / free
         rest = np.maximum((energy - own) / np.maximum(whole - 1, 1), 1.0)
-        tail = chdtrc(1, own / rest) * rows
+        tail = p_value(own / rest, 1) * rows
         tail[rows:] = 1.0
         worst = int(np.argmin(tail))
         if tail[worst] > PLAIN or freedom[worst] < 0.2 or whole[worst] < 4:
@@ -202,7 +202,7 @@ def plainly(seen: Seen) -> list[int]:
     scores = Scores.of(seen.blocks, seen.score, seen.information)
     for _ in range(MOST):
         statistic, freedom = scores.given(found)
-        tail = chdtrc(np.maximum(freedom, 1), statistic) * len(seen.blocks)
+        tail = p_value(statistic, freedom) * len(seen.blocks)
         best = int(np.argmin(tail))
         if tail[best] > PLAIN:
             break
@@ -250,14 +250,14 @@ def contradicted(baseline: Baseline, energy: Array, freedom: Array) -> list[list
     can be laid on it until nothing is left of its noise. ``energy`` (m,) χ² with its degrees of ``freedom`` (m,).
     """
     free = np.maximum(freedom, 1e-3)
-    less, more = chdtr(free, energy), chdtrc(free, energy)
+    less, more = chdtr(free, energy), p_value(energy, free)
     stated = ~baseline.unstated & (freedom > 2)
     claims: list[list[int]] = []
     for kind in dict.fromkeys(baseline.setting.kinds):
         own = np.flatnonzero(stated & np.array([k == kind for k in baseline.setting.kinds]))
         if not len(own):
             continue
-        tails = chdtr(free[own].sum(), energy[own].sum()), chdtrc(free[own].sum(), energy[own].sum())
+        tails = chdtr(free[own].sum(), energy[own].sum()), p_value(energy[own].sum(), free[own].sum())
         leaning = (less, more)[int(np.argmin(tails))][own] < LEANING
         if min(tails) < DOUBTFUL and 2 * leaning.sum() >= len(own):
             claims.append(own.tolist())

@@ -35,9 +35,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
-from estimator.coverage import LEAST
+from estimator.coverage import known_to
 from estimator.health.changes import AxisPairs, Changes, axis_pairs, scale_changes
 from estimator.health.deviation import Deviation
 from estimator.health.moved import fit, moved
@@ -45,6 +44,7 @@ from estimator.health.who_moved import Sets, residuals
 from estimator.results import NOMINAL_AXES, Calibration
 from estimator.rotations import common_turn, left_jacobian, turn_of, vector_of
 from estimator.session import Array
+from estimator.significance import p_value
 
 AXES, SCALES = "axes", "scales"
 SEPARATED, TOO_FEW, UNCLEAR = "separated", "too-few-sensors", "unclear"
@@ -216,16 +216,11 @@ def _separated(of: tuple[str, str], agreed: _Agreed, value: Array, covariance: A
         state=SEPARATED,
         value=tuple(map(float, value)),
         covariance=tuple(tuple(map(float, row)) for row in covariance),
-        p_value=_chance(chi2, len(value), agreed.changes.dof) if is_seen else None,
+        p_value=float(p_value(chi2, len(value), known_to(agreed.changes.dof))) if is_seen else None,
         sensors=tuple(name for i, name in enumerate(names) if i not in agreed.out),
         left_out=tuple(names[i] for i in agreed.out),
     )
     return Split(motion, residuals(agreed.sets, agreed.out))
-
-
-def _chance(chi2: float, size: int, dof: float | None) -> float:
-    """Probability of as large a χ² of so many numbers, by Fisher's F where the noise is known to a few degrees."""
-    return float(stats.chi2.sf(chi2, size) if dof is None else stats.f.sf(chi2 / size, size, max(dof, LEAST)))
 
 
 def _nothing(kind: str, quantity: str, state: str, names: tuple[str, ...]) -> CommonMotion:

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy import stats
 
-from estimator.coverage import LEAST
+from estimator.coverage import known_to
 from estimator.health.changes import Changes
 from estimator.session import Array
+from estimator.significance import critical_chi2, single_level
 
 LEVEL = 0.001
 """Chance that a sensor of a block without a single motion is left out: a tenth of the level of a session's verdict."""
@@ -96,16 +96,13 @@ def moved(changes: Changes) -> list[int] | None:
 
 def _limit(changes: Changes) -> float:
     """χ² that the largest of all sensors' exceeds by chance with probability `LEVEL`."""
-    single = -np.expm1(np.log1p(-LEVEL) / len(changes.names))
-    return chi2_limit(float(single), changes.rows, changes.dof)
+    return chi2_limit(single_level(LEVEL, len(changes.names)), changes.rows, changes.dof)
 
 
 @cache
 def chi2_limit(level: float, rows: int, dof: float | None) -> float:
     """χ² of so many rows that noise known to ``dof`` degrees of freedom exceeds with a probability."""
-    if dof is None:
-        return float(stats.chi2.isf(level, rows))
-    return rows * float(stats.f.isf(level, rows, max(dof, LEAST)))
+    return critical_chi2(level, rows, known_to(dof))
 
 
 def is_majority(changes: Changes, out: list[int]) -> bool:

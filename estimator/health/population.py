@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtri
 
 from estimator.session import Array
+from estimator.significance import single_level
 
 NORMAL_MEDIAN = float(ndtri(0.75))
 """Median of |x| of a standard normal."""
@@ -41,7 +42,7 @@ def standing_out(z: Sequence[float], level: float = 0.01, among: int = 0) -> tup
 
     ``z`` may be those alone that are furthest out of ``among`` members.
     """
-    single = -np.expm1(np.log1p(-level) / max(len(z), among, 1))
+    single = single_level(level, max(len(z), among))
     return tuple(bool(x) for x in np.abs(np.array(z)) > -ndtri(single / 2))
 
 

@@ -17,6 +17,7 @@ from estimator.health.shapes import DRIFTS, Kind, courses
 from estimator.health.tails import log_tails
 from estimator.health.ways import felt, swing, ways, where_found
 from estimator.session import Array
+from estimator.significance import single_level
 
 RECENT = 60
 """Sessions, the newest, that a history is made of; older ones hardly tell of what goes on now."""
@@ -120,7 +121,7 @@ def prognosis(tracks: Sequence[Track], priors: Sequence[Prior], ahead: Array) ->
     priors : of every track's parameter in its type.
     ahead : years after the last session, increasing, at which fans are wanted.
     """
-    level = -np.expm1(np.log1p(-LEVEL) / len(tracks))
+    level = single_level(LEVEL, len(tracks))
     outlooks = tuple(_outlook(t, p, ahead, (i, level)) for i, (t, p) in enumerate(zip(tracks, priors, strict=True)))
     return Prognosis(outlooks, _risk(tracks, outlooks))
 

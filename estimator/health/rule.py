@@ -35,8 +35,7 @@ untouched: `pass` needs |y| + U ≤ T as before, and `fail` still needs |y| − 
 
 from functools import cache
 
-import numpy as np
-from scipy import stats
+from estimator.significance import critical_chi2, single_level
 
 PASS = "pass"
 CONDITIONAL_PASS = "conditional-pass"
@@ -82,7 +81,5 @@ def critical_factors(judged: int, dof: float | None = None, level: float = SESSI
     dof : effective degrees of freedom of the deviation; None when the noise is known.
     level : α of the whole session.
     """
-    single = -np.expm1(np.log1p(-level) / max(judged, 1))
-    if dof is None:
-        return float(stats.norm.isf(single / 2)), float(np.sqrt(-2 * np.log(single)))
-    return float(stats.t.isf(single / 2, dof)), float(np.sqrt(2 * stats.f.isf(single, 2, dof)))
+    single = single_level(level, judged)
+    return critical_chi2(single, 1, dof) ** 0.5, critical_chi2(single, 2, dof) ** 0.5

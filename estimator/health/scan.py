@@ -18,6 +18,7 @@ from scipy import stats
 from scipy.special import ndtr, roots_genlaguerre
 
 from estimator.session import Array
+from estimator.significance import critical_chi2
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(48)
 """(48,) of r, dimensionless; right to 1e-4 of itself."""
@@ -36,7 +37,7 @@ def looks(correlation: Array, size: int, level: float) -> float:
     """
     n = len(correlation) + 1
     single = level / n
-    limit = float(stats.chi2.isf(single, size))
+    limit = critical_chi2(single, size)
     return min(1 + float(_crossings(np.clip(correlation, 0.0, ALIKE), size, limit).sum()) / single, float(n))
 
 

@@ -18,10 +18,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from estimator.health.seating import STAND_PRIOR, Seating, Units, Weighted, freedoms
 from estimator.session import Array
+from estimator.significance import critical_chi2, family_wise, p_value
 
 LEVEL = 0.01
 """Chance that any stand of a fleet is flagged although none moved."""
@@ -77,12 +77,12 @@ class Weighed:
 
     def exceeds(self, level: float) -> bool:
         """Whether chance alone reaches as much with less than a probability, everything looked at."""
-        return self.chi2 / self.size > float(stats.f.isf(level / self.looked, self.size, self.freedom))
+        return self.chi2 > critical_chi2(level / self.looked, self.size, self.freedom)
 
     @property
     def p_value(self) -> float:
         """Everything looked at."""
-        return min(1.0, self.looked * float(stats.f.sf(self.chi2 / self.size, self.size, self.freedom)))
+        return family_wise(float(p_value(self.chi2, self.size, self.freedom)), self.looked)
 
     @property
     def evidence(self) -> float:

@@ -17,12 +17,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from estimator.health.seating import Seating, Units, seated
 from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, chi_squares, columns, of_units, weighed
 from estimator.health.stand_search import of_stands
 from estimator.session import Array
+from estimator.significance import critical_chi2
 
 AGREEING = 0.8
 """Share of the units that must show the shift; one in five may differ, and one of any number."""
@@ -203,7 +203,7 @@ class _Witnesses:
         if self.agreeing.sum() < FEWEST_UNITS:
             return False
         votes = self.agreeing[self._own > TELLS**2]
-        by_chance = own.size * float(stats.f.isf(min(LEVEL, 1 / own.looked), own.size, own.freedom))
+        by_chance = critical_chi2(min(LEVEL, 1 / own.looked), own.size, own.freedom)
         return bool(votes.sum() >= AGREEING * (len(votes) - 1)) and self._without_one() > by_chance
 
     def _without_one(self) -> float:

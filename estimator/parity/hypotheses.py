@@ -15,12 +15,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_solve, solve_triangular
-from scipy.stats import chi2, f, norm
+from scipy.stats import f, norm
 
 from estimator.parity.isolation import Rivals, log_tail, shortfall
 from estimator.parity.regression import Change
 from estimator.parity.results import AXIS, BIAS, KINDS, SCALE, SEVERAL, Candidate, SensorParity, Sight
 from estimator.session import Array
+from estimator.significance import critical_chi2, p_value
 
 ELEMENTS = {BIAS: [1], SCALE: [0], AXIS: [3, 4], SEVERAL: [1, 0, 3, 4]}
 """Columns of `Reference.signatures` that a kind of change moves."""
@@ -88,7 +89,7 @@ class Evidence:
     def p_value(self, left: float, dof: int) -> float:
         """Probability of χ² this large over ``dof`` numbers, the noise's own uncertainty included."""
         scale, effective = self.moments(dof)
-        return float(chi2.sf(left / scale, effective))
+        return float(p_value(left / scale, effective))
 
     def moments(self, q: int) -> tuple[float, float]:
         """χ² of q numbers as scale·χ²(dof): s numbers a sensor, with a covariance from few groups (Hotelling).
@@ -197,7 +198,7 @@ class Evidence:
 
     def threshold(self, k: int, false_alarm: float) -> float:
         """Sigmas from which a change of k numbers is detected."""
-        return float(np.sqrt(f.isf(false_alarm / 2 / len(self.all), k, self.dof) * k))
+        return float(np.sqrt(critical_chi2(false_alarm / 2 / len(self.all), k, self.dof)))
 
     def wanted(self, k: int, false_alarm: float) -> float:
         """Sigmas of a change of k numbers that are detected with the power."""
@@ -207,4 +208,4 @@ class Evidence:
 
 def tail(ratio: float, k: int, dof: float) -> tuple[float, float]:
     """Probability of a ratio of k numbers by chance, noise known to ``dof``, and −2 ln of it for certain noise."""
-    return float(f.sf(ratio / k, k, dof)), -2.0 * float(log_tail(np.maximum(np.array(ratio), np.finfo(float).tiny), k))
+    return float(p_value(ratio, k, dof)), -2.0 * float(log_tail(np.maximum(np.array(ratio), np.finfo(float).tiny), k))

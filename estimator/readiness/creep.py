@@ -7,9 +7,9 @@ m has the chance q^{(m−2)/2}.
 """
 
 import numpy as np
-from scipy.stats import chi2
 
 from estimator.session import Array
+from estimator.significance import p_value
 
 CHANCE = 1e-3
 """With which drifts of the sensors' own may look like a turn."""
@@ -30,5 +30,5 @@ def turn(axes: Array, force: Array, drift: Array, error: Array) -> float | None:
     omega = np.linalg.lstsq(pattern, drift, rcond=1e-6)[0]
     left = drift - pattern @ omega
     by_chance = ((left**2).sum() / (drift**2).sum()) ** (len(axes) / 2 - 1)
-    is_turn = by_chance < CHANCE and chi2.sf(((left / error) ** 2).sum(), len(axes) - 2) > LEAVES
+    is_turn = by_chance < CHANCE and p_value(((left / error) ** 2).sum(), len(axes) - 2) > LEAVES
     return float(np.linalg.norm(omega)) if is_turn else None

@@ -21,7 +21,7 @@ ESTIMATOR_LAYERS = (
     {"errors", "moments", "on_demand", "wording"},
     {"codec"},
     {"session"},
-    {"arrays", "content"},
+    {"arrays", "content", "significance"},
     {"rotations"},
     {"applied_vector", "coverage", "parameters", "reading", "rest_noise"},
     {"results", "static"},

@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import chdtrc
 
 from estimator.calibration.free.model import predicted
 from estimator.calibration.free.solve import Solution, search
 from estimator.session import Array
+from estimator.significance import p_value
 
 UNLIKELY = 1e-3
 """p-value below which the stated noise does not explain the residuals: true noise is mistrusted once in a thousand
@@ -30,15 +30,9 @@ NARROWEST = 12.0
 """ln of the ratio of the largest to the smallest sigma that is looked for: six orders, beyond any reading's noise."""
 
 
-def p_value(chi2: float, dof: int) -> float | None:
-    """Probability of a χ² at least this large; None without degrees of freedom."""
-    return float(chdtrc(dof, chi2)) if dof > 0 else None
-
-
 def explained(solution: Solution) -> Solution:
     """The solution under noise that explains its residuals; itself where the stated noise does."""
-    p = p_value(solution.chi2, solution.dof)
-    if p is None or p >= UNLIKELY:
+    if p_value(solution.chi2, solution.dof) >= UNLIKELY:
         return solution
     stated, found, last = solution.rows.sigma, solution, np.inf
     for _ in range(ROUNDS):

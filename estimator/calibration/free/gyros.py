@@ -9,11 +9,11 @@ nonlinearity need rates that a resting block does not see.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2 as chi_squared
 
 from estimator.applied_vector import EARTH_RATE
 from estimator.calibration.free.excess import UNLIKELY
 from estimator.session import Array
+from estimator.significance import p_value
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ def rest_biases(readings: Array, standard_errors: Array, repeatability: Array) -
     bias = (readings / variance).sum(axis=0) / (1 / variance).sum(axis=0)
     sigma = 1 / np.sqrt((1 / variance).sum(axis=0))
     squares = ((readings - bias) ** 2 / variance).sum(axis=0)
-    restless = chi_squared.sf(squares, max(R - 1, 1)) < UNLIKELY
+    restless = p_value(squares, max(R - 1, 1)) < UNLIKELY
     sigma = sigma * np.where(restless, np.sqrt(squares / max(R - 1, 1)), 1.0)
     estimated = restless | ~known.all(axis=0)
     freedom = np.where(estimated, R - 1.0 if R > 1 else np.nan, np.inf)

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import chdtrc, fdtrc
 
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.information import information
@@ -22,6 +21,7 @@ from estimator.calibration.free.noise import scaled, search_with_noise
 from estimator.calibration.free.solve import Solution, search
 from estimator.calibration.free.start import starts
 from estimator.coverage import WANTED
+from estimator.significance import p_value
 
 Run = Callable[[Rows, Unknowns, bool], Solution]
 
@@ -105,15 +105,8 @@ def deserved(extended: Solution, plain: Solution, stated: bool) -> bool:
     without = lowest(search, search(used.rows, plain.unknowns, False), [without_terms(used.unknowns)])
     fall = max(without.chi2 - used.chi2, 0.0)
     q, terms = used.knowledge.rank - without.knowledge.rank, np.arange(2, len(used.knowledge.covariance), 5)
-    if likelihood_ratio(fall, q, used) < PLAIN_QUADRATIC:
+    if p_value(fall, q, used.freedom) < PLAIN_QUADRATIC:
         return True
     covariance, c = used.knowledge.covariance[np.ix_(terms, terms)], used.unknowns.quadratic
     near = bool(c @ np.linalg.solve(covariance, c) < PARABOLA * fall + 1.0)
     return near and bool(np.all(np.diagonal(covariance) < USEFUL_QUADRATIC**2))
-
-
-def likelihood_ratio(fall: float, q: int, used: Solution) -> float:
-    """Probability, without the q terms, of χ² falling by this much; F where the noise was estimated."""
-    if np.isinf(used.freedom):
-        return float(chdtrc(q, fall))
-    return float(fdtrc(q, used.freedom, fall / q))

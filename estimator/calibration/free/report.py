@@ -6,7 +6,6 @@ import numpy as np
 
 from estimator.arrays import tangents
 from estimator.calibration.free.completion import completion
-from estimator.calibration.free.excess import p_value
 from estimator.calibration.free.gyros import GyroBiases
 from estimator.calibration.free.knowledge import Knowledge
 from estimator.calibration.free.solve import Solution
@@ -14,6 +13,7 @@ from estimator.coverage import finite, positions_to_add
 from estimator.parameters import names, units
 from estimator.results import PARAMETERS, Calibration, Estimate, Fit, Residuals, SensorCalibration
 from estimator.session import Array, CalibrationSession
+from estimator.significance import p_value
 
 METHOD = "arbitrary-orientations/maximum-likelihood"
 """As results name it."""
@@ -34,7 +34,7 @@ def fit_of_accelerometers(
     return Fit(
         chi2=solution.chi2,
         dof=solution.dof,
-        p_value=p_value(solution.chi2, solution.dof) if stated else None,
+        p_value=float(p_value(solution.chi2, solution.dof)) if stated and solution.dof > 0 else None,
         residual_rms=float(np.sqrt(np.mean(known.residual**2))),
         noise="stated" if stated else "estimated",
         covariance_factor=1.0 if used is solution else solution.chi2 / solution.dof,
@@ -68,7 +68,7 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
     return Fit(
         chi2=gyros.chi2,
         dof=gyros.dof,
-        p_value=p_value(gyros.chi2, gyros.dof) if gyros.stated else None,
+        p_value=float(p_value(gyros.chi2, gyros.dof)) if gyros.stated and gyros.dof > 0 else None,
         residual_rms=float(np.sqrt(np.mean(gyros.residual**2))),
         noise="stated" if gyros.stated else "estimated",
         covariance_factor=1.0,

@@ -8,12 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 from scipy import optimize
-from scipy.special import chdtri, chndtr
+from scipy.special import chndtr
 
 from estimator.causes.contract import Cause, Correction, Signature
 from estimator.diagnosis.results import Limit
 from estimator.diagnosis.selection.search_state import LEVEL, SearchState
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
+from estimator.significance import critical_chi2
 
 POWER = 0.95
 """Share of sessions in which an effect at its limit is found: the usual power of a detection limit (ISO 11843)."""
@@ -22,7 +23,7 @@ POWER = 0.95
 @lru_cache(maxsize=4096)
 def required(q: int, p_single: float) -> float:
     """Strength, standard errors, that a test of q amplitudes at level ``p_single`` finds with `POWER`."""
-    threshold = float(chdtri(q, p_single))
+    threshold = critical_chi2(p_single, q)
 
     def shortfall(strength: float) -> float:
         return 1.0 - float(chndtr(threshold, q, strength**2)) - POWER
@@ -71,7 +72,7 @@ def excess_limit(state: SearchState, cause: Cause) -> Limit:
     if state.baseline.unstated.all():
         return Limit(cause.identifier, None, cause.units, "the file states no noise to exceed")
     freedom = max(state.residuals.freedom / m, 2.0)
-    threshold = chdtri(freedom, LEVEL / (m * state.families))
-    ratio = threshold / chdtri(freedom, POWER)
+    threshold = critical_chi2(LEVEL / (m * state.families), freedom)
+    ratio = threshold / critical_chi2(POWER, freedom)
     sigma = float(np.sqrt(np.median(state.baseline.variance)))
     return Limit(cause.identifier, (sigma * float(np.sqrt(max(ratio - 1, 0.0))),), cause.units, "")

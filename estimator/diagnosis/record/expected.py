@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtrc, fdtrc
 
 from estimator.applied_vector import gravity, stand_geometry
 from estimator.calibration.free import accelerometer_rows, solve
@@ -17,6 +16,7 @@ from estimator.calibration.free.model import linearise
 from estimator.calibration.free.model import predicted as readings_of
 from estimator.calibration.free.solve import Solution
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
+from estimator.significance import p_value
 
 SPARE = 3
 """Degrees of freedom that the other readings must leave: fewer hardly tell their own scatter."""
@@ -66,8 +66,7 @@ class Expected:
         if np.any(beyond < -SHORT * np.sqrt(np.diagonal(self.covariance))) or beyond.sum() <= 0:
             return 0.0, 1.0
         square, k = float(beyond @ np.linalg.solve(self.covariance, beyond)), len(beyond)
-        chance = chdtrc(k, square) if self.believed else fdtrc(k, self.freedom, square / k)
-        return float(np.sqrt(square)), float(chance)
+        return float(np.sqrt(square)), float(p_value(square, k, self.freedom))
 
 
 def on_stand(session: CalibrationSession, cells: Cells) -> Expected | None:
@@ -103,7 +102,7 @@ def explained(session: CalibrationSession) -> bool:
     if not stated:
         return True
     found = solve(prepared, stated, None)
-    return found.dof < 1 or bool(chdtrc(found.dof, found.chi2) >= UNLIKELY)
+    return bool(p_value(found.chi2, found.dof) >= UNLIKELY)
 
 
 def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list[Expected | None]:
@@ -121,7 +120,7 @@ def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list
         sigma[rows, place[i]] = UNWEIGHTED
     found = solve(prepared.weighted(sigma), True, None)
     spare = found.dof - sum(len(rows) for _, rows in cells)
-    believed = stated and spare > 0 and chdtrc(spare, found.chi2) >= UNLIKELY
+    believed = stated and spare > 0 and p_value(found.chi2, spare) >= UNLIKELY
     if not found.converged or (spare < SPARE and not believed):
         return [None] * len(cells)
     growth = 1.0 if believed else found.chi2 / spare

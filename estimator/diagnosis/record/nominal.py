@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import fdtrc
 
 from estimator.arrays import tangents
 from estimator.causes.contract import Cause, Entry
@@ -17,6 +16,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.parameters import LIMIT
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
+from estimator.significance import p_value
 
 LEVEL = 1e-3
 """p-value of one cause against the nominal axes: a third of the family-wise level, for it is one test of its own."""
@@ -51,14 +51,14 @@ def wrong_entry(session: CalibrationSession, catalogue: Sequence[Cause]) -> Wron
     if cause is None or session.programme != TWO_AXIS_STAND:
         return None
     amount, sigma, f, freedom = regression(baseline_of(session), cause)
-    if freedom < 3 or (p_value := float(fdtrc(1, freedom, f))) > LEVEL:
+    if freedom < 3 or (chance := float(p_value(f, 1, freedom))) > LEVEL:
         return None
     total, right = 0.0, session
     for _ in range(ROUNDS):
         total += amount
         right = cause.corrected_by(session, total)
         amount, sigma, _, _ = regression(baseline_of(right), cause)
-    return WrongEntry(cause, total, sigma, p_value, float(np.sqrt(f)))
+    return WrongEntry(cause, total, sigma, chance, float(np.sqrt(f)))
 
 
 def regression(baseline: Baseline, cause: Entry) -> tuple[float, float, float, int]:

@@ -15,7 +15,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import chdtrc
 
 from estimator.diagnosis.residuals.baseline import Absorption, Baseline
 from estimator.diagnosis.residuals.between_sessions import carried, carried_each, deviation, inverse_root
@@ -23,6 +22,7 @@ from estimator.diagnosis.residuals.gauge import turn_response
 from estimator.parameters import together
 from estimator.rotations import common_turn, turn_of, vector_of
 from estimator.session import Array, CalibrationSession
+from estimator.significance import p_value
 
 ROUNDS = 20
 """Of Gauss–Newton; three to six are usual."""
@@ -146,4 +146,4 @@ def sits_otherwise(now: Baseline, apart: Array, covariance: Array) -> bool:
     """Whether the block sat otherwise in one session than in the latest: turned by ``apart`` (3, 3) against it, with
     the ``covariance`` (P, P) of both, dimensionless, as `seen_from` ``now``."""
     seen = inverse_root(covariance) @ turn_response(now.parameters) @ vector_of(apart)
-    return bool(chdtrc(3, float(seen @ seen)) < OTHERWISE)
+    return bool(p_value(seen @ seen, 3) < OTHERWISE)

@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import chdtrc
 
 from estimator.calibration.noise import with_the_others
 from estimator.diagnosis.selection.search_state import LEVEL, SearchState
 from estimator.diagnosis.signatures.autocorrelation import autocorrelation
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.session import Array
+from estimator.significance import family_wise, p_value
 
 DOUBTFUL = 0.0
 """ln evidence from which on scatter that is too large is as likely a smooth course as noise, and is said to be both."""
@@ -22,7 +22,7 @@ def largest_excess(state: SearchState) -> ExcessVariance | None:
     for i, (energy, freedom) in enumerate(zip(*(x.tolist() for x in sensor_scatter(state)), strict=True)):
         if state.baseline.unstated[i] or i in state.scatter_attributed or freedom < 2 or energy <= freedom:
             continue
-        p_family = min(1.0, float(chdtrc(freedom, energy)) * m * state.families)
+        p_family = family_wise(float(p_value(energy, freedom)), m * state.families)
         gained = 0.5 * (energy - freedom - freedom * np.log(energy / freedom))
         log_evidence = float(gained - 0.5 * np.log(freedom / 2) - np.log(m))
         if p_family < LEVEL and (best is None or log_evidence > best.log_evidence):

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtr, chdtrc
+from scipy.special import chdtr
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import unstated_noise
@@ -26,6 +26,7 @@ from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.selection.start import as_they_scatter, begun_with, with_earlier_scatter
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import Array
+from estimator.significance import p_value
 
 DOUBTFUL = 1e-3
 """p-value of all residuals of a kind together below which its stated noise is in doubt."""
@@ -71,7 +72,7 @@ class Scatter:
     @property
     def tails(self) -> tuple[float, float]:
         """Chance of less, and of more, under the stated noise."""
-        return float(chdtr(self.freedom, self.energy)), float(chdtrc(self.freedom, self.energy))
+        return float(chdtr(self.freedom, self.energy)), float(p_value(self.energy, self.freedom))
 
     def is_alike(self, others: "Scatter", side: int) -> bool:
         """Whether this scatter may be off as that of ``others`` is: not in the other sense, nor plainly as stated."""

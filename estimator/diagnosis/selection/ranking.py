@@ -11,6 +11,7 @@ from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Fou
 from estimator.diagnosis.signatures.scores import Scores, rescored, scores
 from estimator.diagnosis.signatures.traces import Scored, Traces
 from estimator.session import Array
+from estimator.significance import family_wise
 
 TRIED = 3
 """Leaders of a ranking that are asked for significance: the strongest evidence need not have the smallest p-value."""
@@ -18,7 +19,7 @@ TRIED = 3
 
 def family_p_value(scored: Scored, families: int) -> float:
     """p-value of a signature or anything as strong among so many families, were there no effect (Bonferroni)."""
-    return min(1.0, scored.p_value * scored.places * families)
+    return family_wise(scored.p_value, scored.places * families)
 
 
 def p_beside(found: Found, again: Scored, families: int) -> float:

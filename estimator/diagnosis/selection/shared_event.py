@@ -24,7 +24,6 @@ from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
-from scipy.special import chdtrc
 
 from estimator.arrays import eigh
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
@@ -36,6 +35,7 @@ from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
 from estimator.diagnosis.signatures.wandering import log_marginal, log_mean, log_turning, log_wandering, marginal
 from estimator.session import Array
+from estimator.significance import family_wise, p_value
 
 SURE = float(np.log(19))
 """ln odds by which a sensor joins an event: one in twenty that joined last is a bystander."""
@@ -109,7 +109,7 @@ def shared_event(start: SearchState) -> tuple[Found, ...]:
         return ()
     energy, freedom = energies(start.residuals, every)
     best = np.argsort(-bayes_factor(energy, freedom), kind="stable")[:CLOSEST]
-    if chdtrc(freedom[best[0]], energy[best[0]]) * len(every) > SCREEN:
+    if p_value(energy[best[0]], freedom[best[0]]) * len(every) > SCREEN:
         return ()
     tried = [(every[k], *joined(start, every[k])) for k in best]
     course, chosen, _ = max(tried, key=lambda one: one[2])
@@ -216,7 +216,7 @@ def priced(start: SearchState, course: Course, numbers: Sequence[int], moments: 
 def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
     """p-value of an event or anything as strong in the catalogue, at any moment, on any sensors (Bonferroni)."""
     power, freedom = sum(s.statistic for s in event), sum(s.freedom for s in event)
-    return min(1.0, float(chdtrc(freedom, power)) * event[0].places * start.families)
+    return family_wise(float(p_value(power, freedom)), event[0].places * start.families)
 
 
 def otherwise(start: SearchState, course: Course, moments: int) -> bool:

@@ -5,14 +5,10 @@ how they scatter; how the parameters moved since the history is the signature's 
 """
 
 import numpy as np
-from scipy.special import chdtri, fdtrc
 
 from estimator.calibration.noise import with_the_others
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.session import ACCELEROMETER, Array
-
-FAINTEST_TAIL = 1e-280
-"""Tail probability below which its logarithm is taken from the ratio itself; doubles end at 1e-308."""
 
 
 def scatter_beside(baseline: Baseline, sensor: Array, energy: Array, freedom: Array) -> tuple[Array, Array]:
@@ -69,18 +65,3 @@ def sharing_scatter(baseline: Baseline) -> Array:
         coupled = np.array([kind == ACCELEROMETER for kind in baseline.setting.kinds])
         sharing[np.ix_(np.append(coupled, coupled.any()), coupled)] = 1.0
     return sharing
-
-
-def equivalent_chi2(power: Array, q: Array, energy: Array, freedom: Array) -> Array:
-    """(S,) χ², dimensionless, as unlikely as the ``power`` (S,) that signatures of q (S,) amplitudes explain.
-
-    Where the noise of its sensors is estimated from what it leaves of their readings (``energy`` with ``freedom``,
-    (S,); else NaN), F = (power/q)/(energy/freedom) takes the place of χ², carried over at the same tail probability.
-    """
-    over, amplitudes = np.maximum(freedom, 1.0), np.maximum(q, 1)
-    ratio = power / np.maximum(energy, 1e-6 * np.maximum(power, 1e-300))
-    tail = fdtrc(amplitudes, over, ratio * over / amplitudes)
-    unknown = np.where(
-        tail < FAINTEST_TAIL, over * np.log1p(ratio), chdtri(amplitudes, np.maximum(tail, FAINTEST_TAIL))
-    )
-    return np.where(np.isnan(energy) | (q == 0), power, np.where(freedom > 1, unknown, 0.0))

@@ -23,9 +23,10 @@ from scipy.special import chdtrc, erfc
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.directions import ALIKE, whitening
 from estimator.diagnosis.signatures.products import Left, Products, Projected
-from estimator.diagnosis.signatures.scatter import equivalent_chi2, in_unknown_noise, scatter_beside
+from estimator.diagnosis.signatures.scatter import in_unknown_noise, scatter_beside
 from estimator.diagnosis.signatures.traces import INVISIBLE, Group, Scored, Traces, sensors_of
 from estimator.session import Array
+from estimator.significance import equivalent_chi2
 
 FAINT = 0.02
 """Share of the strongest direction's trace above which a direction of a signature counts as an amplitude of its own:

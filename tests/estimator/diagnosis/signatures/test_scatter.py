@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import chi2, f
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.signatures.scatter import equivalent_chi2, in_unknown_noise, scatter_beside, sharing_scatter
+from estimator.diagnosis.signatures.scatter import in_unknown_noise, scatter_beside, sharing_scatter
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene
 
@@ -50,18 +49,6 @@ def test_an_unknown_direction_makes_its_accelerometers_share_their_scatter() -> 
     sharing = sharing_scatter(baseline)
     assert np.flatnonzero(sharing[1]).tolist() == [0, 1, 2]
     assert np.flatnonzero(sharing[4]).tolist() == [4]
-
-
-@pytest.mark.parametrize(("power", "q"), [(9.0, 1), (40.0, 2)])
-def test_an_f_becomes_the_chi_square_of_the_same_tail(power: float, q: int) -> None:
-    (found,) = equivalent_chi2(np.array([power]), np.array([q]), np.array([20.0]), np.array([25.0]))
-    assert chi2.sf(found, q) == pytest.approx(f.sf(power / q / (20 / 25), q, 25))
-
-
-def test_a_tail_beyond_doubles_still_grows() -> None:
-    one = np.ones(2)
-    near, far = equivalent_chi2(np.array([1e4, 1e5]), one.astype(int), one, one * 200)
-    assert near < far < np.inf
 
 
 def along_all(unstated: list[bool], size: list[float]) -> tuple[float, float]:
