@@ -13,6 +13,7 @@ from estimator.alignment.positions import Stop
 from estimator.alignment.strapdown import Motion
 from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
+from estimator.least_squares import least_squares
 from estimator.session import Array
 
 MOST_HEADING = np.radians(10.0)
@@ -68,9 +69,8 @@ def turning_design(angles: Array) -> Array:
 
 def _solved(design: Array, means: Array) -> tuple[Array, Array, Array]:
     """h (2,), the biases (3,) and (DᵀD)⁻¹ (4, 4) from the design (2 n, 4) and stops' means (n, 3), m/s² or rad/s."""
-    inverse = np.linalg.inv(design.T @ design)
-    h_x, h_y, b_x, b_y = inverse @ design.T @ means[:, :2].ravel()
-    return np.array([h_x, h_y]), np.array([b_x, b_y, 0.0]), inverse
+    fit = least_squares(design, means[:, :2].ravel())
+    return fit.value[:2], np.append(fit.value[2:], 0.0), fit.covariance
 
 
 def _require_heading(north: Array, inverse: Array, density: Array, shortest: float) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from estimator.alignment.lever_arms import LeverArm, LeverArms
 from estimator.alignment.pieces import Pieces
 from estimator.alignment.turned import weighed
+from estimator.least_squares import inverse as inverse_of
 from estimator.session import Array
 
 PARTS = (5, 4, 3, 2)
@@ -69,8 +70,7 @@ def _told(
     X = np.column_stack([parts.level, parts.levers]) if named and arm.named else parts.level
     inverse = np.linalg.inv(V[np.ix_(known, known)])
     information = X[known].T @ inverse @ X[known]
-    scale = 1 / np.sqrt(np.diag(information))
-    C = np.linalg.pinv(information * np.outer(scale, scale), hermitian=True) * np.outer(scale, scale)
+    C = inverse_of(information, 1e-15)
     beta = C @ X[known].T @ inverse @ z[known]
     gain = V[np.ix_(out, known)] @ inverse
     rest = X[out] - gain @ X[known]

@@ -21,6 +21,7 @@ from estimator.alignment.positions import interval
 from estimator.alignment.results import RateTableResult
 from estimator.applied_vector import EARTH_RATE
 from estimator.errors import Problem, ScheduleError
+from estimator.least_squares import least_squares
 from estimator.results import Fit
 from estimator.session import GYROSCOPE, RATE_TABLE, Array, CalibrationSession
 from estimator.significance import p_value
@@ -140,15 +141,14 @@ def _result(session: CalibrationSession, turns: Turns, gyros: Triad) -> RateTabl
     weight = np.sqrt(turns.rows)
     design = np.column_stack([turns.rates, np.ones(len(turns.rates))])
     beyond = turns.means - turns.rates[:, None] * [0.0, 0.0, 1.0]
-    solved, *_ = np.linalg.lstsq(weight[:, None] * design, weight[:, None] * beyond)
-    residuals = beyond - design @ solved
+    solved = least_squares(weight[:, None] * design, weight[:, None] * beyond)
+    residuals, inverse = beyond - design @ solved.value, solved.covariance
     weighted = weight[:, None] * residuals
     dof = len(turns.rates) - 2
     scatter = weighted.T @ weighted / dof
-    inverse = np.linalg.inv((weight[:, None] * design).T @ (weight[:, None] * design))
     rms = float(np.sqrt(np.mean(residuals**2)))
     row_covariance, fit = _noise(gyros, scatter, dof, rms, float(np.sqrt(inverse[0, 0])))
-    estimate = solved.ravel()
+    estimate = solved.value.ravel()
     covariance = np.kron(inverse, row_covariance * fit.covariance_factor)
     if session.site.latitude is None:
         estimate[5], covariance[5], covariance[:, 5] = np.nan, np.nan, np.nan

@@ -24,25 +24,12 @@ from scipy.linalg import solve_triangular
 
 from estimator.alignment.levers import UPRIGHT
 from estimator.alignment.pieces import Pieces
+from estimator.least_squares import Fit, least_squares
 from estimator.session import Array
 from estimator.significance import p_value
 
-FLAT = 1e-9
-"""Part of the largest singular value below which a direction of columns counts as none."""
 RIVALS = ("vibration", "wobble", "delay or rate")
 """In the order of `rival_columns`."""
-
-
-@dataclass(frozen=True, eq=False)
-class Fitted:
-    """A regression: q columns, the last of them those in question."""
-
-    beta: Array
-    """(q,) in the columns' units."""
-    covariance: Array
-    """(q, q)."""
-    chi2: float
-    rank: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +41,7 @@ class Weighed:
     root: Array
     """(N, N) lower triangular, m/s²; what divides columns and values."""
 
-    def fit(self, columns: Array) -> Fitted:
+    def fit(self, columns: Array) -> Fit:
         """The regression of the values on columns (N, q), in any unit."""
         return least_squares(solve_triangular(self.root, columns, lower=True), self.values)
 
@@ -92,19 +79,6 @@ class Felt:
         return chi2 - columns * float(np.log(pieces))
 
 
-def least_squares(columns: Array, values: Array) -> Fitted:
-    """The regression of values (N,) on columns (N, q), both in standard errors."""
-    size = np.linalg.norm(columns, axis=0)
-    size = np.where(size > 0, size, 1.0)
-    u, s, vt = np.linalg.svd(columns / size, full_matrices=False)
-    kept = s > FLAT * s.max(initial=0.0)
-    u, s, vt = u[:, kept], s[kept], vt[kept]
-    along = u.T @ values
-    beta = (vt.T @ (along / s)) / size
-    spread = (vt.T / s) / size[:, None]
-    return Fitted(beta, spread @ spread.T, float(values @ values - along @ along), int(kept.sum()))
-
-
 def rival_columns(found: Pieces) -> dict[str, Array]:
     """(N, q) of every rival, each in units of its own."""
     turns = found.turns
@@ -124,7 +98,7 @@ def weighed(found: Pieces, i: int, lean: float, ratio: float = 1.0) -> Weighed:
     ratio : variance of a piece of a turn over that at rest.
     """
     white = found.density[i] / found.time * np.where(found.turn >= 0, ratio, 1.0)
-    _, p, q = least_squares(found.level, found.values[:, i]).beta
+    _, p, q = least_squares(found.level, found.values[:, i]).value
     V = np.diag(white + found.bend**2 * (p**2 + q**2))
     for number in range(found.stop.max() + 1):
         V[np.ix_(found.stop == number, found.stop == number)] += lean**2
@@ -149,15 +123,20 @@ def felt(found: Pieces, i: int, axis: Array, lean: float) -> Felt | None:
     ratio, freedom = _noise_ratio(found, i, share * lean, every, lever)
     own = weighed(found, i, share * lean, ratio)
     without, with_lever, whole = own.fit(base), own.fit(lever), own.fit(every)
-    drop = {"lever arm": (without.chi2 - with_lever.chi2, with_lever.rank - without.rank)}
-    drop["beyond"] = (with_lever.chi2 - whole.chi2, whole.rank - with_lever.rank)
+    drop = {"lever arm": drop_of(without, with_lever)}
+    drop["beyond"] = drop_of(with_lever, whole)
     for name, columns in rivals.items():
         instead = own.fit(np.column_stack([base, columns]))
         both = own.fit(np.column_stack([lever, columns]))
-        drop[name] = (without.chi2 - instead.chi2, instead.rank - without.rank)
-        drop[f"lever arm beside {name}"] = (instead.chi2 - both.chi2, both.rank - instead.rank)
-    excess = max(with_lever.chi2 / max(len(found.time) - with_lever.rank, 1), 1.0)
-    return Felt(i, with_lever.beta[3:], with_lever.covariance[3:, 3:], ratio, freedom, excess, drop)
+        drop[name] = drop_of(without, instead)
+        drop[f"lever arm beside {name}"] = drop_of(instead, both)
+    excess = max(float(with_lever.chi2) / max(with_lever.freedom, 1), 1.0)
+    return Felt(i, with_lever.value[3:], with_lever.covariance[3:, 3:], ratio, freedom, excess, drop)
+
+
+def drop_of(less: Fit, more: Fit) -> tuple[float, int]:
+    """By how much χ² drops with further columns, and how many of them count."""
+    return float(less.chi2 - more.chi2), more.rank - less.rank
 
 
 def _noise_ratio(found: Pieces, i: int, lean: float, every: Array, lever: Array) -> tuple[float, float]:
@@ -170,7 +149,7 @@ def _noise_ratio(found: Pieces, i: int, lean: float, every: Array, lever: Array)
     own = weighed(found, i, lean)
     scaled = solve_triangular(own.root, columns, lower=True)
     fit = least_squares(scaled, own.values)
-    left = (own.values - scaled @ fit.beta)[moving]
+    left = (own.values - scaled @ fit.value)[moving]
     freedom = float(moving.sum() - fit.rank)
     if freedom < 1:
         return 1.0, 0.0

@@ -18,6 +18,7 @@ from scipy.optimize import nnls
 from scipy.special import gammaincc
 
 from estimator.allan.model import Model
+from estimator.least_squares import inverse
 from estimator.session import Array
 
 DECIDED = 3.0
@@ -108,8 +109,7 @@ def _weighted(A: Array, seen: Array, C: Array) -> Array:
 def _sigmas(A: Array, C: Array) -> Array:
     """(4,) of θ, each beside all others: a term that came out as none may be there all the same."""
     information = A.T @ np.linalg.solve(C, A)
-    size = np.sqrt(np.diag(information))
-    return np.asarray(np.sqrt(np.diag(np.linalg.pinv(information / np.outer(size, size)))) / size)
+    return np.asarray(np.sqrt(np.diag(inverse(information, 1e-15))))
 
 
 def _describes(expected: Array, C: Array, seen: Array, terms: int) -> bool:

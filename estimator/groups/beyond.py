@@ -25,8 +25,9 @@ import numpy as np
 from estimator.groups.evidence import SAME, VARYING, log_sum
 from estimator.groups.layout import Hypothesis
 from estimator.groups.place import Key, Moments, key_of
-from estimator.groups.scores import batch, inverse
+from estimator.groups.scores import batch
 from estimator.groups.selection import ENOUGH, Found
+from estimator.least_squares import inverse
 
 OUTSIDE = 0.2
 """π over 1 − π: one effect in six is in no catalogue."""

@@ -13,9 +13,9 @@ from estimator.groups.pool import columns_in
 from estimator.groups.random_effects import Mean, mean_of
 from estimator.groups.results import GroupFinding, GroupStructure, Rival, SessionAmplitude
 from estimator.groups.rivals import Near, near
-from estimator.groups.scores import inverse
 from estimator.groups.selection import Found, Selection, concerns
 from estimator.groups.weighing import Scale
+from estimator.least_squares import inverse
 from estimator.session import GYROSCOPE, Array
 
 DIFFERENT = 0.01

@@ -26,6 +26,7 @@ from estimator.groups.candidates import candidates_of
 from estimator.groups.layout import EVERY
 from estimator.groups.library import library
 from estimator.groups.results import GroupFinding
+from estimator.least_squares import least_squares
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
@@ -188,11 +189,10 @@ def amplitude_in(residuals: WhitenedResiduals, added: Added) -> tuple[Array, Arr
         return added.amplitude, covariance
     trace = residuals.trace(added.columns)
     left = residuals.z - trace @ added.amplitude
-    tells, prior = trace[:, own], np.diag(1 / added.variance[own])
-    kept = np.linalg.inv(tells.T @ tells + prior)
+    fit = least_squares(trace[:, own], left, prior=1 / added.variance[own])
     value = added.amplitude.copy()
-    value[own] += kept @ (tells.T @ left)
-    covariance[np.ix_(own, own)] = kept
+    value[own] += fit.value
+    covariance[np.ix_(own, own)] = fit.covariance
     return value, covariance
 
 

@@ -14,9 +14,9 @@ from estimator.groups.evidence import VARYING
 from estimator.groups.fixed import added_by, fixed
 from estimator.groups.pool import Model, columns_in, extended, joint_columns
 from estimator.groups.results import GroupFinding, GroupGain, Moved
-from estimator.groups.scores import inverse
 from estimator.groups.selection import Selection
 from estimator.groups.terms import predictive
+from estimator.least_squares import inverse
 from estimator.session import Array, CalibrationSession
 
 FIRST = 2 / 3

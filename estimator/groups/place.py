@@ -16,9 +16,10 @@ from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.layout import EVERY, Hypothesis
 from estimator.groups.library import library
-from estimator.groups.scores import batch, inverse
+from estimator.groups.scores import LEFT, batch
 from estimator.groups.statistics import HARMONIC, SessionStatistics
-from estimator.groups.weighing import LEFT, weighed_forms
+from estimator.groups.weighing import weighed_forms
+from estimator.least_squares import inverse, orthonormal
 from estimator.session import Array
 from estimator.significance import equivalent_chi2
 
@@ -192,11 +193,7 @@ def _traced(where: Where, one: Fitted, own: Sequence[tuple[Where, Key]]) -> "Tra
     free = [residuals.trace(columns) for columns in one.elsewhere(own)]
     basis = np.zeros((len(residuals.z), 0))
     if free:
-        stacked = np.concatenate(free, axis=1)
-        size = np.linalg.norm(stacked, axis=0)
-        basis, value, _ = np.linalg.svd(stacked[:, size > 0] / size[size > 0], full_matrices=False)
-        basis = basis[:, value > 1e-3 * value[:1]]
-
+        basis = orthonormal(np.concatenate(free, axis=1), 1e-3)
     named = {k: c for k, c in causes_at(one.baseline, where).items() if k[0] != HARMONIC}
     whole = named | terms_at(one.baseline, where)
     white = residuals.whitened(np.concatenate(list(whole.values()), axis=-1))

@@ -12,7 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.groups.layout import Layout, Part
-from estimator.groups.scores import inverse
+from estimator.groups.scores import LEFT
+from estimator.least_squares import given, inverse
 from estimator.session import Array
 
 Place = tuple[int, int]
@@ -118,13 +119,10 @@ def columns_in(part: Part, place: Place) -> Array | None:
 
 def without(U: Array, E: Array, tells: Among, columns: Sequence[int]) -> tuple[Array, Array, Array]:
     """U (E,), evidence (E,) and F (E, E) given some columns left free."""
-    own, every = list(columns), range(len(U))
+    every = range(len(U))
     F = tells(*np.ix_(every, every))
-    gain = F[:, own] @ inverse(F[np.ix_(own, own)])
-    left = F - gain @ F[own]
-    gone = np.diagonal(left) < 1e-4 * np.diagonal(F)
-    left[gone], left[:, gone] = 0.0, 0.0
-    return np.where(gone, 0.0, U - gain @ U[own]), np.where(gone, 0.0, E - gain @ E[own]), left
+    scores, left = given(np.stack([U, E], axis=1), F, columns, LEFT)
+    return scores[:, 0], scores[:, 1], left
 
 
 def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -> Pool:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from estimator.groups.scores import inverse
+from estimator.least_squares import inverse
 from estimator.session import Array
 from estimator.significance import p_value
 

@@ -8,9 +8,9 @@ from estimator.diagnosis.explanation.rivals import CREDIBLE, DISTINGUISHED
 from estimator.groups.evidence import VARYING, log_sum
 from estimator.groups.layout import Hypothesis, Layout
 from estimator.groups.pool import Place, Pool, columns_in, extended, without
-from estimator.groups.scores import inverse
 from estimator.groups.selection import Found, Selection
 from estimator.groups.weighing import Scale
+from estimator.least_squares import inverse
 from estimator.session import Array
 
 

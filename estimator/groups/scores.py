@@ -5,10 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.arrays import eigh
+from estimator.diagnosis.signatures.directions import eigen_whitening
 from estimator.diagnosis.signatures.scores import FAINT
 from estimator.groups.statistics import Block
+from estimator.least_squares import given
 from estimator.session import Array
+
+LEFT = 1e-4
+"""Share of a candidate's information that others must leave, for it to be asked beside them: below it is one of them.
+"""
 
 
 def starts_of(blocks: Sequence[Block]) -> Array:
@@ -33,27 +38,10 @@ def batch(U: Array, F: Array) -> tuple[Array, Array]:
     What counts as an amplitude of its own is what counts within one session: `FAINT` of the trace, its square of the
     information.
     """
-    if U.shape[1] == 1:
-        seen = F[:, 0, 0] > 0
-        return np.where(seen, U[:, 0] ** 2 / np.where(seen, F[:, 0, 0], 1.0), 0.0), seen.astype(int)
     size = np.sqrt(np.maximum(np.diagonal(F, axis1=1, axis2=2), 0.0))
     scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
-    value, vector = eigh(F * scale[:, :, None] * scale[:, None, :])
-    live = value > FAINT**2 * np.maximum(value[:, -1:], 1e-300)
-    along = ((U * scale)[:, None, :] @ vector)[:, 0]
-    return (np.where(live, along**2 / np.where(live, value, 1.0), 0.0)).sum(axis=1), live.sum(axis=1) * (
-        value[:, -1] > 0
-    )
-
-
-def inverse(F: Array) -> Array:
-    """(q, q) pseudo-inverse of an information (q, q) in any units, its faint directions left out."""
-    size = np.sqrt(np.maximum(np.diagonal(F), 0.0))
-    scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
-    value, vector = eigh(F * scale[:, None] * scale)
-    live = value > 1e-6 * max(float(value[-1]), 1e-300) if len(value) else np.zeros(0, bool)
-    part = vector[:, live]
-    return np.asarray(scale[:, None] * (part / value[live]) @ part.T * scale)
+    turn, freedom = eigen_whitening(F * scale[:, :, None] * scale[:, None, :], size > 0, FAINT)
+    return ((((U * scale)[:, None, :] @ turn)[:, 0]) ** 2).sum(axis=1), freedom
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +65,6 @@ class Scores:
             return eigen_scores(self.blocks, self.U, self.F)
         starts = starts_of(self.blocks)
         own = np.concatenate([np.arange(starts[k], starts[k + 1]) for k in found])
-        cross = self.F[:, own] @ inverse(self.F[np.ix_(own, own)])
-        F = self.F - cross @ self.F[own]
-        gone = np.diagonal(F) < 1e-4
-        F[gone], F[:, gone] = 0.0, 0.0
-        U = np.where(gone, 0.0, self.U - cross @ self.U[own])
-        statistic, freedom = eigen_scores(self.blocks, U, F)
+        statistic, freedom = eigen_scores(self.blocks, *given(self.U, self.F, own, LEFT))
         statistic[list(found)] = 0.0
         return statistic, freedom

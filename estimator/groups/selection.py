@@ -12,9 +12,10 @@ import numpy as np
 from estimator.groups.evidence import ALPHA, SAME, SINCE, VARYING
 from estimator.groups.layout import STAND, Hypothesis, Layout
 from estimator.groups.pool import Model, Place, Pool, columns_in, pooled
-from estimator.groups.scores import batch, inverse
+from estimator.groups.scores import batch
 from estimator.groups.statistics import SessionStatistics
 from estimator.groups.weighing import Scale, weigh
+from estimator.least_squares import inverse
 from estimator.session import Array
 from estimator.significance import p_value
 

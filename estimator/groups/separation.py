@@ -15,6 +15,7 @@ from estimator.groups.findings import Told
 from estimator.groups.layout import EVERY, Hypothesis
 from estimator.groups.selection import Selection
 from estimator.groups.statistics import Block
+from estimator.least_squares import least_squares
 from estimator.session import Array, CalibrationSession
 
 MOST = 60
@@ -85,9 +86,7 @@ class Plan:
         signature = own @ amplitude
         if other is None:
             return float(signature @ signature)
-        scale = np.maximum(np.linalg.norm(other, axis=0), 1e-300)
-        value, *_ = np.linalg.lstsq(other / scale, signature, rcond=1e-9)
-        return float(((signature - other / scale @ value) ** 2).sum())
+        return float(least_squares(other, signature).chi2)
 
 
 def planned(session: CalibrationSession) -> list[Plan]:

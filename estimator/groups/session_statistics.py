@@ -29,6 +29,7 @@ from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.scores import Scores, eigen_scores
 from estimator.groups.statistics import Block, SessionStatistics, quantised, shared
+from estimator.least_squares import orthonormal
 from estimator.moments import in_utc
 from estimator.session import Array, CalibrationSession
 from estimator.significance import equivalent_chi2, p_value
@@ -217,10 +218,7 @@ def plain_basis(seen: Seen) -> Array:
     columns = [seen.trace[:, starts[k] : starts[k + 1]] for k in found]
     if not columns:
         return np.zeros((len(seen.z), 0))
-    stacked = np.concatenate(columns, axis=1)
-    size = np.linalg.norm(stacked, axis=0)
-    basis, value, _ = np.linalg.svd(stacked[:, size > 0] / size[size > 0], full_matrices=False)
-    return basis[:, value > 1e-3 * value[0]]
+    return orthonormal(np.concatenate(columns, axis=1), 1e-3)
 
 
 def plain_columns(seen: Seen) -> Array | None:

@@ -27,8 +27,9 @@ from estimator.groups.evidence import ALPHA, log_bayes, log_sum
 from estimator.groups.library import library
 from estimator.groups.pictures import Pictured, drawn, left_without, pooled_picture
 from estimator.groups.results import EmpiricalTerm
-from estimator.groups.scores import inverse
 from estimator.groups.statistics import HARMONIC
+from estimator.least_squares import given as conditional
+from estimator.least_squares import inverse, orthonormal
 from estimator.session import Array, CalibrationSession
 
 HELD_OUT = 3
@@ -70,8 +71,7 @@ class Library:
         z = residuals.z
         for b, c in columns_of(baseline) if named else ():
             if (b.cause, b.sensor, b.shape) in named:
-                basis, size, _ = np.linalg.svd(residuals.trace(c), full_matrices=False)
-                basis = basis[:, size > 1e-3 * max(size[0], 1e-300)]
+                basis = orthonormal(residuals.trace(c), 1e-3)
                 z, trace = z - basis @ (basis.T @ z), trace - basis @ (basis.T @ trace)
         starts = np.concatenate([[0], np.cumsum([len(t.words) for t in terms])]).astype(int)
         return cls(residuals, tuple((t.words, t.unit, t.variable) for t in terms), starts, columns, trace, z)
@@ -176,17 +176,9 @@ def evidence(whole: Sequence[Library], keys: Sequence[Key], given: Sequence[Key]
     for key in keys:
         U, F = moments(whole, [*given, key])
         first = F[np.argmax(F[:, known:, known:].sum(axis=(1, 2)) > 0)][known:, known:]
-        found.append(log_bayes(*conditional(U.sum(axis=0), F.sum(axis=0), known), first[None])[0])
+        score, left = conditional(U.sum(axis=0), F.sum(axis=0), range(known), 1e-3)
+        found.append(log_bayes(score[None, known:], left[None, known:, known:], first[None])[0])
     return np.array(found)
-
-
-def conditional(U: Array, F: Array, known: int) -> tuple[Array, Array]:
-    """(1, w) score and (1, w, w) information given the first ``known`` amplitudes; 0 of what those explain."""
-    cross = F[known:, :known] @ inverse(F[:known, :known])
-    left = F[known:, known:] - cross @ F[:known, known:]
-    gone = np.diagonal(left) < 1e-3 * np.diagonal(F)[known:]
-    left[gone], left[:, gone] = 0.0, 0.0
-    return np.where(gone, 0.0, U[known:] - cross @ U[:known])[None], left[None]
 
 
 def strongest(whole: Sequence[Library], every: Sequence[Key], chosen: tuple[Key, ...]) -> Key | None:

@@ -19,12 +19,8 @@ from estimator.groups.evidence import (
 )
 from estimator.groups.layout import Hypothesis
 from estimator.groups.pool import Moments, Place, Pool
-from estimator.groups.scores import batch
+from estimator.groups.scores import LEFT, batch
 from estimator.session import Array
-
-LEFT = 1e-4
-"""Share of a hypothesis' information that the joint fit must leave, for it to be weighed beside: below it is one of
-what was found."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ steps; thresholds hold over all windows and sensors together.
 import numpy as np
 from scipy.stats import t as student
 
+from estimator.least_squares import least_squares
 from estimator.readiness.results import Disturbance, Kind
 from estimator.readiness.series import Series
 from estimator.session import Array
@@ -64,9 +65,9 @@ def _is_sharp(series: Series, names: tuple[str, ...], found: tuple[int, Disturba
     after = np.arange(len(series.time))[rows] >= at
     X = np.column_stack([after, np.vander(t / np.abs(t).max(), SMOOTH + 1)])
     own = [i for i, name in enumerate(names) if name in found[1].sensors]
-    fit, left = np.linalg.lstsq(X, series.value[rows][:, own], rcond=None)[:2]
-    error = np.sqrt(left / (len(X) - X.shape[1]) * np.linalg.inv(X.T @ X)[0, 0])
-    return bool(((np.abs(fit[0]) > SURE * error) & (np.abs(fit[0]) > allowed[own])).any())
+    fit = least_squares(X, series.value[rows][:, own])
+    error, step = np.sqrt(fit.chi2 / fit.freedom * fit.covariance[0, 0]), np.abs(fit.value[0])
+    return bool(((step > SURE * error) & (step > allowed[own])).any())
 
 
 def _usual(jump: Array) -> Array:

@@ -22,7 +22,7 @@ ESTIMATOR_LAYERS = (
     {"codec"},
     {"session"},
     {"arrays", "content", "significance"},
-    {"rotations"},
+    {"least_squares", "rotations"},
     {"applied_vector", "coverage", "parameters", "reading", "rest_noise"},
     {"results", "static"},
     {"allan", "forward", "long_logs", "writing"},

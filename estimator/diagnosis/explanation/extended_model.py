@@ -18,6 +18,7 @@ from estimator.diagnosis.residuals.turns import turned_baseline, turned_session
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.least_squares import FAINT, FLAT, least_squares, orthonormal
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.rotations import turn_of
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
@@ -49,8 +50,7 @@ def amplitudes(state: SearchState) -> Amplitudes:
     z = state.residuals.z
     if state.structures:
         pattern = np.concatenate([s.best.trace for s in state.structures], axis=1)
-        basis, size, _ = np.linalg.svd(pattern, full_matrices=False)
-        basis = basis[:, size > 1e-9 * size[0]]
+        basis = orthonormal(pattern, FLAT)
         z = z - basis @ (basis.T @ z)
     raw = np.concatenate([np.linalg.norm(state.residuals.whitened(s.shape.columns), axis=0) for s in found])
     shown = np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * raw)
@@ -66,8 +66,7 @@ def amplitude_beside(state: SearchState, found: Found) -> tuple[Array, Array]:
     standard errors per unit amplitude."""
     attributed = state.attributed(without=found)
     columns = found.best.trace - attributed @ (attributed.T @ found.best.trace)
-    value, *_ = np.linalg.lstsq(columns, state.residuals.z, rcond=1e-6)
-    return np.asarray(value), columns
+    return least_squares(columns, state.residuals.z, FAINT).value, columns
 
 
 def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSession:

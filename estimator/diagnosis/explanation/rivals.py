@@ -13,6 +13,7 @@ from estimator.diagnosis.results import Rival, Separation
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.scores import WORTH
 from estimator.diagnosis.signatures.traces import Scored
+from estimator.least_squares import least_squares
 from estimator.session import Array
 
 CREDIBLE = 0.995
@@ -60,9 +61,7 @@ def separation(signature: Array, rival: Array, attributed: Array) -> float:
     ``attributed`` (n, f) orthonormal traces of the other findings, projected out of the rival's.
     """
     columns = rival - attributed @ (attributed.T @ rival)
-    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    value, *_ = np.linalg.lstsq(columns / scale, signature, rcond=1e-9)
-    return float(np.linalg.norm(signature - columns / scale @ value))
+    return float(np.sqrt(least_squares(columns, signature).chi2))
 
 
 def separations(state: SearchState, found: Found, others: Sequence[Scored]) -> tuple[Separation, ...]:

@@ -15,6 +15,7 @@ from estimator.causes.record import exchange_rows
 from estimator.diagnosis.record.record_error import BETTER, Attempt, RecordError
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.least_squares import FLAT, orthonormal
 from estimator.session import Array
 
 GROSS = 20.0
@@ -73,8 +74,7 @@ def exchange_gains(baseline: Baseline, pairs: Sequence[tuple[int, int]]) -> Arra
     j, k = np.array(pairs).T
     for i in range(m):
         design = baseline.design[:, i, :] * weight[:, i, None]
-        left, size, _ = np.linalg.svd(design, full_matrices=False)
-        basis = left[:, size > 1e-9 * size[0]]
+        basis = orthonormal(design, FLAT)
         jump = measured[k, i] - measured[j, i]
         change = np.zeros((len(pairs), R))
         change[each, j], change[each, k] = jump * weight[j, i], -jump * weight[k, i]

@@ -15,6 +15,7 @@ from estimator.calibration.free.excess import UNLIKELY
 from estimator.calibration.free.model import linearise
 from estimator.calibration.free.model import predicted as readings_of
 from estimator.calibration.free.solve import Solution
+from estimator.least_squares import least_squares
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 from estimator.significance import p_value
 
@@ -86,11 +87,10 @@ def on_stand(session: CalibrationSession, cells: Cells) -> Expected | None:
     if freedom < SPARE or np.abs(terms[left_out] - terms[left_out] @ seen.T @ seen).max() > SEEN:
         return None
     basis = terms @ seen.T
-    coefficients, *_ = np.linalg.lstsq(basis[kept], session.readings[kept, i], rcond=None)
-    rest = session.readings[kept, i] - basis[kept] @ coefficients
-    variance = float(rest @ rest) / freedom + (EXACT * np.ptp(session.readings[:, i])) ** 2
-    lean = basis[left_out] @ np.linalg.inv(basis[kept].T @ basis[kept]) @ basis[left_out].T
-    return Expected(basis[left_out] @ coefficients, variance * (np.eye(len(left_out)) + lean), freedom)
+    fit = least_squares(basis[kept], session.readings[kept, i])
+    variance = float(fit.chi2) / freedom + (EXACT * np.ptp(session.readings[:, i])) ** 2
+    lean = basis[left_out] @ fit.covariance @ basis[left_out].T
+    return Expected(basis[left_out] @ fit.value, variance * (np.eye(len(left_out)) + lean), freedom)
 
 
 def explained(session: CalibrationSession) -> bool:

@@ -14,6 +14,7 @@ from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.gauge import observable_directions
 from estimator.diagnosis.residuals.whitener import RANK, Whitener
 from estimator.forward import jacobian
+from estimator.least_squares import decomposed
 from estimator.parameters import PLAUSIBLE, SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
@@ -30,12 +31,8 @@ class Absorption:
     @classmethod
     def of(cls, design: Array, P: int) -> "Absorption":
         """Of a whitened design (N, P + k), standard errors per unit."""
-        size = np.linalg.norm(design, axis=0)
-        scale = np.where(size > 0, size, 1.0)
-        left, size, right = np.linalg.svd(design / scale, full_matrices=False)
-        kept = size > RANK * size[0]
-        response = (right[kept].T / size[kept]) @ left[:, kept].T / scale[:, None]
-        return cls(left[:, kept], response[:P])
+        basis, response = decomposed(design, RANK)
+        return cls(basis, response[:P])
 
 
 @dataclass(frozen=True, eq=False)

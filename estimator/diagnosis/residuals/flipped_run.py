@@ -15,6 +15,7 @@ from estimator.causes.fixture import FlipMisalignment
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.least_squares import FAINT, least_squares
 from estimator.parameters import SensorParameters
 from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
 
@@ -46,7 +47,7 @@ def about_its_flip(found: Baseline, start: SensorParameters | None = None) -> Ba
     for _ in range(ROUNDS):
         residuals = WhitenedResiduals.of(found)
         trace = residuals.trace(found.setting.through(cause.change(found.setting)))
-        turn, *_ = np.linalg.lstsq(trace, residuals.z, rcond=1e-6)
+        turn = least_squares(trace, residuals.z, FAINT).value
         apart = np.linalg.norm(turn - found.session.flip_turn)
         if apart < SMALL or np.linalg.norm(turn) > LARGEST:
             break

@@ -10,6 +10,7 @@ from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.lasting import absorbed_before
 from estimator.diagnosis.signatures.scores import rescored
 from estimator.diagnosis.signatures.traces import Scored
+from estimator.least_squares import FAINT, least_squares
 from estimator.session import Array
 
 VAGUE = 2.0
@@ -40,11 +41,8 @@ def vague(state: SearchState, found: Found, best: Scored) -> bool:
     """Whether a refined shape leaves the amplitudes unknown."""
     attributed = state.attributed(without=found)
     columns = best.trace - attributed @ (attributed.T @ best.trace)
-    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    covariance = np.linalg.pinv((columns / scale).T @ (columns / scale), rcond=1e-12, hermitian=True)
-    value = covariance @ ((columns / scale).T @ state.residuals.z)
-    own = slice(0, len(best.cause.units))
-    return bool(np.all(np.abs(value[own]) < VAGUE * np.sqrt(np.diagonal(covariance)[own])))
+    fit, own = least_squares(columns, state.residuals.z, FAINT), slice(0, len(best.cause.units))
+    return bool(np.all(np.abs(fit.value[own]) < VAGUE * np.sqrt(np.diagonal(fit.covariance)[own])))
 
 
 def plainer(state: SearchState, found: Found) -> Found:

@@ -13,6 +13,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.applied_course import AppliedCourse
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, NoiseClaim, UnlikeNoise
 from estimator.diagnosis.signatures.traces import Group, Scored, Traces
+from estimator.least_squares import orthonormal
 from estimator.session import Array
 
 LEVEL = 0.003
@@ -124,7 +125,4 @@ class SearchState:
         parts = [f.best.trace for f in (*self.found, *self.structures) if f is not without]
         if not parts:
             return np.zeros((len(self.residuals.z), 0))
-        columns = np.concatenate(parts, axis=1)
-        norms = np.linalg.norm(columns, axis=0)
-        basis, size, _ = np.linalg.svd(columns[:, norms > 0] / norms[norms > 0], full_matrices=False)
-        return basis[:, size > NEW_DIRECTION * size[0]]
+        return orthonormal(np.concatenate(parts, axis=1), NEW_DIRECTION)

@@ -15,6 +15,7 @@ from estimator.diagnosis.signatures.lasting import traces_of
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.patterns import PATTERNS
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
+from estimator.least_squares import orthonormal
 from estimator.session import Array
 
 ROUNDS = 20
@@ -112,8 +113,7 @@ def left_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> tuple[
     if named is not None:
         trace, raw = residuals.trace(named)[:rows], np.linalg.norm(residuals.whitened(named), axis=0)
         shown = np.linalg.norm(trace, axis=0) > INVISIBLE * raw
-        basis, size, _ = np.linalg.svd(trace[:, shown] / raw[shown], full_matrices=False)
-        basis = basis[:, size > NEW_DIRECTION * size.max(initial=0.0)]
+        basis = orthonormal(trace[:, shown], NEW_DIRECTION)
         z, freedom = z - basis @ (basis.T @ z), freedom - (basis**2).sum(axis=1)
     own = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
     return own @ z**2, own @ freedom
