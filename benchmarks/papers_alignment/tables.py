@@ -3,13 +3,12 @@
 import numpy as np
 
 from benchmarks.papers.markdown import section, table
+from benchmarks.papers_alignment.observability import expected, gramian, mounting_effect, planned_path
 from benchmarks.papers_alignment.runs import MOUNTING, QUIET, SITE, TRUTH, Errors, G, errors
 from estimator.alignment import Model, rate_table
 from estimator.alignment.filtering import Setting
 from estimator.alignment.noise import Noise
-from estimator.alignment.observability import expected, gramian, planned_path
 from estimator.alignment.simulate import Imperfections, Programme, Truth, simulate_rate_table, triads
-from estimator.alignment.sins import mounting_effect
 from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Site

@@ -18,6 +18,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from benchmarks.study.group_page import page
+from benchmarks.study.looks import e_process
 from estimator import (
     CalibrationSession,
     GroupDiagnosis,
@@ -28,7 +29,6 @@ from estimator import (
     statistics_of,
 )
 from estimator.groups.evidence import ALPHA
-from estimator.groups.looks import e_process
 from estimator.groups.terms import HELD_OUT, learn, libraries
 from tests.blind.group_score import score
 from tests.blind.groups import OF_GRAMMAR, OUTSIDE, Group, draw_group

@@ -134,19 +134,3 @@ def process_noise(path: Path, Phi: Array, accelerometer: Array, gyro: Array) -> 
     density[:, V, V] = (C @ accelerometer @ C.swapaxes(1, 2))[:, :2, :2]
     density[:, PHI, PHI] = C @ gyro @ C.swapaxes(1, 2)
     return 0.5 * path.step * (density + Phi @ density @ Phi.swapaxes(1, 2))
-
-
-def mounting_effect(E_xz: float, E_yz: float, g: float) -> dict[str, float]:
-    """What unmodelled mounting errors leave in the estimates after a half turn about the vertical, equation (5).
-
-    Parameters
-    ----------
-    E_xz, E_yz : rad.
-    g : m/s².
-
-    Returns
-    -------
-    Estimate minus truth: ``phi_E``, ``phi_N`` rad along the block's x and y before the turn, ``nabla_x``, ``nabla_y``
-    m/s². East and north where the block starts with its x axis to the east, as in the paper.
-    """
-    return {"phi_E": -E_yz, "phi_N": E_xz, "nabla_x": -E_xz * g, "nabla_y": -E_yz * g}

@@ -61,8 +61,6 @@ class Judgement:
 
     odds: float
     """ln odds of the library against the catalogue."""
-    misfit: float
-    """ln evidence of the library given the names."""
     words: Key
     """Of the terms that explain most without a name."""
     statistic: float
@@ -101,7 +99,7 @@ def judged(moments: Moments, names: Sequence[Found]) -> Judgement:
     small = max((statistic for _, statistic in left.values()), default=0.0) < nearly
     fits = (misfit < ENOUGH or small) and surely < DECISIVE + 0.5 * nearly
     kept = () if fits else held(moments, names, chain)
-    return Judgement(odds, misfit, tuple(w for k in chain for w in k), explained, tuple(names), kept, fits)
+    return Judgement(odds, tuple(w for k in chain for w in k), explained, tuple(names), kept, fits)
 
 
 def total(values: Iterable[np.ndarray]) -> float:

@@ -65,12 +65,6 @@ def _paths(k: int, ahead: bytes) -> Array:
     return np.cumsum(taken * np.sqrt(steps), axis=2)
 
 
-def passage(draws: Draws, prior: Prior, swing: Array | float, rng: np.random.Generator) -> Array:
-    """(h,) probability, never falling, that the tolerance has been reached by `AHEAD`; arguments are those of
-    `staying`."""
-    return passed(draws.weight, staying(draws, prior, swing, rng))
-
-
 def passed(weight: Array, stays: Array) -> Array:
     """(h,) probability, never falling, of draws with weights (N,) that stay within with chances (N, h)."""
     return np.asarray(np.maximum.accumulate(np.clip(1 - weight @ stays, 0.0, 1.0)))

@@ -86,13 +86,9 @@ def of_each(covariance: Array) -> Array:
     return np.asarray(covariance.reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)])
 
 
-def turn_between(now: Baseline, earlier: Baseline) -> Array:
-    """(3, 3) rotation, dimensionless, that takes the axes of an earlier session onto those of ``now``."""
-    return np.asarray(turns_between([now], [earlier])[0])
-
-
 def turns_between(nows: Sequence[Baseline], earlier: Sequence[Baseline]) -> Array:
-    """(H, 3, 3) the same of H pairs of sessions of the same sensors; each iterates until it has settled itself."""
+    """(H, 3, 3) rotations, dimensionless, that take the axes of earlier sessions onto those of as many ``nows`` of the
+    same sensors; each iterates until it has settled itself."""
     p, q = together([b.parameters for b in nows]), together([b.parameters for b in earlier])
     own, origin = (np.stack([of_each(b.covariance) for b in each]) for each in (nows, earlier))
     norm, frames = np.stack([b.setting.norm for b in nows]), q.axis_tangents

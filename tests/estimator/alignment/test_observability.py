@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from benchmarks.papers_alignment.observability import Expected, expected, gramian, hidden, planned_path
 from estimator.alignment.filtering import Setting
 from estimator.alignment.noise import Noise
-from estimator.alignment.observability import Expected, expected, gramian, hidden, planned_path
 from estimator.alignment.simulate import Programme
 from estimator.alignment.sins import PHI, Model, dynamics, earth_rate
 from estimator.results import ARCSEC

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from benchmarks.papers_alignment.observability import mounting_effect
 from estimator.alignment.simulate import Truth
-from estimator.alignment.sins import Model, mounting_effect
+from estimator.alignment.sins import Model
 from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Site

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.study.looks import e_process
 from estimator import CalibrationSession, diagnose_group, diagnose_statistics, statistics_of
-from estimator.groups.looks import e_process
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from estimator.health.forecast import AHEAD, earliest, future, passage, reach, staying, together
+from estimator.health.forecast import AHEAD, earliest, future, passed, reach, staying, together
 from estimator.health.pooled import Prior, general_prior, learn
 from estimator.health.posterior import Draws
 from estimator.health.prognosis import Track, evidence, prognosis
@@ -32,7 +32,7 @@ def draws(count: int, level: Array, rate: float = 0.0, strength: float = 0.0) ->
 
 
 def chance_in(years: float, of: Draws, prior: Prior = NEVER, swing: float = 0.0) -> float:
-    return float(np.interp(years, AHEAD, passage(of, prior, swing, np.random.default_rng(1))))
+    return float(np.interp(years, AHEAD, passed(of.weight, staying(of, prior, swing, np.random.default_rng(1)))))
 
 
 def test_the_first_passage_of_a_drifting_walk_is_the_closed_form() -> None:

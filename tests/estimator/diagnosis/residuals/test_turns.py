@@ -12,7 +12,7 @@ from estimator import CalibrationSession, Diagnosis, diagnose
 from estimator.causes.fixture import RemountRotation
 from estimator.diagnosis.residuals.common_start import baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.turns import in_the_frame_of, turn_between, turned_baseline
+from estimator.diagnosis.residuals.turns import in_the_frame_of, turned_baseline, turns_between
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.parameters import SensorParameters
 from estimator.session import ACCELEROMETER, Array
@@ -61,7 +61,7 @@ def test_a_baseline_turned_into_another_frame_leaves_the_same_residuals() -> Non
 @pytest.mark.parametrize("alone", [0.0, 0.02])
 def test_the_turn_between_two_sessions_is_found_though_one_sensor_moved_alone(alone: float) -> None:
     now, earlier = (baseline_of(s) for s in (measured(1, TURN, alone), measured(2, np.zeros(3))))
-    apart = Rotation.from_matrix(turn_between(now, earlier) @ matrix(TURN).T).as_rotvec()
+    apart = Rotation.from_matrix(turns_between([now], [earlier])[0] @ matrix(TURN).T).as_rotvec()
     assert np.linalg.norm(apart) < 5e-5
 
 

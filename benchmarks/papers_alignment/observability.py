@@ -123,3 +123,19 @@ def hidden(attitude: Array, E_xz: float, E_yz: float, g: float) -> Array:
     state[NABLA] = g * np.array([E_xz, E_yz])
     state[10:12] = E_xz, E_yz
     return state
+
+
+def mounting_effect(E_xz: float, E_yz: float, g: float) -> dict[str, float]:
+    """What unmodelled mounting errors leave in the estimates after a half turn about the vertical, equation (5).
+
+    Parameters
+    ----------
+    E_xz, E_yz : rad.
+    g : m/s².
+
+    Returns
+    -------
+    Estimate minus truth: ``phi_E``, ``phi_N`` rad along the block's x and y before the turn, ``nabla_x``, ``nabla_y``
+    m/s². East and north where the block starts with its x axis to the east, as in the paper.
+    """
+    return {"phi_E": -E_yz, "phi_N": E_xz, "nabla_x": -E_xz * g, "nabla_y": -E_yz * g}
