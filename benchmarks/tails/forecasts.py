@@ -15,9 +15,8 @@ from estimator.health.fits import Readings
 from estimator.health.forecast import earliest, staying
 from estimator.health.pooled import Prior
 from estimator.health.posterior import Draws, draw
-from estimator.health.prognosis import prognosis
+from estimator.health.prognosis import felt, prognosis, swing, ways
 from estimator.health.shapes import DRIFTS, courses
-from estimator.health.ways import felt, swing, ways
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,7 @@ from estimator.diagnosis.explanation.record_findings import (
     wrong_record,
 )
 from estimator.diagnosis.explanation.temperature import temperatures, with_temperature
-from estimator.diagnosis.record.clipping import Clip, unclipped
-from estimator.diagnosis.record.earlier import earlier_baseline
+from estimator.diagnosis.record.clipping import Clip, earlier_baseline, unclipped
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
 from estimator.diagnosis.record.record_error import RecordError

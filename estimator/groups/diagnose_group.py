@@ -11,14 +11,13 @@ import numpy as np
 from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.naming import sentence
 from estimator.groups.findings import LARGEST, Told, finding_of, structures, told
-from estimator.groups.gain import gain_of
+from estimator.groups.gain import gain_of, names_that_predict
 from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import EVERY, LEVELS, STAND, TYPE, UNIT, Layout
 from estimator.groups.limits import limits
 from estimator.groups.pictures import pictures
 from estimator.groups.place import Where
 from estimator.groups.pool import Model, pooled
-from estimator.groups.predicts import names_that_predict
 from estimator.groups.results import EmpiricalTerm, GroupDiagnosis, GroupFinding
 from estimator.groups.selection import Selection, select
 from estimator.groups.separation import Separator

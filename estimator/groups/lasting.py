@@ -17,9 +17,9 @@ from estimator.causes.contract import Cause
 from estimator.diagnosis.results import Rival
 from estimator.groups.evidence import log_sum
 from estimator.groups.findings import Told, finding_of, told
+from estimator.groups.gain import names_that_predict
 from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import UNIT, Layout
-from estimator.groups.predicts import names_that_predict
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding
 from estimator.groups.selection import select

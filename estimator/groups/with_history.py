@@ -18,7 +18,7 @@ from estimator.diagnosis.diagnose import PutRight, diagnosed, put_right
 from estimator.diagnosis.diagnose import diagnose as by_itself
 from estimator.diagnosis.explanation.extended_model import enlarged
 from estimator.diagnosis.explanation.naming import merged, named_cause
-from estimator.diagnosis.record.earlier import earlier_baseline
+from estimator.diagnosis.record.clipping import earlier_baseline
 from estimator.diagnosis.record.silent import silent_channels
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline

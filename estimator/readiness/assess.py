@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.readiness.course import WIDE, Course, courses, first_scatter
+from estimator.readiness.course import WIDE, Course, courses, first_scatter, needed, wander
 from estimator.readiness.creep import turn
 from estimator.readiness.faults import Fault, content_faults, force_of, is_spatial, readable
 from estimator.readiness.forecast import LIKELY, Drawn, departures, drawn, wait
-from estimator.readiness.needed import needed, wander
 from estimator.readiness.question import Question
 from estimator.readiness.results import Disturbance, Kind, Outlook, Readiness, State
 from estimator.readiness.series import Series

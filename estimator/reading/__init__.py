@@ -8,7 +8,7 @@ extent    how much a file may hold
 problems  the faults found on the way; none of the parts raises one by itself
 """
 
-from estimator.reading.extent import Extent
+from estimator.reading.problems import Extent
 from estimator.reading.session_file import read_session
 
 __all__ = ["Extent", "read_session"]

@@ -1,9 +1,23 @@
 """Every fault of one session file, collected so that all are reported at once."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 from estimator.errors import FormatError, Problem, ScheduleError
-from estimator.reading.extent import Extent
+
+
+@dataclass(frozen=True)
+class Extent:
+    """The most that a file may hold. As they stand: what fits into a text of the largest size (`source`)."""
+
+    rows: int = 10**7
+    columns: int = 10**4
+    """The readings and standard errors of `sensors.MOST` sensors, and others five times as many."""
+    cells: int = 10**8
+    """Rows × columns."""
+    nesting: int = 32
+    """Lists and objects of JSON within each other; a session has four."""
+
 
 ROWS_SHOWN = 5
 """Faulty rows of one column that are named one by one; the others are counted. A fault of every row is one."""

@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from estimator.reading.bounds import WITHIN
-from estimator.reading.extent import Extent
 from estimator.reading.fields import Fields
 from estimator.reading.keys import FORMAT, TOP, check_keys
-from estimator.reading.problems import Problems, Where, shown
+from estimator.reading.problems import Extent, Problems, Where, shown
 from estimator.reading.schedule import check_schedule
 from estimator.reading.sensors import KINDS, check_pulses, read_sensors
 from estimator.reading.setting import read_mounting, read_site, read_stand, read_started_at

@@ -13,8 +13,12 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
+from estimator.calibration.calibrate import averaged
 from estimator.causes.contract import Cause
+from estimator.content import remembered
 from estimator.diagnosis.record.expected import Expected, explained, in_orientations, on_stand
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 FEWEST = 2
@@ -141,3 +145,14 @@ def expectations(session: CalibrationSession, suspects: Sequence[Suspect]) -> li
         ends = np.cumsum([0, *(len(s.rows) for s in sides)])
         found += [None if together is None else together.of(slice(a, b)) for a, b in pairwise(ends)]
     return found
+
+
+@remembered
+def earlier_baseline(session: CalibrationSession, catalogue: tuple[Cause, ...]) -> Baseline:
+    """The baseline of an earlier session, without its clipped readings.
+
+    Raises
+    ------
+    ScheduleError : the session cannot be calibrated at all.
+    """
+    return baseline_of(unclipped(averaged(session), catalogue)[1])

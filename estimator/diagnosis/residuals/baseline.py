@@ -3,6 +3,12 @@
 Two programmes give the same picture: on a stand the applied vector is known up to the stand's errors, in arbitrary
 orientations it is estimated row by row. In both, a row carries nuisance columns of its own (the β error with its
 sigma; the two turns of an unknown direction with an infinite one) and the session carries constant ones.
+
+Gauge freedom: in arbitrary orientations all axes may turn together, and every applied vector with them, unseen.
+
+A session is whitened by the inverse root of the noise covariance of every row, D + H S H' with D diagonal: rows are
+taken in each sensor's own sigma, then the row's nuisance directions are shrunk by 1/√(1 + s²), to zero where s is
+infinite.
 """
 
 from dataclasses import dataclass, field
@@ -10,13 +16,81 @@ from functools import cached_property
 
 import numpy as np
 
+from estimator.arrays import crossed
 from estimator.causes.contract import Setting
-from estimator.diagnosis.residuals.gauge import observable_directions
-from estimator.diagnosis.residuals.whitener import RANK, Whitener
 from estimator.forward import jacobian
 from estimator.least_squares import decomposed
 from estimator.parameters import PLAUSIBLE, SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+RANK = 1e-9
+"""Relative singular value below which a direction of the baseline or of a row's nuisances counts as none: rounding
+leaves 1e-16 to 1e-14 where a session observes nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Whitener:
+    """Inverse root of the noise covariance of every row. R rows, m sensors, r nuisances a row."""
+
+    weight: Array
+    """(R, m) inverse sigma of the independent noise, 1/(m/s²) (1/(rad/s))."""
+    direction: Array
+    """(R, m, r) orthonormal nuisance directions in units of the independent noise."""
+    removed: Array
+    """(R, r) share of each direction that is taken away, 1 − 1/√(1 + s²)."""
+
+    @classmethod
+    def of(cls, variance: Array, row: Array, row_sigma: Array) -> "Whitener":
+        """From the noise and the nuisances of every row, as in `Baseline`."""
+        weight = 1.0 / np.sqrt(variance)
+        unknown = np.isinf(row_sigma)
+        sigma = np.where(unknown, 1.0, row_sigma)
+        scaled = row * weight[..., None] * sigma[:, None, :]
+        direction, size, _ = np.linalg.svd(scaled, full_matrices=False)
+        removed = 1 - 1 / np.sqrt(1 + size**2)
+        acts = size > RANK * np.maximum(size[:, :1], np.finfo(float).tiny)
+        return cls(weight, direction, np.where(unknown.any(axis=1, keepdims=True) & acts, 1.0, removed))
+
+    def __call__(self, columns: Array) -> Array:
+        """(R·m, q) standard errors: columns (R, m, q), m/s² (rad/s), whitened."""
+        x = columns * self.weight[..., None]
+        along = np.swapaxes(self.direction, -1, -2) @ x
+        x = x - self.direction @ (along * self.removed[..., None])
+        return x.reshape(-1, columns.shape[-1])
+
+    def transposed(self, rows: Array) -> Array:
+        """(P, R, m) per m/s² (rad/s): rows (P, R, m) that act on what is whitened, acting on what is not."""
+        along = rows[:, :, None, :] @ self.direction * self.removed[:, None, :]
+        return (rows - (along @ np.swapaxes(self.direction, -1, -2))[:, :, 0]) * self.weight
+
+    @property
+    def projected_out(self) -> Array:
+        """(R, r) bool, dimensionless: nuisance directions of which nothing is known beforehand."""
+        return self.removed == 1
+
+
+def observable_directions(free: Array, parameters: SensorParameters) -> Array:
+    """(P, q) orthonormal, dimensionless: every direction of the P = 5 m parameters but a common turn of free axes.
+
+    ``free`` (m,) bool, `Baseline.gauge_free`.
+    """
+    if not free.any():
+        return np.eye(5 * len(free))
+    turn = turn_response(parameters) * np.repeat(free, 5)[:, None]
+    directions, _, _ = np.linalg.svd(turn)
+    return np.asarray(directions[:, 3:])
+
+
+def turn_response(parameters: SensorParameters) -> Array:
+    """(P, 3) per rad: change of all P = 5 m parameters with a small rotation of the block; leading axes are free."""
+    response = np.zeros((*parameters.scale.shape, 5, 3))
+    response[..., 3:, :] = axis_response(parameters)
+    return response.reshape(*parameters.scale.shape[:-1], -1, 3)
+
+
+def axis_response(parameters: SensorParameters) -> Array:
+    """(m, 2, 3) rad per rad: tangent components of every axis' response k×e to a small rotation vector k."""
+    return np.asarray(np.swapaxes(parameters.axis_tangents, -1, -2) @ crossed(parameters.axis))
 
 
 @dataclass(frozen=True, eq=False)

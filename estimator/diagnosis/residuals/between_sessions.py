@@ -13,9 +13,8 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.causes.fixture import turned
-from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.baseline import Baseline, observable_directions, turn_response
 from estimator.diagnosis.residuals.flipped_run import flip_effect
-from estimator.diagnosis.residuals.gauge import observable_directions, turn_response
 from estimator.diagnosis.residuals.whitened import (
     EarlierSession,
     ParameterChange,

@@ -13,9 +13,8 @@ small a noise of one sensor shows in all of them: what they share of a row, its 
 
 import numpy as np
 
-from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.baseline import RANK, Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.residuals.whitener import RANK
 from estimator.session import Array
 
 

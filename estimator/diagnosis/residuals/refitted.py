@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
-from estimator.diagnosis.residuals.baseline import Baseline, block_columns
+from estimator.diagnosis.residuals.baseline import Baseline, block_columns, observable_directions
 from estimator.diagnosis.residuals.flipped_run import flip_effect
-from estimator.diagnosis.residuals.gauge import observable_directions
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.parameters import PLAUSIBLE
 

@@ -16,9 +16,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.diagnosis.residuals.baseline import Absorption, Baseline
+from estimator.diagnosis.residuals.baseline import Absorption, Baseline, turn_response
 from estimator.diagnosis.residuals.between_sessions import carried, carried_each, deviation, inverse_root
-from estimator.diagnosis.residuals.gauge import turn_response
 from estimator.parameters import together
 from estimator.rotations import common_turn, turn_of, vector_of
 from estimator.session import Array, CalibrationSession

@@ -16,8 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from estimator.causes.contract import Setting
-from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.whitener import Whitener
+from estimator.diagnosis.residuals.baseline import Baseline, Whitener
 from estimator.session import Array
 
 

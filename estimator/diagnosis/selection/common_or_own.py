@@ -13,20 +13,86 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import expit
 
+from estimator.calibration.noise import typical, with_the_others
+from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.refitted import refitted
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER, weighed
-from estimator.diagnosis.selection.crowd import crowded, without_crowd
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
+from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.lack_of_fit import MISFIT
-from estimator.diagnosis.selection.parity_space import in_parity_space
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.selection.shared_event import with_shared_event
 from estimator.diagnosis.selection.start import begun_with
-from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course
+from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course, components
 from estimator.diagnosis.signatures.scores import score
 from estimator.diagnosis.signatures.traces import Group, Scored
 from estimator.session import Array
+
+ROUNDS = 8
+"""Steps of the noise in parity space: each halves what is left at least."""
+
+
+def in_parity_space(start: SearchState, *, size: bool) -> SearchState:
+    """The search begun where no applied vector is believed: each row's is free, as in arbitrary orientations.
+
+    The parameters are fitted anew beside the free vectors, so that they too are what parity alone makes of them.
+    """
+    baseline, setting = start.baseline, start.baseline.setting
+    turns = [p.columns for p in components(setting) if size or p.words != SIZE]
+    if not turns:
+        return replace(start, traces=(), patterns=())
+    sigma = np.full((setting.rows, len(turns)), np.inf)
+    free = refitted(renoised(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
+    return begun_with(start, free)
+
+
+def renoised(free: Baseline) -> Baseline:
+    """A baseline in parity space with the noise that is not stated estimated there (restricted likelihood).
+
+    The others of a kind are taken to be alike, as everywhere (`calibration.noise`).
+    """
+    variance, m = free.variance.copy(), len(free.unstated)
+    if not free.unstated.any():
+        return free
+    for _ in range(ROUNDS):
+        residuals = WhitenedResiduals.of(replace(free, variance=variance))
+        rows = residuals.rows
+        own = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
+        energy, freedom = own @ residuals.z[:rows] ** 2, own @ residuals.row_freedom
+        value = np.where(free.unstated, variance.mean(axis=0), np.nan)
+        expected = typical(value[None], free.unstated[None], free.setting.norm)[0] / variance.mean(axis=0)
+        energy, freedom = with_the_others(energy, freedom, expected)
+        variance = variance * np.where(free.unstated, energy / np.maximum(freedom, 1.0), 1.0)
+    return replace(free, variance=variance)
+
+
+MOST_LIKELY = 2
+"""Different names in one session that are believed without a look at parity space."""
+
+
+def without_crowd(state: SearchState, held_there: Set[Group]) -> SearchState:
+    """The state without a crowd of names that parity space does not bear out, where none explains half of what they do.
+
+    ``held_there``: what holds in parity space.
+    """
+    if not crowded(state):
+        return state
+    loose = [f for f in state.found if f.best.group not in held_there]
+    share = [f.best.statistic for f in loose]
+    if len({f.best.cause.identifier for f in loose}) <= MOST_LIKELY or max(share) > 0.5 * sum(share):
+        return state
+    kept = tuple(f for f in state.found if f not in loose)
+    left = with_structures(replace(state, found=kept, structures=()))
+    return left if left.structures else state
+
+
+def crowded(state: SearchState) -> bool:
+    """Whether more happened than misfortunes are likely at once: different names, structures, sensors that scatter."""
+    names = {f.best.cause.identifier for f in state.found}
+    return len(names) + bool(state.structures) + len(state.scatter_attributed) > MOST_LIKELY
+
 
 DISTINCT = 5.3
 """ln evidence by which a set of names must beat a course for the course to be no alternative: odds of 200."""

@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import chi2
 
 from benchmarks.papers_alignment.observability import planned_path
-from estimator.alignment.kalman import KalmanState, correct, predict
+from estimator.alignment.filtering import KalmanState, correct, predict
 from estimator.alignment.noise import at_rest
 from estimator.alignment.simulate import Imperfections, Programme, Truth, true_attitude, true_motion
 from estimator.alignment.sins import Model, dynamics, earth_rate, transition

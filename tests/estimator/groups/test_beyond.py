@@ -9,9 +9,9 @@ import pytest
 from estimator import CalibrationSession, diagnose, diagnose_group, diagnose_statistics, statistics_of
 from estimator.causes.catalogue import UNEXPLAINED
 from estimator.groups.evidence import SAME
+from estimator.groups.gain import gained, names_that_predict
 from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import TERMS, UNIT, Layout
-from estimator.groups.predicts import gained, names_that_predict
 from estimator.groups.selection import Found, Selection, select
 from estimator.groups.session_statistics import as_kept
 from estimator.groups.terms import Library, confirmed

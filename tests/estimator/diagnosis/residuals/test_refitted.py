@@ -7,10 +7,10 @@ import pytest
 
 from benchmarks.study.turned_pairs import PROGRAMMES, draw_flipped
 from estimator import read_session
+from estimator.diagnosis.residuals.baseline import turn_response
 from estimator.diagnosis.residuals.between_sessions import deviation
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
-from estimator.diagnosis.residuals.gauge import turn_response
 from estimator.diagnosis.residuals.refitted import refitted
 from tests.blind.cases import draw_case
 from tests.estimator.calibration.cases import CASES

@@ -9,8 +9,7 @@ from estimator.causes import cause
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.selection.acceptance import held
-from estimator.diagnosis.selection.common_or_own import common_or_own, settled, weighed
-from estimator.diagnosis.selection.parity_space import in_parity_space
+from estimator.diagnosis.selection.common_or_own import common_or_own, in_parity_space, settled, weighed
 from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.start import begin
 from estimator.session import Array
