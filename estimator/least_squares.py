@@ -71,10 +71,15 @@ def orthonormal(columns: Array, faint: float) -> Array:
     return basis[:, value > faint * value.max(initial=0.0)]
 
 
+def scale_of(F: Array) -> Array:
+    """(…, q) by which an information (…, q, q) has a diagonal of one; 0 of what it says nothing of."""
+    size = np.sqrt(np.maximum(np.diagonal(F, axis1=-2, axis2=-1), 0.0))
+    return np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
+
+
 def inverse(F: Array, faint: float = FAINT) -> Array:
     """(q, q) pseudo-inverse of an information (q, q) in any units, its faint directions left out."""
-    size = np.sqrt(np.maximum(np.diagonal(F), 0.0))
-    scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
+    scale = scale_of(F)
     value, vector = eigh(F * scale[:, None] * scale)
     live = value > faint * max(value.max(initial=0.0), 1e-300)
     part = vector[:, live]

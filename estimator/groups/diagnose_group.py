@@ -10,7 +10,7 @@ import numpy as np
 
 from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.naming import sentence
-from estimator.groups.findings import LARGEST, Told, finding_of, structures, told
+from estimator.groups.findings import LARGEST, Estimated, estimated, finding_of, structures
 from estimator.groups.gain import gain_of, names_that_predict
 from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import EVERY, LEVELS, STAND, TYPE, UNIT, Layout
@@ -65,7 +65,7 @@ def diagnose_statistics(
     selection = names_that_predict(select(layout))
     group = Group(selection, tuple(sessions))
     selection = names_that_fit(group)
-    each = [told(selection, f) for f in selection.found]
+    each = [estimated(selection, f) for f in selection.found]
     separator = Separator(tuple(sessions))
     found = [finding_of(selection, one, separator.measurements(selection, one)) for one in each]
     scale = selection.weighed()
@@ -144,7 +144,7 @@ def joined(a: GroupFinding, b: GroupFinding) -> GroupFinding:
     )
 
 
-def notes(selection: Selection, each: Sequence[Told]) -> list[str]:
+def notes(selection: Selection, each: Sequence[Estimated]) -> list[str]:
     """What a reader should know beside the findings."""
     found = []
     for f, h in selection.misfits:

@@ -16,6 +16,7 @@ By Ville's inequality the chance that the mean ever reaches 1/α without an effe
 
 import numpy as np
 
+from estimator.least_squares import scale_of
 from estimator.session import Array
 
 ALPHA = 0.01
@@ -52,9 +53,7 @@ def log_bayes(U: Array, F: Array, first: Array) -> Array:
 
     0 where nothing is seen.
     """
-    size = np.sqrt(np.maximum(np.diagonal(first, axis1=-2, axis2=-1), 0.0))
-    scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
-    w = U.shape[-1]
+    scale, w = scale_of(first), U.shape[-1]
     unit = first * scale[..., :, None] * scale[..., None, :] + (FAINT if w > 1 else 1e-6) * np.eye(w)
     grown, along = F * scale[..., :, None] * scale[..., None, :], U * scale
     values = []
@@ -67,8 +66,7 @@ def log_bayes(U: Array, F: Array, first: Array) -> Array:
             fit = (along * np.linalg.solve(total, along[..., None])[..., 0]).sum(axis=-1)
             volume = np.linalg.slogdet(total)[1] - np.linalg.slogdet(prior)[1]
         values.append(0.5 * fit - 0.5 * volume)
-    seen = (size > 0).any(axis=-1)
-    return np.where(seen, log_sum(np.array(values)) - np.log(len(STRENGTHS)), 0.0)
+    return np.where((scale > 0).any(axis=-1), log_sum(np.array(values)) - np.log(len(STRENGTHS)), 0.0)
 
 
 def log_varying(statistic: Array, freedom: Array) -> Array:

@@ -120,7 +120,7 @@ LARGEST = 700.0
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class Estimated:
     """One finding with what the pool tells of it. n sessions, w amplitudes."""
 
     found: Found
@@ -133,7 +133,7 @@ class Told:
     rivals: tuple[Near, ...]
 
 
-def told(selection: Selection, found: Found) -> Told:
+def estimated(selection: Selection, found: Found) -> Estimated:
     """What the pool tells of one finding, given the others."""
     scale = selection.weighed(without=found)
     w, k = found.place
@@ -141,7 +141,7 @@ def told(selection: Selection, found: Found) -> Told:
     U, F = m.U[:, k], m.F[:, k]
     seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= found.since)
     mean = with_joint(mean_of(U[seen], F[seen]), m.lost[k], F[seen].sum(axis=0))
-    return Told(found, mean, U, F, scale, tuple(near(selection, found, scale)))
+    return Estimated(found, mean, U, F, scale, tuple(near(selection, found, scale)))
 
 
 def with_joint(mean: Mean, lost: Array, whole: Array) -> Mean:
@@ -156,7 +156,7 @@ def with_joint(mean: Mean, lost: Array, whole: Array) -> Mean:
     return replace(mean, value=grown @ mean.value, sigma=mean.sigma * sigma, covariance=grown @ mean.covariance)
 
 
-def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str, int | None]]) -> GroupFinding:
+def finding_of(selection: Selection, one: Estimated, measurements: Sequence[tuple[str, int | None]]) -> GroupFinding:
     """A finding as people see it; ``measurements`` what would separate each of its rivals."""
     f, h = one.found, one.found.hypothesis
     known = cause(h.cause)
@@ -191,12 +191,12 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
     )
 
 
-def differs(one: Told) -> bool:
+def differs(one: Estimated) -> bool:
     """Whether sessions have it in different sizes: a cause is one constant, and what no catalogue has looks so too."""
     return one.found.form == VARYING or one.mean.cochran < DIFFERENT
 
 
-def strength_of(one: Told, pooled: float) -> float:
+def strength_of(one: Estimated, pooled: float) -> float:
     """Standard errors of a reading: of the pool, or of the sessions one by one where the effect differs."""
     if one.found.form == VARYING:
         return float(np.sqrt(sum(float(u @ inverse(f) @ u) for u, f in zip(one.U, one.F, strict=True))))
@@ -220,7 +220,7 @@ def rival_of(near_by: Near, measurement: str, sessions: int | None) -> Rival:
     return Rival(h.cause, sensors, h.level, h.subject, near_by.probability, near_by.separation, measurement, sessions)
 
 
-def forest(selection: Selection, one: Told) -> tuple[SessionAmplitude, ...]:
+def forest(selection: Selection, one: Estimated) -> tuple[SessionAmplitude, ...]:
     """The amplitude of every session that speaks of a finding."""
     lines = []
     for part, U, F in zip(selection.layout.parts, one.U, one.F, strict=True):

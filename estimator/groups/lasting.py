@@ -16,7 +16,7 @@ import numpy as np
 from estimator.causes.contract import Cause
 from estimator.diagnosis.results import Rival
 from estimator.groups.evidence import log_sum
-from estimator.groups.findings import Told, finding_of, told
+from estimator.groups.findings import Estimated, estimated, finding_of
 from estimator.groups.gain import names_that_predict
 from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import UNIT, Layout
@@ -68,13 +68,13 @@ def lasting(
     selection = names_that_fit(Group(names_that_predict(select(layout, barred)), tuple(sessions)))
     found = []
     for f in selection.found:
-        one = told(selection, f)
+        one = estimated(selection, f)
         whole = finding_of(selection, one, [("", None)] * len(one.rivals))
         found += list(_in_latest(one, whole))
     return found
 
 
-def _in_latest(one: Told, whole: GroupFinding) -> Iterator[Lasting]:
+def _in_latest(one: Estimated, whole: GroupFinding) -> Iterator[Lasting]:
     """The finding as the latest session may have it; nothing where that session cannot tell."""
     U, F, latest = one.U, one.F, len(one.F) - 1
     seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= one.found.since)
@@ -99,7 +99,7 @@ def _in_latest(one: Told, whole: GroupFinding) -> Iterator[Lasting]:
     )
 
 
-def _ranking(one: Told) -> Iterator[Rival]:
+def _ranking(one: Estimated) -> Iterator[Rival]:
     """Shares of all explanations, given that one of them acts."""
     every = list(one.scale.ranked())
     whole = float(log_sum(np.array([value for _, _, value in every])))

@@ -16,12 +16,11 @@ from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.layout import EVERY, Hypothesis
 from estimator.groups.library import library
-from estimator.groups.scores import LEFT, batch
+from estimator.groups.scores import LEFT, batch, shrinkage
 from estimator.groups.statistics import HARMONIC, SessionStatistics
 from estimator.groups.weighing import weighed_forms
-from estimator.least_squares import inverse, orthonormal
+from estimator.least_squares import inverse, orthonormal, scale_of
 from estimator.session import Array
-from estimator.significance import equivalent_chi2
 
 Key = tuple[str, ...]
 """A candidate of a place: a cause with its shape, or the words of a term."""
@@ -179,8 +178,7 @@ def moments_at(where: Where, whole: Sequence[Fitted], elsewhere: Sequence[Sequen
         at = np.concatenate([slots[key] for key in x.each])
         X = np.concatenate(list(x.each.values()), axis=1)
         U[k, at], F[k][np.ix_(at, at)] = X.T @ x.z, X.T @ X
-    size = np.sqrt(np.diagonal(F.sum(axis=0)))
-    unit = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
+    unit = scale_of(F.sum(axis=0))
     causes = frozenset[Key]().union(*(x.causes for x in each))
     own, terms = [tuple(key for key in widths if (key in causes) == named) for named in (True, False)]
     estimated = np.array([_estimated(where, one) for one in whole])
@@ -222,9 +220,6 @@ def as_normal(U: Array, F: Array, freedom: Array) -> Array:
         return U
     n, H, w = U[own].shape
     statistic, q = batch(U[own].reshape(n * H, w), F[own].reshape(n * H, w, w))
-    free = np.repeat(freedom[own], H)
-    normal = equivalent_chi2(statistic, q, np.maximum(free - statistic, 1e-3), free - q)
-    shrink = np.sqrt(np.where(statistic > 0, np.minimum(normal / np.where(statistic > 0, statistic, 1.0), 1.0), 1.0))
     shrunk = U.copy()
-    shrunk[own] *= shrink.reshape(n, H, 1)
+    shrunk[own] *= shrinkage(statistic, q, np.repeat(freedom[own], H)).reshape(n, H, 1)
     return shrunk

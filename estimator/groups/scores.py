@@ -1,15 +1,15 @@
 """Scores of candidates from their score vector and information alone: no residuals are needed any more."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from estimator.diagnosis.signatures.directions import eigen_whitening
 from estimator.diagnosis.signatures.scores import FAINT
 from estimator.groups.statistics import Block
-from estimator.least_squares import given
+from estimator.least_squares import given, scale_of
 from estimator.session import Array
+from estimator.significance import equivalent_chi2
 
 LEFT = 1e-4
 """Share of a candidate's information that others must leave, for it to be asked beside them: below it is one of them.
@@ -38,33 +38,28 @@ def batch(U: Array, F: Array) -> tuple[Array, Array]:
     What counts as an amplitude of its own is what counts within one session: `FAINT` of the trace, its square of the
     information.
     """
-    size = np.sqrt(np.maximum(np.diagonal(F, axis1=1, axis2=2), 0.0))
-    scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
-    turn, freedom = eigen_whitening(F * scale[:, :, None] * scale[:, None, :], size > 0, FAINT)
+    scale = scale_of(F)
+    turn, freedom = eigen_whitening(F * scale[:, :, None] * scale[:, None, :], scale > 0, FAINT)
     return ((((U * scale)[:, None, :] @ turn)[:, 0]) ** 2).sum(axis=1), freedom
 
 
-@dataclass(frozen=True, eq=False)
-class Scores:
-    """Candidates of one session or pool. B blocks, D columns."""
+def beside(blocks: Sequence[Block], U: Array, F: Array, found: Sequence[int]) -> tuple[Array, Array]:
+    """The same given the blocks ``found``; 0 of these."""
+    if not found:
+        return eigen_scores(blocks, U, F)
+    starts = starts_of(blocks)
+    own = np.concatenate([np.arange(starts[k], starts[k + 1]) for k in found])
+    statistic, freedom = eigen_scores(blocks, *given(U, F, own, LEFT))
+    statistic[list(found)] = 0.0
+    return statistic, freedom
 
-    blocks: tuple[Block, ...]
-    U: Array
-    F: Array
 
-    @classmethod
-    def of(cls, blocks: Sequence[Block], U: Array, F: Array) -> "Scores":
-        """With columns of norm one."""
-        size = np.sqrt(np.diagonal(F))
-        scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
-        return cls(tuple(blocks), U * scale, F * scale[:, None] * scale)
+def shrinkage(statistic: Array, q: Array, freedom: Array) -> Array:
+    """(S,) at most 1: by how much scores with χ² ``statistic`` of q amplitudes are as unlikely as normal ones.
 
-    def given(self, found: Sequence[int]) -> tuple[Array, Array]:
-        """(B,) χ² and (B,) degrees of freedom of every block, given those ``found``; 0 of these."""
-        if not found:
-            return eigen_scores(self.blocks, self.U, self.F)
-        starts = starts_of(self.blocks)
-        own = np.concatenate([np.arange(starts[k], starts[k + 1]) for k in found])
-        statistic, freedom = eigen_scores(self.blocks, *given(self.U, self.F, own, LEFT))
-        statistic[list(found)] = 0.0
-        return statistic, freedom
+    freedom : (S,) degrees of freedom from which their noise is estimated; infinite where it is stated.
+    """
+    known = np.isinf(freedom)
+    energy = np.where(known, np.nan, np.maximum(np.where(known, 1.0, freedom) - statistic, 1e-3))
+    normal = equivalent_chi2(statistic, q, energy, np.where(known, 1.0, freedom - q))
+    return np.sqrt(np.where(statistic > 0, np.minimum(normal / np.where(statistic > 0, statistic, 1.0), 1.0), 1.0))

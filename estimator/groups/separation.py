@@ -11,7 +11,7 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.candidates import columns_of
-from estimator.groups.findings import Told
+from estimator.groups.findings import Estimated
 from estimator.groups.layout import EVERY, Hypothesis
 from estimator.groups.selection import Selection
 from estimator.groups.statistics import Block
@@ -32,7 +32,7 @@ class Separator:
 
     sessions: tuple[CalibrationSession, ...]
 
-    def measurements(self, selection: Selection, one: Told) -> list[tuple[str, int | None]]:
+    def measurements(self, selection: Selection, one: Estimated) -> list[tuple[str, int | None]]:
         """For every rival of a finding: what to measure, in words, and how many sessions of it."""
         if not one.rivals or not self.sessions:
             return [("", None)] * len(one.rivals)

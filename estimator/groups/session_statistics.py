@@ -27,12 +27,12 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.start import as_they_scatter
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
-from estimator.groups.scores import Scores, eigen_scores
+from estimator.groups.scores import beside, eigen_scores, shrinkage, starts_of
 from estimator.groups.statistics import Block, SessionStatistics, quantised, shared
 from estimator.least_squares import orthonormal
 from estimator.moments import in_utc
 from estimator.session import Array, CalibrationSession
-from estimator.significance import equivalent_chi2, p_value
+from estimator.significance import p_value
 
 LEFT_OUT = re.compile(r"reading (\d+) left out")
 MUTE = 1e9
@@ -200,9 +200,8 @@ def without_row(seen: Seen, row: int) -> Seen:
 def plainly(seen: Seen) -> list[int]:
     """Blocks that the session shows plainly by itself, one after another, each given those before."""
     found: list[int] = []
-    scores = Scores.of(seen.blocks, seen.score, seen.information)
     for _ in range(MOST):
-        statistic, freedom = scores.given(found)
+        statistic, freedom = beside(seen.blocks, seen.score, seen.information, found)
         tail = p_value(statistic, freedom) * len(seen.blocks)
         best = int(np.argmin(tail))
         if tail[best] > PLAIN:
@@ -213,7 +212,7 @@ def plainly(seen: Seen) -> list[int]:
 
 def plain_basis(seen: Seen) -> Array:
     """(N, f) orthonormal, dimensionless: traces of what the session shows plainly by itself."""
-    starts = np.concatenate([[0], np.cumsum([b.width for b in seen.blocks])]).astype(int)
+    starts = starts_of(seen.blocks)
     found = plainly(seen)
     columns = [seen.trace[:, starts[k] : starts[k + 1]] for k in found]
     if not columns:
@@ -275,7 +274,4 @@ def shrinking(seen: Seen, estimated: Array) -> Array:
     names = [s.name for s in seen.residuals.baseline.session.sensors]
     whole = float(np.where(np.isinf(estimated), np.inf, of_sensors(seen, seen.freedom)).sum())
     free = np.array([estimated[names.index(b.sensor)] if b.sensor else whole for b in seen.blocks])
-    known = np.isinf(free)
-    energy = np.where(known, np.nan, np.maximum(np.where(known, 1.0, free) - statistic, 1e-3))
-    normal = equivalent_chi2(statistic, q, energy, np.where(known, 1.0, free - q))
-    return np.sqrt(np.where(statistic > 0, np.minimum(normal / np.where(statistic > 0, statistic, 1.0), 1.0), 1.0))
+    return shrinkage(statistic, q, free)
