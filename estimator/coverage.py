@@ -57,9 +57,9 @@ def combined(*parts: tuple[float, float | None]) -> float | None:
     return None if not doubt else total**2 / doubt
 
 
-def finite(dof: float) -> float | None:
-    """Degrees of freedom of an array's element as results write them: None where infinite or not known."""
-    return float(dof) if np.isfinite(dof) else None
+def finite(value: float) -> float | None:
+    """An array's element as results write it: None where infinite or not known."""
+    return float(value) if np.isfinite(value) else None
 
 
 def positions_to_add(dof: int, each: int) -> int:

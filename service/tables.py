@@ -19,7 +19,8 @@ from service.units import tables as units
 from service.uploads import tables as uploads
 
 SUBJECTS = (
-    audit, people, types, units, sessions, models, stands, diagnosis, queue, jobs, outlook, groups, flags, fleet, papers, uploads
+    audit, people, types, units, sessions, models, stands, diagnosis, queue, jobs, outlook, groups, flags, fleet,
+    papers, uploads,
 )  # fmt: skip
 """Where tables are defined."""
 METADATA = Base.metadata

@@ -6,7 +6,7 @@ from datetime import timedelta
 
 from benchmarks.files.long import LongLog, table
 from benchmarks.files.service import Cost
-from estimator.long_logs.log import MOST_RESTS
+from estimator.long_logs.average import MOST_RESTS
 from service.ingest import LONG
 from service.ingest.apart import PACE
 from service.jobs.records import KEPT as KEPT_MADE

@@ -25,7 +25,7 @@ from estimator.significance import p_value as chance_of
 LEVEL = 0.003
 """False-alarm rate over all accelerometers of a session, as in diagnoses of calibrations."""
 TOLD_APART = 9.0
-"""Difference of χ² from which a rival is told apart: three standard errors."""
+"""Difference of χ² from which a rival is distinguished: three standard errors."""
 FEWEST = 3
 """Sensors of which one that contradicts the others can be told."""
 

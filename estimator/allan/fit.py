@@ -2,7 +2,7 @@
 
 The squared sizes θ ≥ 0 solve the quasi-likelihood equations Aᵀ·C(θ)⁻¹·(σ̂² − Aθ) = 0 with the covariance C of `model`
 at the fit itself, so that a low estimate does not gain weight (McCullagh & Nelder 1989, 9.2). Their covariance is
-(Aᵀ·C⁻¹·A)⁻¹. A size is decided where θ exceeds `DECIDED` of its sigmas; otherwise only what it hardly exceeds is told.
+(Aᵀ·C⁻¹·A)⁻¹. A size is decided where θ exceeds `DECIDED` of its sigmas; otherwise only a bound is stated.
 
 Filters shorten the slope at short τ, temperature and lines in the spectrum bend it at long ones. So the terms are
 asked to describe the whole curve, and if they do not, the longest run of octaves at which they do: the residuals,

@@ -180,7 +180,7 @@ def typical(value: Array, sensors: Array, norm: Array) -> Array:
     """(S, m) the variance to expect of each sensor: the median, in logarithms, of those of its kind.
 
     value (S, m), (m/s²)² or (rad/s)², of the ``sensors`` (S, m) bool that state none; NaN for the others. ``norm`` (m,)
-    is the length of the applied vector, m/s² (rad/s), by which the kinds are told apart.
+    is the length of the applied vector, m/s² (rad/s), by which the kinds are distinguished.
     """
     asked = np.where(sensors, np.log(value), np.nan)
     found = np.full(value.shape, np.nan)

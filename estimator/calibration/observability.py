@@ -65,7 +65,7 @@ def spectrum(information: Array) -> Spectrum:
 
 
 def known_bias_quadratic(information: Array, bias: float, quadratic: float, norm: float) -> KnownCombination | None:
-    """The known mixture b + ratio·c where the two cannot be told apart; None where that is not known either.
+    """The known mixture b + ratio·c where the two cannot be distinguished; None where that is not known either.
 
     Parameters
     ----------

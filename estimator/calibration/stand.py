@@ -84,7 +84,7 @@ def noise_variance(
     """Variance of the independent noise at the input (S, R, m), (m/s²)² or (rad/s)², and where none is stated.
 
     y, errors : (S, R, m) readings, offset taken off, and their standard errors, reading units. Where none is stated
-    the variance is estimated; where, (S, R, m) bool, is told too.
+    the variance is estimated; where, (S, R, m) bool, is returned too.
     A sensor whose reading is constant answers to nothing: its noise is infinite, so that it takes no part.
     """
     variance = input_variance(start, errors, np.array([s.bias_repeatability for s in session.sensors]))

@@ -244,7 +244,7 @@ def contradicted(baseline: Baseline, energy: Array, freedom: Array) -> list[list
 
     All of a kind are, where together they contradict it and half of them lean the same way; else those that scatter
     more each by itself. One alone that scatters less is believed as stated: with few readings, what all share of a row
-    can be laid on it until nothing is left of its noise. ``energy`` (m,) χ² with its degrees of ``freedom`` (m,).
+    can be attributed to it until nothing is left of its noise. ``energy`` (m,) χ² with its degrees of ``freedom`` (m,).
     """
     free = np.maximum(freedom, 1e-3)
     less, more = chdtr(free, energy), p_value(energy, free)

@@ -4,7 +4,6 @@ Of a rest only sums are kept: over its blocks and quarters, of squares, and how 
 gone through twice: first for its labels or, where it has none, for where the block stands still.
 """
 
-from estimator.long_logs.average import average_long
-from estimator.long_logs.log import LongLog
+from estimator.long_logs.average import LongLog, average_long
 
 __all__ = ["LongLog", "average_long"]

@@ -18,10 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.parity.blocks import ENOUGH_STILL
+from estimator.parity.blocks import ENOUGH_STILL, Mask, turning
 from estimator.parity.ledger import Blocks, pairs
 from estimator.parity.reference import Reference
-from estimator.parity.rest import Mask, turning
 from estimator.session import Array
 
 SIZE = 0.1

@@ -11,6 +11,7 @@ import numpy as np
 
 from estimator.calibration.calibrate import averaged
 from estimator.codec import Document, Form
+from estimator.coverage import finite
 from estimator.errors import Problem, ScheduleError
 from estimator.planning.expected import expected_sigmas, head_kind, input_noise, planned
 from estimator.planning.orientations import rank_of_orientations
@@ -125,12 +126,8 @@ def _unset(done: Array, every: Array, steps: int, flipped: bool) -> list[tuple[s
 
 def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple[Expected, ...]:
     """Sensor by sensor; both (m, 4) SI, relative for scale."""
-
-    def known(value: float) -> float | None:
-        return float(value) if np.isfinite(value) else None
-
     return tuple(
-        Expected(sensor.name, sensor.kind, parameter, known(now), known(then))
+        Expected(sensor.name, sensor.kind, parameter, finite(now), finite(then))
         for sensor, own, whole in zip(rows.sensors, so_far, complete, strict=True)
         for parameter, now, then in zip(PARAMETERS, own, whole, strict=True)
     )

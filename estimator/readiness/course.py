@@ -150,7 +150,7 @@ MARGIN = 2.5
 """Standard errors of the forecast that must fit into what is allowed: 1.64 for the bound of 95 %, and the forecast
 itself, which is not zero, is rarely more than one of its standard errors off."""
 CELLS = 5
-"""Likeliest cells, whose median length is told."""
+"""Likeliest cells, whose median length is stated."""
 
 
 def needed(course: Course, means: int, duration: float, allowed: float) -> float | None:

@@ -16,7 +16,7 @@ CHANCE = 1e-3
 LEAVES = 0.05
 """Chance from which what a turn leaves is noise."""
 FEWEST = 4
-"""Sensors from which a turn is told from their own drifts: three leave but one number."""
+"""Sensors from which a turn is distinguished from their own drifts: three leave but one number."""
 
 
 def turn(axes: Array, force: Array, drift: Array, error: Array) -> float | None:

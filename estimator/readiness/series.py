@@ -105,7 +105,7 @@ def _inner(value: Array, mean: Array, begin: NDArray[np.intp], count: NDArray[np
 
 
 def places(session: CalibrationSession) -> NDArray[np.intp]:
-    """(R,) numbers of the positions, by labels or settings; rows of neither are told apart by what they read."""
+    """(R,) numbers of the positions, by labels or settings; rows of neither are distinguished by what they read."""
     if session.position is not None:
         return np.asarray(session.position, dtype=np.intp)
     if session.beta is not None and session.flipped is not None:

@@ -11,9 +11,8 @@ from types import NoneType
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.reading.bounds import COMPONENT, WITHIN
+from estimator.reading.bounds import COMPONENT, WITHIN, Interval
 from estimator.reading.fields import NUMBERS, Fields, number_in
-from estimator.reading.interval import Interval
 from estimator.reading.problems import Problems, shown
 from estimator.session import Array
 

@@ -7,10 +7,9 @@ from datetime import datetime
 import numpy as np
 
 from estimator.moments import written
-from estimator.reading.bounds import WITHIN
+from estimator.reading.bounds import WITHIN, Interval
 from estimator.reading.columns import vector
 from estimator.reading.fields import Fields
-from estimator.reading.interval import Interval
 from estimator.reading.keys import SIGMA, SITE, STAND, check_keys
 from estimator.reading.problems import Problems, shown
 from estimator.session import (

@@ -8,7 +8,7 @@ import pytest
 from estimator.calibration.free import residual_per_freedom
 from estimator.errors import FormatError, ScheduleError
 from estimator.long_logs import LongLog, average_long
-from estimator.long_logs.log import MOST_RESTS
+from estimator.long_logs.average import MOST_RESTS
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 from estimator.static import average
 from tests.estimator.test_static import NOISE, RATE, raw, tumble

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from estimator.diagnosis.selection.borne_out import hold, too_sure
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
 from estimator.diagnosis.selection.common_or_own import common_or_own, with_events
+from estimator.diagnosis.selection.confirmation import hold, too_sure
 from estimator.diagnosis.selection.heavy_tails import without_names_of_tails
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
 from estimator.diagnosis.selection.noise_claim import (
@@ -34,14 +34,14 @@ def accepted(start: SearchState) -> SearchState:
         if not claims or any(f.event for f in state.found):
             claims = doubted(state)
     rival = whatever_the_scale(start, claims) if claims else None
-    return without_names_of_tails(without_names_in_no_noise(borne_out(start, rival or state or believed(start))))
+    return without_names_of_tails(without_names_in_no_noise(confirmed(start, rival or state or believed(start))))
 
 
-def borne_out(start: SearchState, state: SearchState) -> SearchState:
+def confirmed(start: SearchState, state: SearchState) -> SearchState:
     """The state with names only that hold whether or not the stated noise that they rest on is right.
 
     Where one does not, causes are sought anew with that noise known up to a factor. Nothing is claimed of it: its
-    readings do not tell that it is wrong, but they do not bear out that it is right either.
+    readings do not tell that it is wrong, nor do they confirm that it is right.
     """
     claims = state.noise_claims
     while doubt := too_sure(state):

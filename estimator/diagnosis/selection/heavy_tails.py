@@ -39,7 +39,7 @@ KNOWN = 0.2
 name takes out have none."""
 
 FEWEST = 20
-"""Readings from which on tails are told at all."""
+"""Readings from which on tails are estimated at all."""
 
 TINY = float(np.finfo(float).tiny)
 """Keeps a division by nothing finite."""

@@ -49,7 +49,7 @@ LINEAR = 1e-4
 """rad; a fit by other weights that moves axes further has met an effect, such as a turned run, that is not linear."""
 
 SMALLEST = 1e-8
-"""Variance over the stated one below which none is told apart: readings simulated without noise leave rounding."""
+"""Variance over the stated one below which none is distinguished: readings simulated without noise leave rounding."""
 
 BEYOND_NOISE = 30.0
 """Times the stated standard errors from which on scatter is no misjudged noise: stated ones were seen to be four to

@@ -21,8 +21,9 @@ import numpy as np
 from estimator.arrays import eigh
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.autocorrelation import LENGTHS, around, bending, logmeanexp
+from estimator.diagnosis.signatures.autocorrelation import LENGTHS, around, bending
 from estimator.diagnosis.signatures.noise import normal_deviate
+from estimator.diagnosis.signatures.wandering import log_mean
 from estimator.session import ACCELEROMETER, Array
 
 ROUND = (0.4, 1.0, 2.5)
@@ -165,7 +166,7 @@ def applied_course(residuals: WhitenedResiduals, attributed: Array, *, lasting: 
     assert leading is not None
     likeliest, coefficients = leading
     return AppliedCourse(
-        log_evidence=logmeanexp(tried),
+        log_evidence=log_mean(tried),
         order=likeliest.order,
         components=likeliest.components,
         value=(likeliest.lift @ coefficients).T,
@@ -191,4 +192,4 @@ def evidence(trace: Array, z: Array) -> tuple[float, Array]:
     volume = -0.5 * np.log1p(strengths[:, None] * size).sum(axis=1)
     values = volume + 0.5 * (power**2 * shrunk).sum(axis=1)
     value = turn @ (power * shrunk[int(np.argmax(values))])
-    return logmeanexp(values), value
+    return log_mean(values), value

@@ -20,8 +20,6 @@ mean over the orders (`USUAL`), the kernels and λ. A mean of Bayes factors has 
 49 rows, and `CHANCE`/B is taken as the p-value, the choice of the order included.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy.linalg.lapack import dsytrd
 
@@ -29,6 +27,7 @@ from estimator.arrays import eigh
 from estimator.causes.contract import varies
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.noise import Autocorrelation
+from estimator.diagnosis.signatures.wandering import log_mean
 from estimator.session import Array
 
 FEWEST = 6
@@ -149,15 +148,10 @@ def autocorrelation(
     tried = kernels(residuals, sensor)
     each = bayes_factors(root.T @ np.concatenate(list(tried.values())) @ root, y, known=known)
     ends = np.cumsum([len(own) for own in tried.values()])
-    factors = dict(zip(tried, map(logmeanexp, np.split(each, ends[:-1])), strict=True))
+    factors = dict(zip(tried, map(log_mean, np.split(each, ends[:-1])), strict=True))
     prior = np.array([USUAL[name] for name in factors])
     together = np.array(list(factors.values())) + np.log(prior / prior.sum())
     return Autocorrelation(sensor, max(factors, key=lambda name: factors[name]), float(np.logaddexp.reduce(together)))
-
-
-def logmeanexp(values: Sequence[float] | Array) -> float:
-    """ln of the mean of Bayes factors given by their logarithms."""
-    return float(np.logaddexp.reduce(values) - np.log(len(values)))
 
 
 def bayes_factors(covariance: Array, y: Array, *, known: bool) -> Array:

@@ -14,6 +14,8 @@ it is −½ ν ln(1 − Q/z'z) instead. The same of the three amplitudes of a bl
 mean over rows: every sensor shows that too, by its axis.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from estimator.arrays import eigh
@@ -71,7 +73,7 @@ def marginal(gram: Array, along: Array, sizes: Array) -> tuple[Array, Array]:
     return np.asarray(power), np.asarray(np.log(grown).sum(axis=1))
 
 
-def log_mean(values: Array) -> float:
+def log_mean(values: Sequence[float] | Array) -> float:
     """ln of the mean of what values (G,) are the ln of."""
     return float(np.logaddexp.reduce(values) - np.log(len(values)))
 

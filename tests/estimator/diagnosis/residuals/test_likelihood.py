@@ -11,7 +11,7 @@ from estimator.diagnosis.residuals.baseline import Baseline, block_columns
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.borne_out import beside_effects
+from estimator.diagnosis.selection.confirmation import beside_effects
 from estimator.session import Array
 from tests.estimator.diagnosis.selection.small import candidate, effect, measured, start
 

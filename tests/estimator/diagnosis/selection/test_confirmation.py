@@ -8,8 +8,8 @@ from scipy.stats import f
 
 from estimator import CalibrationSession, diagnose
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.acceptance import believed, borne_out
-from estimator.diagnosis.selection.borne_out import evidence_of_more, p_if_unknown, too_sure
+from estimator.diagnosis.selection.acceptance import believed, confirmed
+from estimator.diagnosis.selection.confirmation import evidence_of_more, p_if_unknown, too_sure
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.start import as_they_scatter, begin
 from estimator.simulate import simulate
@@ -55,7 +55,7 @@ def test_a_strong_name_holds_and_the_search_stands_as_it_is() -> None:
     begun = begin(baseline_of(session), (), start(("bias-jump",)).catalogue)
     state = believed(begun)
     assert too_sure(state)
-    assert borne_out(begun, state) is state
+    assert confirmed(begun, state) is state
     assert names(state) == [("bias-jump", (SENSOR,))]
 
 
