@@ -175,6 +175,11 @@ class CalibrationSession:
         return self.origin == SIMULATED
 
     @property
+    def subjects(self) -> tuple[str, str | None, str]:
+        """Serial, type and stand: whose a lasting effect in it may be; no stand is an empty name."""
+        return self.unit, self.unit_type, self.stand.id if self.stand else ""
+
+    @property
     def quantisation(self) -> float | Array:
         """Variance of a row's pulse count, pulses²; a number, or (R, 1) where rows are means of counts.
 

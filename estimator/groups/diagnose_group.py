@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.causes.catalogue import cause
-from estimator.diagnosis.explanation.naming import sentence
+from estimator.diagnosis.explanation.naming import side_by_side
 from estimator.groups.findings import LARGEST, Estimated, estimated, finding_of, structures
 from estimator.groups.gain import gain_of, names_that_predict
 from estimator.groups.lack_of_fit import Group, names_that_fit
@@ -123,20 +123,11 @@ def merged(found: Sequence[GroupFinding]) -> list[GroupFinding]:
 
 def joined(a: GroupFinding, b: GroupFinding) -> GroupFinding:
     """Two findings of one cause as one."""
-    sensors = a.sensors + b.sensors
     return replace(
         a,
-        sensors=sensors,
-        amplitude=a.amplitude + b.amplitude,
-        sigma=a.sigma + b.sigma,
-        units=a.units + b.units,
-        spread=a.spread + b.spread,
+        **side_by_side(cause(a.cause), a, b, ("spread", "rivals")),
         e_value=min(a.e_value, b.e_value),
-        strength=float(np.hypot(a.strength, b.strength)),
         cochran=min(a.cochran, b.cochran),
-        alternatives=tuple(x for x in a.alternatives if x in b.alternatives),
-        rivals=a.rivals + b.rivals,
-        sentence=sentence(cause(a.cause), sensors),
         sessions=tuple(
             replace(x, amplitude=x.amplitude + y.amplitude, sigma=x.sigma + y.sigma)
             for x, y in zip(a.sessions, b.sessions, strict=True)

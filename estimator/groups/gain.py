@@ -80,8 +80,7 @@ def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tupl
     """How far the calibration of a session moves when the findings are modelled, what moves most first."""
     baseline = baseline_of(averaged(session))
     residuals, names = WhitenedResiduals.of(baseline), [s.name for s in session.sensors]
-    subjects = (session.unit, session.unit_type, session.stand.id if session.stand else "")
-    added = added_by(baseline, [fixed(f) for f in findings if f.subject in subjects], ())
+    added = added_by(baseline, [fixed(f) for f in findings if f.subject in session.subjects], ())
     if added is None:
         return ()
     effect = added.columns @ added.amplitude

@@ -55,8 +55,7 @@ def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> di
     variable, what = variable_of(finding), ""
     for residuals in whole:
         baseline, session = residuals.baseline, residuals.baseline.session
-        subjects = (session.unit, session.unit_type, session.stand.id if session.stand else "")
-        added = added_by(baseline, [fixed(finding)], ()) if finding.subject in subjects else None
+        added = added_by(baseline, [fixed(finding)], ()) if finding.subject in session.subjects else None
         if added is None:
             continue
         effect = added.columns @ added.amplitude

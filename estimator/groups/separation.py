@@ -52,7 +52,7 @@ class Separator:
 
     def session_of(self, h: Hypothesis) -> CalibrationSession:
         """The latest session that a hypothesis speaks of."""
-        known = [s for s in self.sessions if h.subject in (s.unit, s.unit_type, s.stand.id if s.stand else "")]
+        known = [s for s in self.sessions if h.subject in s.subjects]
         return known[-1] if known else self.sessions[-1]
 
 

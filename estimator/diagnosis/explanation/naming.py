@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -43,17 +44,21 @@ def merged(named: Sequence[tuple[Cause, Finding]]) -> list[Finding]:
 
 def joined(cause: Cause, a: Finding, b: Finding) -> Finding:
     """Two findings of one cause as one."""
-    sensors = a.sensors + b.sensors
     return replace(
         a,
-        sentence=sentence(cause, sensors),
-        sensors=sensors,
-        amplitude=a.amplitude + b.amplitude,
-        sigma=a.sigma + b.sigma,
-        units=a.units + b.units,
-        nonlinear_each=a.nonlinear_each + b.nonlinear_each,
+        **side_by_side(cause, a, b, ("nonlinear_each",)),
         p_value=max(a.p_value, b.p_value),
-        strength=float(np.hypot(a.strength, b.strength)),
-        alternatives=tuple(x for x in a.alternatives if x in b.alternatives),
         new=a.new if a.new == b.new else None,
     )
+
+
+def side_by_side(cause: Cause, a: Any, b: Any, further: tuple[str, ...]) -> dict[str, Any]:
+    """What two findings of one cause, of a session or of a group, say together, by field; ``further`` fields that hold
+    an entry for every sensor or rival."""
+    names = ("sensors", "amplitude", "sigma", "units", *further)
+    whole = {name: getattr(a, name) + getattr(b, name) for name in names}
+    return whole | {
+        "sentence": sentence(cause, whole["sensors"]),
+        "strength": float(np.hypot(a.strength, b.strength)),
+        "alternatives": tuple(x for x in a.alternatives if x in b.alternatives),
+    }
