@@ -11,7 +11,7 @@ from enum import Enum
 from functools import cache
 from math import isfinite, nan
 from types import NoneType, UnionType
-from typing import Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, Literal, Self, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -194,6 +194,8 @@ class Codec:
             return _array(get_args(inner[1])[0])
         if isinstance(origin, type) and issubclass(origin, Mapping):
             return _mapping(self._reader(inner[1]))
+        if origin is Literal:
+            return SIMPLE[str]
         if isinstance(hint, type) and issubclass(hint, Enum):
             return _formed(Form(str, hint))
         if isinstance(hint, type) and is_dataclass(hint):

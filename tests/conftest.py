@@ -14,10 +14,10 @@ from hypothesis import HealthCheck
 from hypothesis import settings as hypothesis_settings
 
 from service.app import create_app
+from service.kit.lock_order import WATCHED
 from service.people import passwords
 from service.settings import Settings
 from service.storage import Storage
-from service.storage.lock_order import WATCHED
 from service.work.diagnosis_reader import Reader
 from service.work.group_reader import GroupReader
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases

@@ -14,7 +14,7 @@ from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
 from service.ingest.formats import BINARY, is_binary
-from service.storage.lock_order import outside_writing
+from service.kit.lock_order import outside_writing
 
 if TYPE_CHECKING:
     from service.ingest.apart import read_apart, turn

@@ -14,8 +14,8 @@ from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, CalibrationSession
 from service.ingest.checked import Checked
 from service.judging.reference import calibration_to_compare_with
+from service.kit.lock_order import outside_writing
 from service.models.records import Model
-from service.storage.lock_order import outside_writing
 from service.storage.store import Store
 
 

@@ -12,9 +12,9 @@ from estimator.results import Calibration
 from service.judging.calibrate import Comparison
 from service.judging.in_service_words import reason as recording_in_words
 from service.judging.words import first_in_words, reason
+from service.kit.lock_order import outside_writing
 from service.sessions.decision import Decision, Judged, Opening, Verdict
 from service.sessions.words.advice import too_few
-from service.storage.lock_order import outside_writing
 from service.types.records import UnitType
 from service.types.rules import tolerances_of
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 from hashlib import sha256
 
 from estimator.health.pooled import Prior, learn
+from service.kit.lock_order import outside_writing
 from service.kit.measures import COVERAGE
 from service.outlook.document import unpacked
 from service.outlook.records import UnitOutlook
@@ -15,7 +16,6 @@ from service.outlook.rules.histories import Histories, histories
 from service.outlook.store import Outlooks
 from service.sessions.store import Sessions
 from service.sessions.words.motion import motions_in_words
-from service.storage.lock_order import outside_writing
 from service.storage.store import Store
 from service.types.store import UnitTypes
 from service.units.store import Services, Units

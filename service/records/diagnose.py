@@ -21,6 +21,7 @@ from service.ingest import read_upload
 from service.ingest.checked import dated
 from service.judging.reservations import UNCHECKED
 from service.kit.failure_words import with_last_try
+from service.kit.lock_order import outside_writing
 from service.kit.log import log
 from service.models.store import Models
 from service.queue.records import WorkKind
@@ -39,7 +40,6 @@ from service.storage import Files, Storage
 from service.storage.audit import Audit
 from service.storage.files import LOST
 from service.storage.json_text import json_text
-from service.storage.lock_order import outside_writing
 from service.storage.store import Store
 from service.units.store import Services, Units
 

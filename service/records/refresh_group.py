@@ -23,6 +23,7 @@ from service.groups.words.group import FAILED, summary_of_group
 from service.ingest import read_upload
 from service.ingest.checked import dated
 from service.kit.failure_words import with_last_try
+from service.kit.lock_order import outside_writing
 from service.kit.log import log
 from service.models.records import SCOPES
 from service.outlook.changes import END_OF_TIME
@@ -32,7 +33,6 @@ from service.records.flagging.lasting import flag_lasting
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.files import LOST
-from service.storage.lock_order import outside_writing
 from service.storage.store import Store
 from service.units.store import Services
 

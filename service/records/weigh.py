@@ -16,6 +16,7 @@ from service.judging.reservations import UNCHECKED, Doubted, reservations_of
 from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
 from service.judging.store import Derivations
 from service.judging.temperatures import Covered, covered_by, worth_of
+from service.kit.lock_order import outside_writing
 from service.models.rules import in_force, places_of
 from service.models.store import Models
 from service.outlook.store import Outlooks
@@ -26,7 +27,6 @@ from service.sessions.records import StoredSession
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.files import LOST
-from service.storage.lock_order import outside_writing
 from service.storage.store import Store
 from service.types.rules import tolerances_of
 from service.types.store import UnitTypes, held_at

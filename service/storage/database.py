@@ -1,6 +1,6 @@
 """The database: the only place that commits. One transaction a request.
 
-In which order locks are taken, and what is not done while one is held, says `service.storage.lock_order`.
+In which order locks are taken, and what is not done while one is held, says `service.kit.lock_order`.
 """
 
 from collections.abc import Iterator
@@ -12,10 +12,10 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from service.errors import AwayError
+from service.kit.lock_order import writing
 from service.storage.audit import Audit
 from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
-from service.storage.lock_order import writing
 from service.storage.revisions import unfit
 from service.storage.schema import stored_revision
 from service.storage.store import BeforeCommit, Store

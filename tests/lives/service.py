@@ -12,7 +12,7 @@ from types import ModuleType
 import psutil
 
 from service.cli import main
-from service.storage.lock_order import WATCHED
+from service.kit.lock_order import WATCHED
 from tests.patience import until
 
 READY = "imu-health is ready: open "

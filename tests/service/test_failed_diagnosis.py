@@ -82,7 +82,7 @@ def test_the_log_says_what_happened_under_the_session(written: io.StringIO, show
     shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
     [failure] = [line for line in lines(written) if line["event"] == "background work failed"]
     assert (failure["level"], failure["place"]) == ("error", ID)
-    assert "KeyError" in failure["exception"]
+    assert "UnreadableError" in failure["exception"]
 
 
 def test_session_calibration_and_file_are_there_all_the_same(shown: httpx.Client) -> None:
@@ -94,7 +94,7 @@ def test_session_calibration_and_file_are_there_all_the_same(shown: httpx.Client
 def test_this_version_fails_once_for_whoever_reads_and_counts_it(shown: httpx.Client) -> None:
     for _ in range(2):
         assert shown.get(f"/api/v1/sessions/{ID}/diagnosis").status_code == 404
-    counted = 'imu_health_background_faults_total{fault="KeyError",work="pending diagnoses"} 1.0'
+    counted = 'imu_health_background_faults_total{fault="UnreadableError",work="pending diagnoses"} 1.0'
     assert counted in shown.get("/metrics").text
 
 
@@ -149,7 +149,7 @@ def test_what_the_program_fails_at_is_tried_some_times_beside_the_requests(
         tries += 1
     helper.end()
     assert tries == 1 + MOST_ATTEMPTS + 1
-    assert f'{{fault="KeyError",work="pending diagnoses"}} {float(MOST_ATTEMPTS)}' in own.metrics.text().decode()
+    assert f'{{fault="UnreadableError",work="pending diagnoses"}} {float(MOST_ATTEMPTS)}' in own.metrics.text().decode()
     reasons = [line["reason"] for line in lines(written) if line.get("of") == ID and "reason" in line]
     assert reasons == [AT_FAULT] * MOST_ATTEMPTS
 

@@ -1,8 +1,10 @@
 """An upload is stored whole, once, or not at all."""
 
 import json
+import sqlite3
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from datetime import UTC, datetime
 from typing import Any
 
@@ -97,6 +99,8 @@ def test_a_unit_with_two_blocks_has_a_reference_for_each(storage: Storage) -> No
 def test_a_full_disk_under_the_database_stores_nothing_and_is_said(sqlite: Databases, tmp_path: Any) -> None:
     database = open_database(sqlite.migrated())
     storage = Storage(database, Files(tmp_path / "files"))
+    with closing(sqlite3.connect(str(database.engine.url.database))) as file:
+        file.execute("VACUUM")  # pages that migrations freed would be room
 
     def limit(connection: Any, _: Any) -> None:
         pages = connection.execute("PRAGMA page_count").fetchone()[0]

@@ -14,7 +14,7 @@ from tests.service.reports.documents import text_of
 
 SOURCE = b"""#set text(font: ("Libertinus Serif", "DejaVu Sans Mono"))
 #for c in json(bytes(sys.inputs.data)) [#box(c) ]"""
-STYLE = Path(__file__).parents[3] / "service" / "pages" / "static" / "style.css"
+STYLE = Path(__file__).parents[3] / "service" / "web" / "static" / "style.css"
 
 
 def test_the_fonts_hold_every_character_that_is_printed_as_itself() -> None:

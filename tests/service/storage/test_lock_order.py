@@ -8,10 +8,10 @@ import pytest
 from estimator.errors import SessionError
 from service.ingest import in_turn, read_upload
 from service.judging import calibrate, judge
+from service.kit.lock_order import ComputedWhileWritingError
 from service.outlook import changes as refresh_outlook
 from service.records import diagnose, refresh_group, weigh
 from service.storage import Storage
-from service.storage.lock_order import ComputedWhileWritingError
 from tests.databases import one_engine
 
 LONG = (

@@ -27,8 +27,9 @@ UPLOAD = """
 import os, sys
 from datetime import UTC, datetime
 from pathlib import Path
+from service.opening import open_database
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Files, Storage
 from tests.service.storage.sending import WAYS, go_on
 settings = Settings(data_folder=Path(sys.argv[1]))
 storage = Storage(open_database(settings.database), Files(settings.files))
