@@ -71,7 +71,7 @@ def kept(keep: Callable[[str], None]) -> Iterator[None]:
     except FORESEEN as fault:
         keep(str(fault))
         raise
-    except Exception:  # no lint exception: whatever it was is kept as failed work and raised again
+    except Exception:  # whatever it was is kept as failed work, and raised again
         keep(AT_FAULT)
         raise
 
