@@ -2,8 +2,7 @@
 
 from datetime import datetime
 
-from service.errors import ServiceError
-from service.jobs.records import KEPT, Job, JobFailure, JobKind, JobState, Made, Piece
+from service.jobs.records import KEPT, Job, JobFailure, JobKind, Made, Piece
 from service.jobs.store import Jobs
 from service.jobs.words import AT_FAULT, left_in_words
 from service.kit.failure_words import with_last_try
@@ -16,20 +15,15 @@ from service.storage.store import Store
 
 
 def work_piece(storage: Storage, id: int, now: datetime, coverage_factor: float) -> None:
-    """Does the next piece of a job; what is foreseen to hinder it is kept, for whoever waits to read."""
-    with storage.database.reading() as store:
-        job = Jobs(store).get(id)
-    if job.state is not JobState.RUNNING or job.kind is JobKind.MODEL:
+    """Does the next piece of a job, unless it has ended."""
+    with storage.database.writing() as store:
+        job = Jobs(store).begin(id, now)
+    if not job.is_open:
         return
-    try:
-        if job.kind is JobKind.REPORT:
-            _report(storage, job, now)
-        else:
-            _recalibrate_next(storage, job, now, coverage_factor)
-    except ServiceError as fault:
-        with storage.database.writing() as store:
-            Jobs(store).hold_up(id, str(fault))
-        raise
+    if job.kind is JobKind.REPORT:
+        _report(storage, job, now)
+    else:
+        _recalibrate_next(storage, job, now, coverage_factor)
 
 
 def skip_piece(storage: Storage, id: int, now: datetime) -> None:
@@ -41,7 +35,7 @@ def skip_piece(storage: Storage, id: int, now: datetime) -> None:
         if unit is None:
             Jobs(store).fail(id, JobFailure(job.subject, reason), now)
         else:
-            Jobs(store).advance(job, unit[0], Piece(failure=JobFailure(unit[1], reason)))
+            Jobs(store).advance(job, unit[0], Piece(failure=JobFailure(unit[1], reason)), now)
 
 
 def _report(storage: Storage, job: Job, now: datetime) -> None:
@@ -65,6 +59,6 @@ def _recalibrate_next(storage: Storage, job: Job, now: datetime, coverage_factor
 
     def count(store: Store, done: Recalibrated) -> None:
         failure = JobFailure(done.unit, left_in_words(done.left)) if done.left else None
-        Jobs(store).advance(job, unit[0], Piece(done.recomputed, len(done.verdicts), failure))
+        Jobs(store).advance(job, unit[0], Piece(done.recomputed, len(done.verdicts), failure), now)
 
     recalibrate(storage, unit[1], now, coverage_factor=coverage_factor, who=job.who, then=count)

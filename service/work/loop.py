@@ -9,7 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from threading import Event
-from typing import Any, TypeVar
 
 from service.kit.bell import Bell
 from service.kit.guard import Failure
@@ -18,15 +17,11 @@ from service.kit.metrics import Metrics
 from service.settings import Settings
 from service.storage import Storage
 from service.work.helper import Still, StoppingError
-from service.work.kinds import Kind
+from service.work.kinds import LEASE, Kind
 
-LEASE = timedelta(seconds=30)
-"""What a dead service was at is begun anew after it."""
 EXTEND = timedelta(seconds=10)
 """Between two words that somebody is still at it."""
-T = TypeVar("T")
-"""What stands in a queue."""
-Make = Callable[[Kind[T], T, datetime, Still], Failure | None]
+Make = Callable[[Kind, str, datetime, Still], Failure | None]
 """Makes one piece, as a process does."""
 
 
@@ -41,28 +36,27 @@ class Worker:
     bell: Bell
 
 
-def work_next(own: Worker, make: Make[Any], stop: Event, kind: Kind[T]) -> bool:
+def work_next(own: Worker, make: Make, stop: Event, kind: Kind) -> bool:
     """Makes what is next of a kind; whether there was anything."""
     claimed = _claimed(own, kind)
     if claimed is None:
         return False
     one, attempts = claimed
     if attempts > kind.most:
-        log.error("work beside the requests given up", work=kind.name, of=str(one))
-        kind.give_up(own.storage, one, own.clock())
+        log.error("work beside the requests given up", work=kind.name, of=one)
+        kind.end(own.storage, one, own.clock())
     else:
         _make(own, make, stop, kind, one)
     own.bell.ring()
     return True
 
 
-def _claimed(own: Worker, kind: Kind[T]) -> tuple[T, int] | None:
+def _claimed(own: Worker, kind: Kind) -> tuple[str, int] | None:
     """What somebody waits for, and else what was asked for first; with how often it was begun."""
     now, urgent = own.clock(), own.bell.urgent() if kind.is_awaited else None
     with own.storage.database.reading() as store:
         waiting = kind.queue(store).waiting(now, 1 + own.settings.diagnosis_workers)
-    first: tuple[Any, ...] = () if urgent is None else (urgent,)
-    for one in (*first, *waiting):
+    for one in (*(() if urgent is None else (urgent,)), *waiting):
         with own.storage.database.writing() as store:
             attempts = kind.queue(store).claim(one, now, now + LEASE)
         if attempts is not None:
@@ -70,7 +64,7 @@ def _claimed(own: Worker, kind: Kind[T]) -> tuple[T, int] | None:
     return None
 
 
-def _make(own: Worker, make: Make[T], stop: Event, kind: Kind[T], one: T) -> None:
+def _make(own: Worker, make: Make, stop: Event, kind: Kind, one: str) -> None:
     """Whatever hinders it leaves it asked for."""
     last = own.clock()
 
@@ -93,9 +87,9 @@ def _make(own: Worker, make: Make[T], stop: Event, kind: Kind[T], one: T) -> Non
             _leave(own, kind, one, failure)
 
 
-def _leave(own: Worker, kind: Kind[T], one: T, failure: Failure) -> None:
+def _leave(own: Worker, kind: Kind, one: str, failure: Failure) -> None:
     """What is foreseen passes, and is tried for ever; at what is not, a few times."""
-    log.warning(kind.name, of=str(one), reason=failure.reason)
+    log.warning(kind.name, of=one, reason=failure.reason)
     own.metrics.count_fault(kind.name, failure.fault)
     with own.storage.database.writing() as store:
         queue = kind.queue(store)
@@ -103,4 +97,4 @@ def _leave(own: Worker, kind: Kind[T], one: T, failure: Failure) -> None:
         if failure.is_foreseen:
             queue.put_off(one, own.clock() + kind.put_off)
         else:
-            queue.give_back(one)
+            queue.give_back(one, own.clock())

@@ -7,7 +7,6 @@ from contextlib import contextmanager, suppress
 from datetime import datetime, timedelta
 from threading import Event, Thread
 
-from service.jobs.store import UploadJobs
 from service.jobs.words import FILE_AT_FAULT
 from service.kit.guard import FORESEEN, Failure, Guard, ending_here
 from service.queue.records import WorkKind
@@ -44,23 +43,21 @@ def take_in_waiting(own: Worker, stop: Event) -> None:
         own.bell.wait(rung, RETRY if guard.failed else LOOK_EVERY)
 
 
-def taking_in(own: Worker) -> Make[int]:
+def taking_in(own: Worker) -> Make:
     """What takes one in."""
     k = own.settings.coverage_factor
     reception = Reception(own.storage, k, own.metrics, own.bell.ring, is_dated_later=True)
-    return lambda _, id, now, still: _taken_in(lambda tick: take_in(reception, id, now, tick), id, still)
+    return lambda _, id, now, still: _taken_in(lambda tick: take_in(reception, int(id), now, tick), id, still)
 
 
-def _give_up(storage: Storage, id: int, now: datetime) -> None:
-    give_up(storage, id, FILE_AT_FAULT, now)
+def _give_up(storage: Storage, id: str, now: datetime) -> None:
+    give_up(storage, int(id), FILE_AT_FAULT, now)
 
 
-UPLOADS: Kind[int] = Kind(
-    WORK, WorkKind.UPLOAD, lambda store: UploadJobs(store), None, _give_up, most=MOST_TRIES, put_off=PUT_OFF
-)
+UPLOADS = Kind(WORK, WorkKind.UPLOAD, None, _give_up, most=MOST_TRIES, put_off=PUT_OFF)
 
 
-def _taken_in(work: Callable[[Callable[[], None]], None], id: int, still: Still) -> Failure | None:
+def _taken_in(work: Callable[[Callable[[], None]], None], id: str, still: Still) -> Failure | None:
     stopping = False
 
     def tick() -> None:
@@ -69,7 +66,7 @@ def _taken_in(work: Callable[[Callable[[], None]], None], id: int, still: Still)
             stopping = True
             raise StoppingError(f"Upload {id} was interrupted.")
 
-    with ending_here(WORK, str(id)) as met, _said_now_and_then(still):
+    with ending_here(WORK, id) as met, _said_now_and_then(still):
         work(tick)
     if stopping:
         raise StoppingError(f"Upload {id} was interrupted.")

@@ -19,7 +19,7 @@ from service.storage import Storage
 from service.uploads.receive import upload
 from service.work.group_reader import MOST_WAITING, GroupReader
 from service.work.kinds import GROUPS as QUEUE
-from service.work.loop import LEASE
+from service.work.kinds import LEASE
 from tests.conftest import Holding
 from tests.databases import one_engine
 from tests.service.grouped import GROUP

@@ -12,12 +12,14 @@ from service.errors import AwayError, BusyError, ConflictError, NotFoundError
 from service.jobs import changes as ask_job
 from service.jobs.changes import cancel_job
 from service.jobs.records import Job, JobState
-from service.jobs.store import Jobs, UploadJobs
+from service.jobs.store import Jobs
 from service.kit import limits
 from service.kit.arriving_files import Replaced, SentFile
 from service.kit.bell import Bell
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.records.reception import Reception
 from service.sessions.store import Sessions
 from service.settings import Settings
@@ -140,6 +142,7 @@ def test_cancelled_while_it_is_read_it_leaves_nothing(storage: Storage, few_cell
 def test_once_it_is_being_stored_nobody_cancels_it(storage: Storage) -> None:
     job = asked(storage)
     with storage.database.writing() as store:
+        WorkQueue(store, WorkKind.UPLOAD).claim(str(job.id), NOW, NOW)
         assert Jobs(store).begin_storing(job.id)
     with pytest.raises(ConflictError, match="being stored"):
         cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
@@ -168,7 +171,7 @@ def test_what_passes_is_tried_again_after_a_minute_and_says_why(
         assert work()
     assert (read(storage, job.id).held_up, work()) == ("The database does not answer.", False)
     with storage.database.reading() as store:
-        assert UploadJobs(store).waiting(NOW + timedelta(minutes=1), 10) == (job.id,)
+        assert WorkQueue(store, WorkKind.UPLOAD).waiting(NOW + timedelta(minutes=1), 10) == (str(job.id),)
 
 
 @one_engine
@@ -225,17 +228,19 @@ def test_too_many_are_asked_to_come_again_and_leave_nothing(storage: Storage, mo
 def test_a_job_whose_storing_ended_without_a_session_can_be_cancelled(storage: Storage, ended: str) -> None:
     job = asked(storage)
     with storage.database.writing() as store:
-        UploadJobs(store).claim(job.id, NOW, NOW)
+        WorkQueue(store, WorkKind.UPLOAD).claim(str(job.id), NOW, NOW)
         Jobs(store).begin_storing(job.id)
     with pytest.raises(ConflictError):
         cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
     later = NOW + timedelta(minutes=5)
     with storage.database.writing() as store:
+        queue = WorkQueue(store, WorkKind.UPLOAD)
         if ended == "give_back":
-            UploadJobs(store).give_back(job.id)
+            queue.give_back(str(job.id), NOW)
         elif ended == "put_off":
-            UploadJobs(store).put_off(job.id, later)
+            queue.put_off(str(job.id), later)
         else:
-            UploadJobs(store).claim(job.id, later, later)
+            queue.claim(str(job.id), later, later)
+            Jobs(store).begin(job.id, later)
     cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
     assert read(storage, job.id).state is JobState.CANCELLED
