@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from uuid import uuid4
 
-from service.jobs.changes import ask_job
+from service.jobs.changes import ask_job, retry_failed
 from service.jobs.records import Job, NewJob
-from service.jobs.retry import retry_failed
 from service.jobs.store import Jobs
 from service.kit.arriving_files import SentFile
 from service.kit.bell import Bell
@@ -17,9 +16,7 @@ from service.kit.person import Person
 from service.records.reception import Reception
 from service.storage import Storage
 from service.uploads.take_in import ask_upload, take_in
-from service.work.job_pieces import work_piece
-from service.work.kinds import JOBS, LEASE, Kind
-from service.work.uploads import UPLOADS
+from service.work.kinds import JOBS, LEASE, UPLOADS, Kind, work_piece
 
 
 @dataclass(frozen=True)

@@ -7,24 +7,33 @@ from datetime import datetime, timedelta
 from service.fleet.changes import summarise
 from service.groups.records import Group
 from service.groups.store import Groups
-from service.jobs.records import JobFailure, Piece
+from service.jobs.records import KEPT, Job, JobFailure, JobKind, Made, Piece
 from service.jobs.store import Jobs
-from service.jobs.words import AT_FAULT
+from service.jobs.words import AT_FAULT, FILE_AT_FAULT, left_in_words
+from service.kit.failure_words import with_last_try
+from service.languages.language import Language
 from service.models.records import task_of
 from service.models.store import Recomputations
+from service.papers.fleet.file import fleet_file
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records import diagnose, refresh_group
-from service.records.recalibrate import recompute
+from service.records.recalibrate import Recalibrated, recalibrate, recompute
 from service.records.refresh_outlooks import refresh_beside
 from service.storage import Storage
+from service.storage.made import drop_made, put_made
 from service.storage.store import Store
-from service.work.job_pieces import skip_piece, work_piece
+from service.uploads.take_in import give_up
 
 PUT_OFF = timedelta(minutes=10)
 """After a try that something passing hindered, as on a file that is lost; whoever reads a diagnosis tries at once."""
 MOST_ATTEMPTS = 3
 """Tries at which the program may fail, or its process die, before work is given up: two could be a machine in need."""
+MOST_TRIES_OF_A_FILE = 10
+"""At which the program may fail, or its service be ended: a file that is read for minutes outlives some restarts, and
+what was acknowledged is not given up for them."""
+PUT_OFF_A_FILE = timedelta(minutes=1)
+"""After a try that something passing hindered: somebody waits for the verdict."""
 LEASE = timedelta(seconds=30)
 """What a dead service was at is begun anew after it."""
 
@@ -57,6 +66,56 @@ class Kind:
             return
         with storage.database.writing() as store:
             self.queue(store).give_up(key)
+
+
+def work_piece(storage: Storage, id: int, now: datetime, coverage_factor: float) -> None:
+    """Does the next piece of a job, unless it has ended."""
+    with storage.database.writing() as store:
+        job = Jobs(store).begin(id, now)
+    if not job.is_open:
+        return
+    if job.kind is JobKind.REPORT:
+        _report(storage, job, now)
+    else:
+        _recalibrate_next(storage, job, now, coverage_factor)
+
+
+def skip_piece(storage: Storage, id: int, now: datetime) -> None:
+    """The program failed at it, or no process outlived it: it is listed, and the next one follows."""
+    with storage.database.writing() as store:
+        job = Jobs(store).get(id)
+        reason = with_last_try(AT_FAULT, job.held_up)
+        unit = Jobs(store).next_unit(job) if job.kind is JobKind.RECALIBRATION else None
+        if unit is None:
+            Jobs(store).fail(id, JobFailure(job.subject, reason), now)
+        else:
+            Jobs(store).advance(job, unit[0], Piece(failure=JobFailure(unit[1], reason)), now)
+
+
+def _report(storage: Storage, job: Job, now: datetime) -> None:
+    with storage.database.reading() as store:
+        content = fleet_file(store, job.form, now, Language(job.language))
+    digest = put_made(storage.files, job.id, content)
+    made = Made(f"fleet-{now:%Y-%m-%d}.{job.form}", len(content), digest, now + KEPT)
+    with storage.database.writing() as store:
+        kept = Jobs(store).finish(job.id, made, now)
+    if not kept:
+        drop_made(storage.files, job.id)
+
+
+def _recalibrate_next(storage: Storage, job: Job, now: datetime, coverage_factor: float) -> None:
+    with storage.database.reading() as store:
+        unit = Jobs(store).next_unit(job)
+    if unit is None:
+        with storage.database.writing() as store:
+            Jobs(store).finish(job.id, None, now)
+        return
+
+    def count(store: Store, done: Recalibrated) -> None:
+        failure = JobFailure(done.unit, left_in_words(done.left)) if done.left else None
+        Jobs(store).advance(job, unit[0], Piece(done.recomputed, len(done.verdicts), failure), now)
+
+    recalibrate(storage, unit[1], now, coverage_factor=coverage_factor, who=job.who, then=count)
 
 
 def _make_group(storage: Storage, place: str, now: datetime, _: float) -> None:
@@ -100,6 +159,14 @@ SUMMARIES = Kind("pending summaries", WorkKind.SUMMARY, lambda storage, place, n
 GROUPS = Kind("pending groups", WorkKind.GROUP, _make_group, _give_up_group, most=MOST_ATTEMPTS + 1)
 """One try more than others: a session of which no process outlives the statistics is given up at its fourth try, which
 is the group's fourth too, and the group goes on without it."""
+UPLOADS = Kind(
+    "uploads",
+    WorkKind.UPLOAD,
+    None,
+    lambda storage, id, now: give_up(storage, int(id), FILE_AT_FAULT, now),
+    most=MOST_TRIES_OF_A_FILE,
+    put_off=PUT_OFF_A_FILE,
+)
 IN_TURN: tuple[Kind, ...] = (OUTLOOKS, MODELS, JOBS, DIAGNOSES)
 """One of each in turn, so that none waits for all of the others."""
 AT_LAST: tuple[Kind, ...] = (SUMMARIES, GROUPS)

@@ -1,26 +1,36 @@
 """Work beside the requests: claimed in the database by one process of all services on it, made in a process of its own,
-and given up where the program fails at it or no process outlives it.
+and given up where the program fails at it or no process outlives it. Long files are taken in by a thread of their own,
+so that diagnoses and other jobs go on meanwhile; each is read by a process of its own, as in a request.
 
 Whoever begins a piece leases it for a short time, and says again and again that he is still at it. Where a process dies
 the lease expires and another one begins anew.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from threading import Event
+from threading import Event, Thread
 
 from service.kit.bell import Bell
-from service.kit.guard import Failure
+from service.kit.guard import FORESEEN, Failure, Guard, ending_here
 from service.kit.log import log
 from service.kit.metrics import Metrics
+from service.records.reception import Reception
 from service.settings import Settings
 from service.storage import Storage
-from service.work.helper import Still, StoppingError
-from service.work.kinds import LEASE, Kind
+from service.uploads.take_in import take_in
+from service.work.helper import Helper, Still, StoppingError
+from service.work.kinds import AT_LAST, DIAGNOSES, IN_TURN, LEASE, UPLOADS, Kind
 
 EXTEND = timedelta(seconds=10)
 """Between two words that somebody is still at it."""
+LOOK_EVERY = 1.0
+"""Seconds between two looks at what other services left; what this one takes in rings."""
+RETRY = 60.0
+"""Seconds after a look that failed, as when the database is away."""
+EXTEND_UPLOAD = 5.0
+"""Seconds between two words that somebody is still at an upload."""
 Make = Callable[[Kind, str, datetime, Still], Failure | None]
 """Makes one piece, as a process does."""
 
@@ -34,6 +44,37 @@ class Worker:
     clock: Callable[[], datetime]
     metrics: Metrics
     bell: Bell
+
+
+def work_beside(own: Worker, stop: Event) -> None:
+    """Makes what is asked for until ``stop`` is set."""
+    helper = Helper(own.settings)
+
+    def work() -> bool:
+        """One piece of each kind that has its turn, else one of the others; whether there was any."""
+        helper.start()
+        worked = [work_next(own, helper.make, stop, kind) for kind in IN_TURN]
+        return any(worked) or any(work_next(own, helper.make, stop, kind) for kind in AT_LAST)
+
+    try:
+        _work_until(own, stop, DIAGNOSES.name, work)
+    finally:
+        helper.end()
+
+
+def take_in_waiting(own: Worker, stop: Event) -> None:
+    """Takes in the long files that wait until ``stop`` is set."""
+    make = taking_in(own)
+    _work_until(own, stop, UPLOADS.name, lambda: work_next(own, make, stop, UPLOADS))
+
+
+def _work_until(own: Worker, stop: Event, name: str, work: Callable[[], bool]) -> None:
+    while not stop.is_set():
+        rung, guard = own.bell.rung, Guard(own.metrics)
+        with guard.alone(name, ""):
+            while not stop.is_set() and work():
+                rung = own.bell.rung
+        own.bell.wait(rung, RETRY if guard.failed else LOOK_EVERY)
 
 
 def work_next(own: Worker, make: Make, stop: Event, kind: Kind) -> bool:
@@ -98,3 +139,45 @@ def _leave(own: Worker, kind: Kind, one: str, failure: Failure) -> None:
             queue.put_off(one, own.clock() + kind.put_off)
         else:
             queue.give_back(one, own.clock())
+
+
+def taking_in(own: Worker) -> Make:
+    """What takes one in."""
+    k = own.settings.coverage_factor
+    reception = Reception(own.storage, k, own.metrics, own.bell.ring, is_dated_later=True)
+    return lambda _, id, now, still: _taken_in(lambda tick: take_in(reception, int(id), now, tick), id, still)
+
+
+def _taken_in(work: Callable[[Callable[[], None]], None], id: str, still: Still) -> Failure | None:
+    stopping = False
+
+    def tick() -> None:
+        nonlocal stopping
+        if not still():
+            stopping = True
+            raise StoppingError(f"Upload {id} was interrupted.")
+
+    with ending_here(UPLOADS.name, id) as met, _said_now_and_then(still):
+        work(tick)
+    if stopping:
+        raise StoppingError(f"Upload {id} was interrupted.")
+    return met.failure
+
+
+@contextmanager
+def _said_now_and_then(still: Still) -> Iterator[None]:
+    """Keeps the claim also while a file is read in one piece."""
+    done = Event()
+
+    def say() -> None:
+        while not done.wait(EXTEND_UPLOAD):
+            with suppress(*FORESEEN):
+                still()
+
+    teller = Thread(target=say, name="claim of an upload", daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        done.set()
+        teller.join()

@@ -21,11 +21,11 @@ from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
-from service.work.asking import ask_for_missing
-from service.work.diagnosis_reader import Reader
 from service.work.helper import DIED, Helper, Still
 from service.work.kinds import DIAGNOSES, LEASE, MOST_ATTEMPTS, PUT_OFF, Kind
 from service.work.loop import EXTEND, Worker, work_next
+from service.work.readers import Reader
+from service.work.watch import ask_for_missing
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes
 from tests.serving import http_client

@@ -11,8 +11,8 @@ import pytest
 from service.groups.records import Level
 from service.groups.store import Groups
 from service.groups.words.group import FAILED
+from service.jobs.changes import retry_failed
 from service.jobs.failures_store import Failures
-from service.jobs.retry import retry_failed
 from service.kit.bell import Bell
 from service.kit.failure_words import unit_failed, with_last_try
 from service.kit.guard import AT_FAULT, Failure

@@ -23,8 +23,7 @@ from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
 from service.work.helper import Helper, Still
-from service.work.job_pieces import work_piece
-from service.work.kinds import JOBS, LEASE, MOST_ATTEMPTS, Kind
+from service.work.kinds import JOBS, LEASE, MOST_ATTEMPTS, Kind, work_piece
 from service.work.loop import Worker, work_next
 from tests.databases import one_engine
 from tests.service.background.test_given_up import accepted
