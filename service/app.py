@@ -23,15 +23,10 @@ from service.web import guard
 from service.web.application import Application
 from service.web.heads import HeadAsGet
 from service.web.measured import Measured
-from service.work.asking import ask_for_missing
-from service.work.beside import work_beside
-from service.work.derivations import derive_pending
-from service.work.diagnosis_reader import Reader
-from service.work.group_reader import GroupReader
 from service.work.job_desk import JobDesk
-from service.work.loop import Worker
-from service.work.uploads import take_in_waiting
-from service.work.watch_fleet import watch_fleet
+from service.work.loop import Worker, take_in_waiting, work_beside
+from service.work.readers import GroupReader, Reader
+from service.work.watch import ask_for_missing, derive_pending, watch_fleet
 
 DESCRIPTION = (
     "Health of redundant inertial measurement units: calibration sessions in, parameters with uncertainties, "

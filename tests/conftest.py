@@ -18,8 +18,7 @@ from service.kit.lock_order import WATCHED
 from service.people import passwords
 from service.settings import Settings
 from service.storage import Storage
-from service.work.diagnosis_reader import Reader
-from service.work.group_reader import GroupReader
+from service.work.readers import GroupReader, Reader
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
 from tests.memory import write_into_memory
 from tests.patience import LONG

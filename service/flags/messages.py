@@ -94,9 +94,9 @@ class Outbox:
 
     def put(self, outgoing: Outgoing, outcome: str, *, accepted: bool) -> None:
         """Keeps what became of an attempt."""
-        state, next_at = _after(outgoing, accepted, self.clock())
+        state, at = _after(outgoing, accepted, self.clock())
         with self.storage.database.writing() as store:
-            Webhooks(store).put(outgoing.delivery, state, outcome, next_at)
+            Webhooks(store).put(outgoing.delivery, state, outcome, at)
 
 
 class Turns:
@@ -169,7 +169,7 @@ async def _attempt(outgoing: Outgoing, hosts: tuple[str, ...], http: httpx.Async
 
 
 def _after(outgoing: Outgoing, accepted: bool, now: datetime) -> tuple[DeliveryState, datetime]:
-    """Pauses double from one attempt to the next."""
+    """What it is then, and when it ended or is sent next: pauses double from one attempt to the next."""
     if accepted:
         return DeliveryState.DELIVERED, now
     if outgoing.attempt >= MOST_ATTEMPTS:

@@ -12,6 +12,8 @@ from service.errors import NotFoundError
 from service.flags.records import AT_FAULT, Assignee, Concern, Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.tables import DeliveryRow, FlagRow, NoticeRow, WebhookRow
 from service.models.records import Scope
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.storage.queries import Queries
 from service.units.tables import UnitRow
 
@@ -38,11 +40,11 @@ class Notices(Queries):
             self._put_into_outbox(row.id, at)
 
     def _put_into_outbox(self, notice: int, at: datetime) -> None:
-        columns = ("notice_id", "webhook_id", "state", "attempts", "next_at", "outcome")
-        told = select(
-            literal(notice), WebhookRow.id, literal("waiting"), literal(0), literal(at, NoticeRow.at.type), literal("")
-        ).where(WebhookRow.removed_at.is_(None))
-        self._session.execute(insert(DeliveryRow).from_select(columns, told))
+        columns = ("notice_id", "webhook_id", "state", "attempts", "outcome")
+        told = select(literal(notice), WebhookRow.id, literal("waiting"), literal(0), literal(""))
+        new = insert(DeliveryRow).from_select(columns, told.where(WebhookRow.removed_at.is_(None)))
+        deliveries = self._session.scalars(new.returning(DeliveryRow.id)).all()
+        WorkQueue(self._store, WorkKind.MESSAGE).ask_once(map(str, sorted(deliveries)), at)
 
 
 def notice_of(row: NoticeRow, serial: str) -> Notice:

@@ -64,12 +64,12 @@ class WebhookRow(Base):
 
 
 class DeliveryRow(Base):
-    """One notice on its way to one address: the outbox."""
+    """One notice on its way to one address; the queue knows when it is sent next."""
 
     __tablename__ = "deliveries"
     __table_args__ = (
         UniqueConstraint("webhook_id", "notice_id"),
-        Index("ix_deliveries_next_at", "next_at", **only_where(IS_WAITING)),
+        Index("ix_deliveries_waiting", "id", **only_where(IS_WAITING)),
         Index("ix_deliveries_failed", "state", **only_where(IS_FAILED)),
     )
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -77,5 +77,6 @@ class DeliveryRow(Base):
     webhook_id: Mapped[int] = mapped_column(ForeignKey("webhooks.id"))
     state: Mapped[str] = mapped_column(String(20))
     attempts: Mapped[int]
-    next_at: Mapped[datetime]
+    """How often it was sent."""
+    ended_at: Mapped[datetime | None]
     outcome: Mapped[str]

@@ -4,12 +4,15 @@ from collections.abc import Collection
 from dataclasses import replace
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, select, update
+from sqlalchemy import ColumnElement, func, select, update
 
 from service.errors import NotFoundError
 from service.flags.records import Delivery, DeliveryState, Matter, Outgoing, Webhook
 from service.flags.store import notice_of
 from service.flags.tables import DeliveryRow, FlagRow, NoticeRow, WebhookRow
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue, is_due, work_of
+from service.queue.tables import WorkRow
 from service.storage.queries import Queries
 from service.units.tables import UnitRow
 
@@ -42,16 +45,16 @@ class Webhooks(Queries):
     def remove(self, id: int, now: datetime) -> None:
         """Tells an address no more; what was on its way is given up."""
         self._session.execute(update(WebhookRow).where(WebhookRow.id == id).values(removed_at=now))
-        self._session.execute(
-            update(DeliveryRow)
-            .where(DeliveryRow.webhook_id == id, DeliveryRow.state == DeliveryState.WAITING)
-            .values(state=DeliveryState.FAILED, outcome=REMOVED)
-        )
+        waiting = update(DeliveryRow).where(DeliveryRow.webhook_id == id, DeliveryRow.state == DeliveryState.WAITING)
+        failed = waiting.values(state=DeliveryState.FAILED, outcome=REMOVED, ended_at=now)
+        self._queue.drop(*map(str, self._session.scalars(failed.returning(DeliveryRow.id))))
 
     def deliveries(self, id: int, limit: int) -> tuple[Delivery, ...]:
         """The latest deliveries to an address, newest first."""
+        next_at = func.coalesce(DeliveryRow.ended_at, WorkRow.lease_until, WorkRow.not_before, WorkRow.asked_at)
         query = (
-            select(DeliveryRow, NoticeRow, UnitRow.serial)
+            select(DeliveryRow, NoticeRow, UnitRow.serial, next_at)
+            .outerjoin(WorkRow, _WORK)
             .join(NoticeRow, NoticeRow.id == DeliveryRow.notice_id)
             .join(UnitRow, UnitRow.id == NoticeRow.unit_id)
             .where(DeliveryRow.webhook_id == id)
@@ -63,21 +66,25 @@ class Webhooks(Queries):
                 notice=notice_of(notice, serial),
                 state=DeliveryState(row.state),
                 attempts=row.attempts,
-                next_at=row.next_at,
+                next_at=at,
                 outcome=row.outcome,
             )
-            for row, notice, serial in self._session.execute(query.limit(limit))
+            for row, notice, serial, at in self._session.execute(query.limit(limit))
         )
 
     def is_due(self, now: datetime, but: Collection[int] = ()) -> bool:
         """Whether anything in the outbox is due, but for some webhooks; asked without keeping writers waiting."""
-        return self._session.scalar(select(DeliveryRow.id).where(*_due(now, but)).limit(1)) is not None
+        return (
+            self._session.scalar(select(DeliveryRow.id).join(WorkRow, _WORK).where(*_due(now, but)).limit(1))
+            is not None
+        )
 
     def claim(self, now: datetime, until: datetime, limit: int, but: Collection[int] = ()) -> tuple[Outgoing, ...]:
         """What is due, oldest first, but for some webhooks; claimed until a time: nobody else sends it before, and then
         somebody does."""
         query = (
             select(DeliveryRow, WebhookRow, NoticeRow, UnitRow.serial, FlagRow)
+            .join(WorkRow, _WORK)
             .join(WebhookRow, WebhookRow.id == DeliveryRow.webhook_id)
             .join(NoticeRow, NoticeRow.id == DeliveryRow.notice_id)
             .join(UnitRow, UnitRow.id == NoticeRow.unit_id)
@@ -89,26 +96,36 @@ class Webhooks(Queries):
         )
         claimed = []
         for row, webhook, notice, serial, flag in self._session.execute(query):
+            if self._queue.claim(str(row.id), now, until) is None:
+                continue
             row.attempts += 1
-            row.next_at = until
             found = Outgoing(row.id, row.attempts, _webhook(webhook), notice_of(notice, serial), None, "")
             claimed.append(found if flag is None else replace(found, matter=Matter(flag.matter), place=flag.place))
         self._session.flush()
         return tuple(claimed)
 
-    def put(self, delivery: int, state: DeliveryState, outcome: str, next_at: datetime) -> None:
-        """Writes what became of an attempt."""
-        self._session.execute(
-            update(DeliveryRow)
-            .where(DeliveryRow.id == delivery, DeliveryRow.state == DeliveryState.WAITING)
-            .values(state=state, outcome=outcome, next_at=next_at)
-        )
+    def put(self, delivery: int, state: DeliveryState, outcome: str, at: datetime) -> None:
+        """Writes what became of an attempt; ``at``: when it ended, or where it still waits the time of the next one."""
+        is_waiting = state is DeliveryState.WAITING
+        put = update(DeliveryRow).where(DeliveryRow.id == delivery, DeliveryRow.state == DeliveryState.WAITING)
+        self._session.execute(put.values(state=state, outcome=outcome, ended_at=None if is_waiting else at))
+        if is_waiting:
+            self._queue.put_off(str(delivery), at)
+        else:
+            self._queue.drop(str(delivery))
+
+    @property
+    def _queue(self) -> WorkQueue:
+        return WorkQueue(self._store, WorkKind.MESSAGE)
+
+
+_WORK = work_of(WorkKind.MESSAGE, DeliveryRow.id)
 
 
 def _due(now: datetime, but: Collection[int]) -> tuple[ColumnElement[bool], ...]:
     """Rows that are due, but for those of some webhooks."""
-    own = (DeliveryRow.state == DeliveryState.WAITING, DeliveryRow.next_at <= now)
-    return (*own, DeliveryRow.webhook_id.not_in(tuple(but))) if but else own
+    due = (DeliveryRow.state == DeliveryState.WAITING, is_due(now))
+    return (*due, DeliveryRow.webhook_id.not_in(tuple(but))) if but else due
 
 
 def _webhook(row: WebhookRow) -> Webhook:

@@ -6,6 +6,7 @@ from datetime import datetime
 
 from estimator.errors import Problem
 from service.errors import BusyError, ConflictError, ForbiddenError, RefusedError
+from service.jobs.failures_store import Failures
 from service.jobs.records import Job, JobKind, NewJob
 from service.jobs.store import Jobs
 from service.kit.person import Person, Role
@@ -104,6 +105,14 @@ def drop_outlived(storage: Storage, now: datetime) -> None:
         drop_made(storage.files, id)
         with storage.database.writing() as store:
             Jobs(store).forget_file(id)
+
+
+def retry_failed(storage: Storage, now: datetime, who: str) -> int:
+    """Everything that failed and that is still wanted; returns how much that is."""
+    with storage.database.writing() as store:
+        count = Failures(store).try_again() + Failures(store).ask_anew(now)
+        Audit(store).write(now, who, "retry", "failed work", {"pieces": count})
+    return count
 
 
 def _nothing(*_: object) -> None:

@@ -14,15 +14,13 @@ from service.groups.tables import GroupDiagnosisRow
 from service.jobs.records import JobState
 from service.jobs.tables import JobRow
 from service.kit.failure import Failed, FailedKind
-from service.models.records import Progress
+from service.models.records import task_of
 from service.models.store import Recomputations
-from service.models.tables import RecomputationRow
 from service.queue.records import WorkKind
 from service.queue.store import ANEW, WorkQueue
 from service.queue.tables import WorkRow
 from service.sessions.records import DiagnosisState
 from service.storage.queries import Queries
-from service.units.tables import UnitRow
 
 RECENT = timedelta(days=7)
 """For which jobs and messages that ended as failed are listed: nothing else removes them."""
@@ -45,13 +43,14 @@ class Failures(Queries):
         """What and why, by kind and name."""
         found = union_all(*self._every(now)).subquery()
         query = select(found.c.kind, found.c.of, found.c.why).order_by(found.c.kind, found.c.of).limit(most)
-        return tuple(Failed(FailedKind(kind), of, why) for kind, of, why in self._session.execute(query))
+        return tuple(_failed(FailedKind(kind), of, why) for kind, of, why in self._session.execute(query))
 
     def try_again(self) -> int:
         """Everything that failed in the queue is tried at once; how much that is. Verdicts are tried all the time."""
-        failed = update(WorkRow).where(WorkRow.failed.is_not(None), WorkRow.kind != WorkKind.DERIVATION)
+        Recomputations(self._store).try_again()
+        failed = update(WorkRow).where(_HAS_FAILED, WorkRow.kind != WorkKind.DERIVATION)
         found = self._session.execute(failed.values(**ANEW).returning(WorkRow.kind, WorkRow.key))
-        return len({(kind, key) for kind, key in found}) + Recomputations(self._store).try_again()
+        return len({(kind, key) for kind, key in found})
 
     def ask_anew(self, now: datetime) -> int:
         """The same of diagnoses and answers that were given up."""
@@ -73,14 +72,15 @@ class Failures(Queries):
         given_up = _line(FailedKind.DIAGNOSIS, DiagnosisRow.session_id, DiagnosisRow.summary)
         answer = _line(FailedKind.GROUP, _PLACE, GroupDiagnosisRow.summary)
         return [
-            waiting.where(WorkRow.failed.is_not(None)).group_by(WorkRow.kind, WorkRow.key),
+            waiting.where(_HAS_FAILED).group_by(WorkRow.kind, WorkRow.key),
             given_up.where(_GIVEN_UP),
             answer.where(GroupDiagnosisRow.document.is_(None)),
-            _models(),
             *_ended(now - RECENT),
         ]
 
 
+_HAS_FAILED = WorkRow.failed.is_not(None) & WorkRow.kind.not_in((WorkKind.JOB, WorkKind.UPLOAD, WorkKind.MESSAGE))
+"""Jobs and messages keep by themselves how they ended; until then they are tried again."""
 _GIVEN_UP = (DiagnosisRow.state == DiagnosisState.FAILED) & ~DiagnosisRow.summary.startswith(cannot_be_diagnosed(""))
 """A session that lacks something is no failure of the program, and no other try helps it."""
 _PLACE = GroupDiagnosisRow.level + literal(" ") + cast(GroupDiagnosisRow.group_id, String)
@@ -91,13 +91,8 @@ def _line(kind: FailedKind, of: Text, why: Text) -> Select[str, str, str]:
     return select(literal(kind.value).label("kind"), of.label("of"), why.label("why"))
 
 
-def _models() -> Select[str, str, str]:
-    why = func.coalesce(RecomputationRow.failed, literal("given up"))
-    is_failed = (RecomputationRow.state == Progress.GIVEN_UP) | (
-        (RecomputationRow.state == Progress.WAITING) & RecomputationRow.failed.is_not(None)
-    )
-    found = _line(FailedKind.RECOMPUTATION, UnitRow.serial, why).join(UnitRow, UnitRow.id == RecomputationRow.unit_id)
-    return found.where(is_failed)
+def _failed(kind: FailedKind, of: str, why: str) -> Failed:
+    return Failed(kind, task_of(of).unit if kind is FailedKind.RECOMPUTATION else of, why)
 
 
 def _ended(since: datetime) -> tuple[Select[str, str, str], ...]:
@@ -105,5 +100,5 @@ def _ended(since: datetime) -> tuple[Select[str, str, str], ...]:
     job = _line(FailedKind.JOB, cast(JobRow.id, String), literal("see the page Jobs"))
     own = (JobRow.state == JobState.FAILED, JobRow.refusal.is_(None), JobRow.ended_at >= since)
     message = _line(FailedKind.MESSAGE, literal("webhook ") + cast(DeliveryRow.webhook_id, String), DeliveryRow.outcome)
-    message = message.where(DeliveryRow.state == DeliveryState.FAILED, DeliveryRow.next_at >= since)
+    message = message.where(DeliveryRow.state == DeliveryState.FAILED, DeliveryRow.ended_at >= since)
     return job.where(*own), message

@@ -1,10 +1,10 @@
-"""Long work: asked for, claimed by one process piece by piece, cancelled between two, ended once."""
+"""Long work: asked for, done piece by piece, cancelled between two, ended once. The queue says who is at it."""
 
 from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, func, or_, select, update
+from sqlalchemy import Select, func, or_, select, update
 
 from service.errors import NotFoundError
 from service.jobs.records import Job, JobFailure, JobKind, JobState, Made, NewJob, Piece
@@ -12,6 +12,9 @@ from service.jobs.tables import JobRow
 from service.kit.arriving_files import Replaced, Sent
 from service.models.records import Scope
 from service.models.store import concerned
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue, work_of
+from service.queue.tables import WorkRow
 from service.storage.queries import Queries
 from service.units.tables import UnitRow
 
@@ -24,34 +27,33 @@ LONGEST_REASON = 500
 class Jobs(Queries):
     """Long work that somebody asked for."""
 
-    queued: tuple[JobKind, ...] = (JobKind.RECALIBRATION, JobKind.REPORT)
-    """What stands in this queue. The units of a changed model have one of their own."""
-
     def add(self, new: NewJob, total: int, now: datetime) -> Job:
-        """Keeps what is asked for."""
+        """Keeps what is asked for, and asks for it in the queue; the units of a changed model are asked for apart."""
         sent = new.sent
         row = JobRow(
             kind=new.kind, scope=new.scope or "", subject=new.subject, form=new.form, language=new.language,
-            revision=new.revision, who=new.who, account=new.account, state=JobState.WAITING, asked_at=now, turn_at=now,
-            cancelled_by="", attempts=0, done=0, total=total, cursor=0, recomputed=0, verdicts=0, failed=0, failures=[],
-            held_up="", filename="", size=0, sha256="" if sent is None else sent.sha256,
+            revision=new.revision, who=new.who, account=new.account, state=JobState.WAITING, asked_at=now,
+            cancelled_by="", done=0, total=total, cursor=0, recomputed=0, verdicts=0, failed=0, failures=[],
+            filename="", size=0, sha256="" if sent is None else sent.sha256,
             sent=None if sent is None else asdict(sent), is_storing=False, session="",
         )  # fmt: skip
         self._session.add(row)
         self._session.flush()
+        if new.kind is not JobKind.MODEL:
+            self._queue(new.kind).ask_once((str(row.id),), now)
         return _record(row)
 
     def like(self, new: NewJob) -> Job | None:
         """The job that does the same and is still open."""
         same = (JobRow.kind == new.kind, JobRow.scope == (new.scope or ""), JobRow.subject == new.subject)
         of_form = (JobRow.form == new.form, JobRow.language == new.language, JobRow.ended_at.is_(None))
-        row = self._session.scalar(select(JobRow).where(*same, *of_form).order_by(JobRow.id).limit(1))
-        return None if row is None else _record(row)
+        found = self._found(_JOBS.where(*same, *of_form).order_by(JobRow.id).limit(1))
+        return found[0] if found else None
 
     def sending(self, sha256: str) -> tuple[Job, ...]:
         """Open jobs that take in a file of this content."""
         same = (JobRow.kind == JobKind.UPLOAD, JobRow.sha256 == sha256, JobRow.ended_at.is_(None))
-        return tuple(map(_record, self._session.scalars(select(JobRow).where(*same).order_by(JobRow.id))))
+        return self._found(_JOBS.where(*same).order_by(JobRow.id))
 
     def places(self) -> frozenset[str]:
         """Of the files that open jobs take in."""
@@ -60,32 +62,32 @@ class Jobs(Queries):
 
     def open_uploads(self, text: str | None = None) -> tuple[Job, ...]:
         """Files that were received and are not yet stored, the newest first; ``text`` is part of their names."""
-        query = select(JobRow).where(JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
+        query = _JOBS.where(JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
         if text:
             query = query.where(JobRow.subject.icontains(text, autoescape=True))
-        return tuple(map(_record, self._session.scalars(query.order_by(JobRow.id.desc()))))
+        return self._found(query.order_by(JobRow.id.desc()))
 
     def open_count(self) -> int:
         """How many jobs are still to be worked on."""
         return self._session.scalar(select(func.count()).select_from(JobRow).where(JobRow.ended_at.is_(None))) or 0
 
     def get(self, id: int) -> Job:
-        """One job; NotFoundError where there is none of that number."""
-        row = self._session.get(JobRow, id, populate_existing=True)
-        if row is None:
+        """One job; NotFoundError."""
+        found = self._found(_JOBS.where(JobRow.id == id))
+        if not found:
             raise NotFoundError(f"There is no job {id}.")
-        return _record(row)
+        return found[0]
 
     def page(self, most: int, *, before: int | None = None, account: str = "", subject: str = "") -> tuple[Job, ...]:
         """Jobs, the newest first: from before one, of one account, about one subject."""
-        query = select(JobRow).order_by(JobRow.id.desc()).limit(most)
+        query = _JOBS.order_by(JobRow.id.desc()).limit(most)
         if before is not None:
             query = query.where(JobRow.id < before)
         if account:
             query = query.where(JobRow.account == account)
         if subject:
             query = query.where(JobRow.subject == subject)
-        return tuple(map(_record, self._session.scalars(query)))
+        return self._found(query)
 
     def units(self, scope: Scope | None, subject: str) -> int:
         """How many units are meant."""
@@ -100,38 +102,13 @@ class Jobs(Queries):
         found = self._session.execute(query).first()
         return None if found is None else (found[0], found[1])
 
-    def waiting(self, now: datetime, limit: int) -> tuple[int, ...]:
-        """Jobs that nobody is at, the one that has waited longest for its turn before all."""
-        return tuple(
-            self._session.scalars(
-                select(JobRow.id).where(*self._is_free(now)).order_by(JobRow.turn_at, JobRow.id).limit(limit)
-            )
-        )
+    def begin(self, id: int, now: datetime) -> Job:
+        """The job, whose next piece is begun now unless it has ended."""
+        begun = {"state": JobState.RUNNING, "begun_at": func.coalesce(JobRow.begun_at, now), "is_storing": False}
+        self._put_if_open(id, **begun)
+        return self.get(id)
 
-    def claim(self, id: int, now: datetime, until: datetime) -> int | None:
-        """How often its next piece was begun since a claim ended with a word; None where another is at it."""
-        own = update(JobRow).where(JobRow.id == id, *self._is_free(now))
-        begun = {"state": JobState.RUNNING, "begun_at": func.coalesce(JobRow.begun_at, now), "turn_at": now}
-        claimed = own.values(claimed_until=until, attempts=JobRow.attempts + 1, is_storing=False, **begun)
-        return self._session.scalar(claimed.returning(JobRow.attempts))
-
-    def extend(self, id: int, until: datetime) -> None:
-        """Whoever claimed it is still at it."""
-        self._put(id, claimed_until=until)
-
-    def give_back(self, id: int) -> None:
-        """The program failed or its process died: the next one may take it at once."""
-        self._put(id, claimed_until=None, is_storing=False)
-
-    def put_off(self, id: int, until: datetime | None) -> None:
-        """Gives it back after a word of why: nobody begins the next piece before a time."""
-        self._put(id, claimed_until=until, attempts=0, is_storing=False)
-
-    def hold_up(self, id: int, reason: str) -> None:
-        """Says why it waits."""
-        self._put(id, held_up=reason[:LONGEST_REASON])
-
-    def advance(self, job: Job, cursor: int, piece: Piece) -> None:
+    def advance(self, job: Job, cursor: int, piece: Piece, now: datetime) -> None:
         """One more piece is whole. Counted once, also where two were at it because one was taken for dead."""
         own: dict[str, Any] = {}
         if piece.failure is not None:
@@ -141,9 +118,10 @@ class Jobs(Queries):
             own["failures"] = [*map(vars, job.failures), told]
         done = JobRow.done + 1
         changed = {"recomputed": JobRow.recomputed + piece.recomputed, "verdicts": JobRow.verdicts + piece.verdicts}
-        free = {"claimed_until": None, "attempts": 0, "held_up": ""}
         counted = update(JobRow).where(JobRow.id == job.id, JobRow.cursor == job.cursor)
-        self._session.execute(counted.values(cursor=cursor, done=done, **changed, **free, **own))
+        counted = counted.values(cursor=cursor, done=done, **changed, **own)
+        if self._session.scalar(counted.returning(JobRow.id)) is not None and job.kind is not JobKind.MODEL:
+            self._queue(job.kind).next_turn(str(job.id), now)
 
     def count_unit(self, revision: int, piece: Piece, now: datetime) -> None:
         """One more unit of a changed model is whole; the last one ends the job."""
@@ -154,7 +132,7 @@ class Jobs(Queries):
         job = _record(row)
         if job.done >= job.total:  # a unit that was given up, and tried again
             return
-        self.advance(job, job.cursor, piece)
+        self.advance(job, job.cursor, piece, now)
         if job.is_open and job.done + 1 >= job.total:
             self.end(job.id, JobState.DONE, now)
         elif job.is_open:
@@ -162,9 +140,12 @@ class Jobs(Queries):
 
     def end(self, id: int, state: JobState, now: datetime, **own: Any) -> bool:
         """Ends it, unless somebody did before; whether that was so."""
-        ended = {"state": state, "ended_at": now, "claimed_until": None, "held_up": ""}
-        query = update(JobRow).where(JobRow.id == id, JobRow.ended_at.is_(None)).values(**ended, **own)
-        return self._session.scalar(query.returning(JobRow.id)) is not None
+        query = update(JobRow).where(JobRow.id == id, JobRow.ended_at.is_(None))
+        query = query.values(state=state, ended_at=now, **own)
+        kind = self._session.scalar(query.returning(JobRow.kind))
+        if kind is not None:
+            self._queue(JobKind(kind)).drop(str(id))
+        return kind is not None
 
     def finish(self, id: int, made: Made | None, now: datetime) -> bool:
         """All of it is done; with the file that it made."""
@@ -176,12 +157,12 @@ class Jobs(Queries):
     def fail(self, id: int, failure: JobFailure, now: datetime) -> bool:
         """It cannot be done."""
         told = {"subject": failure.subject, "reason": failure.reason[:LONGEST_REASON]}
-        return self.end(id, JobState.FAILED, now, failed=1, failures=[told], is_storing=False)
+        return self.end(id, JobState.FAILED, now, failed=1, failures=[told])
 
     def cancel(self, id: int, who: str, now: datetime) -> bool:
         """Nobody begins its next piece; whether it was still open, and no file being stored."""
-        free = select(JobRow.id).where(JobRow.id == id, JobRow.is_storing.is_(False)).with_for_update()
-        if self._session.scalar(free) is None:
+        self._session.execute(select(JobRow.id).where(JobRow.id == id).with_for_update())
+        if self.get(id).is_storing:
             return False
         return self.end(id, JobState.CANCELLED, now, cancelled_by=who)
 
@@ -195,11 +176,11 @@ class Jobs(Queries):
 
     def take_in(self, id: int, session: str, now: datetime) -> bool:
         """Its file is this session; whether it was still open."""
-        return self.end(id, JobState.DONE, now, session=session, done=JobRow.total, is_storing=False)
+        return self.end(id, JobState.DONE, now, session=session, done=JobRow.total)
 
     def refuse(self, id: int, refusal: int, now: datetime) -> bool:
         """Its file cannot be used; whether it was still open."""
-        return self.end(id, JobState.FAILED, now, refusal=refusal, is_storing=False)
+        return self.end(id, JobState.FAILED, now, refusal=refusal)
 
     def outlived(self, now: datetime) -> tuple[int, ...]:
         """Jobs whose file has been kept for its time."""
@@ -216,18 +197,21 @@ class Jobs(Queries):
         own = update(JobRow).where(JobRow.id == id, JobRow.ended_at.is_(None)).values(**values)
         return self._session.scalar(own.returning(JobRow.id)) is not None
 
-    def _is_free(self, now: datetime) -> tuple[ColumnElement[bool], ...]:
-        until = JobRow.claimed_until
-        return JobRow.ended_at.is_(None), JobRow.kind.in_(self.queued), or_(until.is_(None), until <= now)
+    def _found(self, query: Select[JobRow, str | None, datetime | None]) -> tuple[Job, ...]:
+        rows = self._session.execute(query.execution_options(populate_existing=True))
+        return tuple(_record(row, failed or "", is_leased=until is not None) for row, failed, until in rows)
+
+    def _queue(self, kind: JobKind) -> WorkQueue:
+        """Long files are worked on apart from the rest."""
+        return WorkQueue(self._store, WorkKind.UPLOAD if kind is JobKind.UPLOAD else WorkKind.JOB)
 
 
-class UploadJobs(Jobs):
-    """Long files, which are worked on apart from the rest."""
+_WORK = or_(work_of(WorkKind.JOB, JobRow.id), work_of(WorkKind.UPLOAD, JobRow.id))
+_JOBS = select(JobRow, WorkRow.failed, WorkRow.lease_until).outerjoin(WorkRow, _WORK)
+"""With what the queue knows of them."""
 
-    queued = (JobKind.UPLOAD,)
 
-
-def _record(row: JobRow) -> Job:
+def _record(row: JobRow, held_up: str = "", *, is_leased: bool = False) -> Job:
     kept = row.kept_until
     return Job(
         id=row.id, kind=JobKind(row.kind), scope=Scope(row.scope) if row.scope else None, subject=row.subject,
@@ -235,9 +219,11 @@ def _record(row: JobRow) -> Job:
         state=JobState(row.state),
         asked_at=row.asked_at, begun_at=row.begun_at, ended_at=row.ended_at, cancelled_by=row.cancelled_by,
         done=row.done, total=row.total, cursor=row.cursor, recomputed=row.recomputed, verdicts=row.verdicts,
-        failed=row.failed, failures=tuple(JobFailure(**one) for one in row.failures), held_up=row.held_up,
+        failed=row.failed, failures=tuple(JobFailure(**one) for one in row.failures),
+        held_up=held_up[:LONGEST_REASON],
         made=None if kept is None else Made(row.filename, row.size, row.sha256, kept),
-        sent=None if row.sent is None else _sent(row.sent), is_storing=row.is_storing, session=row.session,
+        sent=None if row.sent is None else _sent(row.sent), is_storing=row.is_storing and is_leased,
+        session=row.session,
         refusal=row.refusal,
     )  # fmt: skip
 

@@ -11,11 +11,11 @@ from service.storage.tables import Base
 
 
 class JobRow(Base):
-    """One job: what it is, how far it has come, who is at it, and what it made."""
+    """One job: what it is, how far it has come, and what it made; the queue knows who is at it."""
 
     __tablename__ = "jobs"
     __table_args__ = (
-        Index("ix_jobs_open", "turn_at", "id", **only_where(IS_AT_WORK)),
+        Index("ix_jobs_open", "id", **only_where(IS_AT_WORK)),
         Index("ix_jobs_failed", "state", **only_where(IS_FAILED)),
     )
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -29,14 +29,9 @@ class JobRow(Base):
     account: Mapped[str] = mapped_column(String(200), index=True)
     state: Mapped[str] = mapped_column(String(20))
     asked_at: Mapped[datetime]
-    turn_at: Mapped[datetime]
-    """When it was last worked on, so that of several jobs each has its turn."""
     begun_at: Mapped[datetime | None]
     ended_at: Mapped[datetime | None]
     cancelled_by: Mapped[str]
-    claimed_until: Mapped[datetime | None]
-    attempts: Mapped[int]
-    """Claims that ended without a word: the process died."""
     done: Mapped[int]
     total: Mapped[int]
     cursor: Mapped[int]
@@ -44,7 +39,6 @@ class JobRow(Base):
     verdicts: Mapped[int]
     failed: Mapped[int]
     failures: Mapped[list[Any]]
-    held_up: Mapped[str]
     filename: Mapped[str]
     size: Mapped[int] = mapped_column(BYTES)
     sha256: Mapped[str] = mapped_column(String(64))
@@ -53,5 +47,6 @@ class JobRow(Base):
     sent: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
     """Of an upload: the file that waits, as `Sent`; its hash is in ``sha256``."""
     is_storing: Mapped[bool] = mapped_column(server_default=false())
+    """Of an upload: whoever has its lease stores it."""
     session: Mapped[str] = mapped_column(String(20), server_default="")
     refusal: Mapped[int | None]

@@ -150,6 +150,17 @@ class Task:
     revision: int
     unit: str
 
+    @property
+    def key(self) -> str:
+        """Its name in the queue."""
+        return f"{self.unit} {self.revision}"
+
+
+def task_of(key: str) -> Task:
+    """The task of a key."""
+    unit, _, revision = key.rpartition(" ")
+    return Task(int(revision), unit)
+
 
 @answer
 @dataclass(frozen=True)

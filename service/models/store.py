@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, and_, bindparam, func, or_, select, update
+from sqlalchemy import ColumnElement, String, and_, bindparam, cast, func, or_, select, update
 
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
@@ -18,8 +18,12 @@ from service.models.records import (
     Recomputed,
     Scope,
     Task,
+    task_of,
 )
 from service.models.tables import ModelRow, RecomputationRow
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.queue.tables import WorkRow
 from service.sessions.decision import Verdict
 from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
@@ -186,60 +190,36 @@ class Recomputations(Queries):
 
     def ask(self, revision: int, scope: Scope, subject: str, now: datetime) -> int:
         """Asks for every unit that a revision of a model concerns; returns how many those are."""
-        units = select(UnitRow.id).where(concerned(scope, subject)).order_by(UnitRow.id)
-        keys = tuple(self._session.scalars(units))
-        for unit in keys:
-            own = {"state": Progress.WAITING, "asked_at": now, "attempts": 0}
-            self.insert_once(RecomputationRow, revision=revision, unit_id=unit, **own)
-        return len(keys)
+        units = select(UnitRow.id, UnitRow.serial).where(concerned(scope, subject)).order_by(UnitRow.id)
+        found = self._session.execute(units).all()
+        rows = [{"revision": revision, "unit_id": unit, "state": Progress.WAITING} for unit, _ in found]
+        self.insert_all_once(RecomputationRow, rows)
+        self._queue.ask_once((Task(revision, serial).key for _, serial in found), now)
+        return len(found)
 
     def waiting(self, now: datetime, limit: int) -> tuple[Task, ...]:
-        """What nobody is at, the one that was asked for first before all, and of a unit its oldest revision."""
-        query = select(RecomputationRow.revision, UnitRow.serial).join(UnitRow, UnitRow.id == RecomputationRow.unit_id)
-        order = (RecomputationRow.asked_at, RecomputationRow.revision, RecomputationRow.unit_id)
-        found = self._session.execute(query.where(*_is_free(now)).order_by(*order).limit(limit))
-        return tuple(Task(*row) for row in found)
+        """What nobody is at, the one that was asked for first before all."""
+        return tuple(map(task_of, self._queue.waiting(now, limit)))
 
-    def claim(self, task: Task, now: datetime, until: datetime) -> int | None:
-        """How often it was claimed, with this time, since a claim ended with a word; None where another is at it."""
-        own = update(RecomputationRow).where(*_of(task), *_is_free(now))
-        claimed = own.values(claimed_until=until, attempts=RecomputationRow.attempts + 1)
-        return self._session.scalar(claimed.returning(RecomputationRow.attempts))
-
-    def extend(self, task: Task, until: datetime) -> None:
-        """Whoever claimed it is still at it."""
-        self._session.execute(update(RecomputationRow).where(*_of(task)).values(claimed_until=until))
-
-    def give_back(self, task: Task) -> None:
-        """Whoever was at it died: the next one may take it at once."""
-        self._session.execute(update(RecomputationRow).where(*_of(task)).values(claimed_until=None))
-
-    def put_off(self, task: Task, until: datetime | None) -> None:
-        """Gives it back after a word of why: nobody begins it before a time."""
-        own = update(RecomputationRow).where(*_of(task))
-        self._session.execute(own.values(claimed_until=until, attempts=0))
-
-    def hold_up(self, task: Task, why: str) -> None:
-        """Keeps why a try failed."""
-        self._session.execute(update(RecomputationRow).where(*_of(task)).values(failed=why))
-
-    def try_again(self) -> int:
-        """What failed is tried at once, also what was given up; how many units that are."""
-        failed = (RecomputationRow.state == Progress.WAITING) & RecomputationRow.failed.is_not(None)
-        own = failed | (RecomputationRow.state == Progress.GIVEN_UP)
-        anew = {"state": Progress.WAITING, "claimed_until": None, "attempts": 0, "failed": None, "done_at": None}
-        free = update(RecomputationRow).where(own).values(**anew)
-        return len(self._session.scalars(free.returning(RecomputationRow.unit_id)).all())
+    def try_again(self) -> None:
+        """What was given up waits again, as its work does."""
+        own = update(RecomputationRow).where(RecomputationRow.state == Progress.GIVEN_UP)
+        self._session.execute(own.values(state=Progress.WAITING, done_at=None))
 
     def give_up(self, task: Task, now: datetime) -> None:
         """No process outlived it: its sessions keep what they have."""
-        own = update(RecomputationRow).where(*_of(task))
-        self._session.execute(own.values(state=Progress.GIVEN_UP, claimed_until=None, done_at=now))
+        self._session.execute(update(RecomputationRow).where(*_of(task)).values(state=Progress.GIVEN_UP, done_at=now))
+        self._queue.give_up(task.key)
 
     def cancel(self, revision: int, now: datetime) -> None:
         """Nobody begins the units of a revision that nobody is at."""
-        free = update(RecomputationRow).where(RecomputationRow.revision == revision, *_is_free(now))
-        self._session.execute(free.values(state=Progress.CANCELLED, done_at=now))
+        own = (RecomputationRow.revision == revision, RecomputationRow.state == Progress.WAITING)
+        query = select(RecomputationRow.unit_id, UnitRow.serial).join(UnitRow, UnitRow.id == RecomputationRow.unit_id)
+        found = self._session.execute(query.where(*own).with_for_update(of=RecomputationRow))
+        units = {Task(revision, serial).key: unit for unit, serial in found}
+        free = [units[key] for key in self._queue.drop_free(units, now)]
+        cancelled = update(RecomputationRow).where(*own, RecomputationRow.unit_id.in_(free))
+        self._session.execute(cancelled.values(state=Progress.CANCELLED, done_at=now))
 
     def settle(self, task: Task, outcome: Recomputed, now: datetime) -> bool:
         """Keeps what became of a unit's sessions, once; whether that was now."""
@@ -248,12 +228,15 @@ class Recomputations(Queries):
             "verdicts": [asdict(one) | {"started_at": one.started_at.isoformat()} for one in outcome.verdicts],
         }
         own = update(RecomputationRow).where(*_of(task), RecomputationRow.state == Progress.WAITING)
-        kept = own.values(state=Progress.DONE, claimed_until=None, done_at=now, outcome=told)
-        return self._session.scalar(kept.returning(RecomputationRow.unit_id)) is not None
+        kept = own.values(state=Progress.DONE, done_at=now, outcome=told).returning(RecomputationRow.unit_id)
+        is_new = self._session.scalar(kept) is not None
+        self._queue.drop(task.key)
+        return is_new
 
     def of(self, revision: int) -> tuple[Recomputation, ...]:
         """What a revision brought, by serial number."""
-        query = select(RecomputationRow, UnitRow.serial).join(UnitRow, UnitRow.id == RecomputationRow.unit_id)
+        query = select(RecomputationRow, UnitRow.serial, WorkRow.failed)
+        query = query.join(UnitRow, UnitRow.id == RecomputationRow.unit_id).outerjoin(WorkRow, _WORK)
         rows = self._session.execute(query.where(RecomputationRow.revision == revision).order_by(UnitRow.serial))
         return tuple(
             Recomputation(
@@ -261,10 +244,19 @@ class Recomputations(Queries):
                 Progress(row.state),
                 row.done_at,
                 None if row.outcome is None else _read(row.outcome),
-                row.failed or "",
+                failed or "",
             )
-            for row, serial in rows
+            for row, serial, failed in rows
         )
+
+    @property
+    def _queue(self) -> WorkQueue:
+        return WorkQueue(self._store, WorkKind.RECOMPUTATION)
+
+
+_KEY = UnitRow.serial + " " + cast(RecomputationRow.revision, String)
+"""`Task.key`."""
+_WORK = and_(WorkRow.kind == WorkKind.RECOMPUTATION, WorkRow.key == _KEY)
 
 
 def concerned(scope: Scope, subject: str) -> ColumnElement[bool]:
@@ -282,11 +274,6 @@ def concerned(scope: Scope, subject: str) -> ColumnElement[bool]:
 def _of(task: Task) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     unit = select(UnitRow.id).where(UnitRow.serial == task.unit).scalar_subquery()
     return RecomputationRow.revision == task.revision, RecomputationRow.unit_id == unit
-
-
-def _is_free(now: datetime) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
-    until = RecomputationRow.claimed_until
-    return RecomputationRow.state == Progress.WAITING, or_(until.is_(None), until <= now)
 
 
 def _read(told: dict[str, Any]) -> Recomputed:

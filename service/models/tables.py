@@ -3,10 +3,9 @@
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, Index, String, Text
+from sqlalchemy import JSON, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.columns import IS_WAITING, only_where
 from service.storage.tables import Base
 
 
@@ -32,15 +31,8 @@ class RecomputationRow(Base):
     """A unit whose sessions a revision concerns: whether they are computed again, and what moved because of it."""
 
     __tablename__ = "recomputations"
-    __table_args__ = (Index("ix_recomputations_waiting", "asked_at", "revision", "unit_id", **only_where(IS_WAITING)),)
     revision: Mapped[int] = mapped_column(ForeignKey("model_revisions.id"), primary_key=True, autoincrement=False)
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
     state: Mapped[str] = mapped_column(String(20))
-    asked_at: Mapped[datetime]
-    claimed_until: Mapped[datetime | None]
-    attempts: Mapped[int]
-    """Claims that ended without a word: the process died."""
-    failed: Mapped[str | None] = mapped_column(Text)
-    """Why the last try failed; NULL where none did."""
     done_at: Mapped[datetime | None]
     outcome: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))

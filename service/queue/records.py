@@ -19,11 +19,13 @@ class WorkKind(StrEnum):
     SUMMARY = "summary"
     """How the units of a type drift, or how stands stand, by `Group.place`."""
     RECOMPUTATION = "recomputation"
-    """A unit's sessions under another model."""
+    """A unit's sessions under another model, by `Task.key`."""
     JOB = "job"
-    """A piece of long work that somebody asked for."""
+    """A piece of long work that somebody asked for, by the number of its job."""
     UPLOAD = "upload"
-    """A long file that was received whole."""
+    """A long file that was received whole, by the number of its job."""
+    MESSAGE = "message"
+    """To a webhook, by the number of its delivery."""
 
 
 class WorkState(StrEnum):

@@ -5,8 +5,22 @@ from datetime import datetime
 from typing import Any
 from uuid import uuid4
 
-from sqlalchemy import ColumnElement, Update, case, delete, exists, func, insert, or_, select, update
-from sqlalchemy.orm import aliased
+from sqlalchemy import (
+    ColumnElement,
+    String,
+    Update,
+    and_,
+    case,
+    cast,
+    delete,
+    exists,
+    func,
+    insert,
+    or_,
+    select,
+    update,
+)
+from sqlalchemy.orm import InstrumentedAttribute, aliased
 
 from service.kit.failed import AT_FAULT
 from service.queue.records import Waiting, WorkKind, WorkState
@@ -88,8 +102,7 @@ class WorkQueue(Queries):
     def claim(self, key: str, now: datetime, until: datetime) -> int | None:
         """Leases a piece of work; how often that was done, with this time, since a try ended with an answer. None
         where another is at it, or nobody asks for it any more."""
-        is_free = or_(WorkRow.lease_until.is_(None), WorkRow.lease_until <= now)
-        own = self._of(key).where(is_free, WorkRow.state == WorkState.WAITING)
+        own = self._of(key).where(_is_free(now), WorkRow.state == WorkState.WAITING)
         claimed = own.values(lease_until=until, not_before=None, attempts=WorkRow.attempts + 1)
         return max(self._session.scalars(claimed.returning(WorkRow.attempts)).all(), default=None)
 
@@ -97,9 +110,13 @@ class WorkQueue(Queries):
         """Whoever claimed it is still at it."""
         self._session.execute(self._of(key).where(WorkRow.lease_until.is_not(None)).values(lease_until=until))
 
-    def give_back(self, key: str) -> None:
-        """The program failed at it or its process died: the next one may begin at once."""
-        self._session.execute(self._of(key).values(lease_until=None))
+    def give_back(self, key: str, now: datetime) -> None:
+        """The program failed at it or its process died: it may begin again at once, behind what waits already."""
+        self._session.execute(self._of(key).values(lease_until=None, asked_at=now))
+
+    def next_turn(self, key: str, now: datetime) -> None:
+        """One piece of several is done: the next one waits behind what waits already."""
+        self._session.execute(self._of(key).values(lease_until=None, asked_at=now, attempts=0, failed=None))
 
     def put_off(self, key: str, until: datetime | None) -> None:
         """Ends a lease after a try that says why: nobody begins it before a time unless somebody reads it."""
@@ -143,9 +160,14 @@ class WorkQueue(Queries):
         own = (WorkRow.kind == self._kind, WorkRow.ticket.in_(tuple(tickets)))
         self._session.execute(delete(WorkRow).where(*own))
 
-    def drop(self, key: str) -> None:
+    def drop(self, *keys: str) -> None:
         """Nobody asks for it any more."""
-        self._session.execute(delete(WorkRow).where(*self._is(key)))
+        self._session.execute(delete(WorkRow).where(WorkRow.kind == self._kind, WorkRow.key.in_(keys)))
+
+    def drop_free(self, keys: Iterable[str], now: datetime) -> tuple[str, ...]:
+        """The same of what nobody is at; which those are."""
+        free = (WorkRow.kind == self._kind, WorkRow.key.in_(tuple(keys)), _is_free(now))
+        return tuple(self._session.scalars(delete(WorkRow).where(*free).returning(WorkRow.key)))
 
     def _new(self, key: str, now: datetime) -> dict[str, Any]:
         return {
@@ -161,3 +183,17 @@ class WorkQueue(Queries):
 
 
 _HAS_FAILED = WorkRow.failed.is_not(None)
+
+
+def _is_free(now: datetime) -> ColumnElement[bool]:
+    return or_(WorkRow.lease_until.is_(None), WorkRow.lease_until <= now)
+
+
+def is_due(now: datetime) -> ColumnElement[bool]:
+    """Whether nobody is at a row and its next try is due."""
+    return and_(_is_free(now), or_(WorkRow.not_before.is_(None), WorkRow.not_before <= now))
+
+
+def work_of(kind: WorkKind, number: InstrumentedAttribute[int]) -> ColumnElement[bool]:
+    """Joins the work of a record that has a number; its key is that number."""
+    return and_(WorkRow.kind == kind, WorkRow.key == cast(number, String))

@@ -28,6 +28,7 @@ class WorkRow(Base):
     key: Mapped[str] = mapped_column(String(250))
     """Of what it is, as `WorkKind` says."""
     asked_at: Mapped[datetime]
+    """Its place in the line; of what was tried in vain or is done in part, when that was."""
     ticket: Mapped[str] = mapped_column(String(32))
     """Another one whenever what the work looks at changes: what was made under an older one is not stored."""
     state: Mapped[str] = mapped_column(String(10))

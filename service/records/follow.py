@@ -1,7 +1,7 @@
 """Flow: what follows from a change of records is worked out after the transaction that changed them, with none open.
 
 What that transaction left is kept by the sessions themselves, so whatever ends the process between the two, the work
-beside the requests (`service.work.derivations`) finds it.
+beside the requests (`service.work.watch`) finds it.
 """
 
 from collections.abc import Sequence

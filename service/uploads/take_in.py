@@ -10,12 +10,10 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 
 from service.errors import (
-    AwayError,
     BusyError,
     ConflictError,
     DamagedError,
     ForbiddenError,
-    NoSpaceError,
     NotFoundError,
     RefusedError,
     ServiceError,
@@ -39,9 +37,6 @@ from service.uploads.receive import receive, receive_mapped, refuse
 
 FINAL = (NotFoundError, ConflictError, ForbiddenError, DamagedError)
 """What another try would end in too."""
-PASSING = (AwayError, NoSpaceError)
-"""What is over when the database or the disk is back."""
-IN_TURN = "Other large files are being read first."
 
 
 def is_long(storage: Storage, file: SentFile, longer_than: int) -> bool:
@@ -129,12 +124,12 @@ def _unless_ended(is_open: bool) -> None:
 
 
 def take_in(reception: Reception, id: int, now: datetime, tick: Callable[[], None] = lambda: None) -> None:
-    """Reads, judges and stores the file of a job, or refuses it. What passes is raised, and kept for whoever waits.
+    """Reads, judges and stores the file of a job, or refuses it. What passes is raised, as when the disk is full.
 
     ``tick`` is called now and then while it is read, and ends it by raising.
     """
-    with reception.storage.database.reading() as store:
-        job = Jobs(store).get(id)
+    with reception.storage.database.writing() as store:
+        job = Jobs(store).begin(id, now)
     assert job.sent is not None
     if job.is_open:
         try:
@@ -143,10 +138,6 @@ def take_in(reception: Reception, id: int, now: datetime, tick: Callable[[], Non
             pass
         except FINAL as fault:
             give_up(reception.storage, id, fault.detail, now)
-        except PASSING as fault:
-            with reception.storage.database.writing() as store:
-                Jobs(store).hold_up(id, IN_TURN if isinstance(fault, BusyError) else fault.detail)
-            raise
     drop_waiting(reception.storage.files, job.sent)
 
 

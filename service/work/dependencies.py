@@ -7,9 +7,8 @@ from fastapi import Depends, Request
 
 from service.storage.store import Store
 from service.web.application import application_of
-from service.work.diagnosis_reader import Reader
-from service.work.group_reader import GroupReader
 from service.work.job_desk import JobDesk
+from service.work.readers import GroupReader, Reader
 
 
 def _summarised(request: Request) -> Iterator[Store]:

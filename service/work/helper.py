@@ -12,7 +12,6 @@ from contextlib import suppress
 from datetime import datetime
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
-from typing import Any
 
 from service.errors import ServiceError
 from service.kit import limits
@@ -66,7 +65,7 @@ class Helper:
         theirs.close()
         self._pipe = ours
 
-    def make(self, kind: Kind[Any], of: object, now: datetime, still: Still) -> Failure | None:
+    def make(self, kind: Kind, of: str, now: datetime, still: Still) -> Failure | None:
         """Makes and stores a piece of work, while ``still`` says to go on."""
         if not still():
             raise StoppingError(f"The {kind.kind} of {of} was not begun.")
@@ -87,7 +86,7 @@ class Helper:
                 self.end()
         return answer
 
-    def _ended(self, kind: WorkKind, of: object) -> Failure:
+    def _ended(self, kind: WorkKind, of: str) -> Failure:
         """Why it answers no more."""
         assert self._process is not None
         self._process.join()
@@ -122,8 +121,8 @@ def work(pipe: Connection, settings: Settings, most: Limits) -> None:
             pipe.send(answer)
 
 
-def _made(storage: Storage, kind: Kind[Any], of: Any, now: datetime, coverage_factor: float) -> Failure | None:
+def _made(storage: Storage, kind: Kind, of: str, now: datetime, coverage_factor: float) -> Failure | None:
     assert kind.make is not None
-    with ending_here(kind.kind.value, str(of)) as met:
+    with ending_here(kind.kind.value, of) as met:
         kind.make(storage, of, now, coverage_factor)
     return met.failure

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from uuid import uuid4
 
-from service.jobs.changes import ask_job
+from service.jobs.changes import ask_job, retry_failed
 from service.jobs.records import Job, NewJob
-from service.jobs.retry import retry_failed
 from service.jobs.store import Jobs
 from service.kit.arriving_files import SentFile
 from service.kit.bell import Bell
@@ -17,8 +16,7 @@ from service.kit.person import Person
 from service.records.reception import Reception
 from service.storage import Storage
 from service.uploads.take_in import ask_upload, take_in
-from service.work.job_pieces import skip_piece, work_piece
-from service.work.loop import LEASE
+from service.work.kinds import JOBS, LEASE, UPLOADS, Kind, work_piece
 
 
 @dataclass(frozen=True)
@@ -35,21 +33,17 @@ class JobDesk:
     def ask(self, storage: Storage, new: NewJob) -> Job:
         """The job, as it stands now; asked for again, one that was left in the middle goes on."""
         job = ask_job(storage, new, self.clock())
-        if not self.workers:
-            self._work_through(storage, job.id)
-        self.bell.ring()
-        with storage.database.reading() as store:
-            return Jobs(store).get(job.id)
+        while not self.workers and self._is_worked(storage, JOBS, job, lambda now: self._piece(storage, job, now)):
+            pass
+        return self._rung(storage, job)
 
     def take_in(self, reception: Reception, file: SentFile, person: Person) -> Job:
         """The job that takes in a long file, as it stands now."""
         storage = reception.storage
         job = ask_upload(storage, file, person, uuid4().hex, self.clock())
         if not self.workers:
-            take_in(reception, job.id, self.clock())
-        self.bell.ring()
-        with storage.database.reading() as store:
-            return Jobs(store).get(job.id)
+            self._is_worked(storage, UPLOADS, job, lambda now: take_in(reception, job.id, now))
+        return self._rung(storage, job)
 
     def try_again(self, storage: Storage, now: datetime, who: str) -> int:
         """Asks anew for everything that failed; returns how much that is."""
@@ -57,24 +51,29 @@ class JobDesk:
         self.bell.ring()
         return count
 
-    def _work_through(self, storage: Storage, id: int) -> None:
-        while True:
-            now = self.clock()
-            with storage.database.writing() as store:
-                begun = Jobs(store).claim(id, now, now + LEASE)
-            if begun is None:
-                return
-            self._work(storage, id, now)
+    def _rung(self, storage: Storage, job: Job) -> Job:
+        self.bell.ring()
+        with storage.database.reading() as store:
+            return Jobs(store).get(job.id)
 
-    def _work(self, storage: Storage, id: int, now: datetime) -> None:
-        """A piece; whoever asked is told what is foreseen, and what is not costs this piece alone."""
-        guard = Guard(self.metrics)
+    def _piece(self, storage: Storage, job: Job, now: datetime) -> None:
+        work_piece(storage, job.id, now, self.coverage_factor)
+
+    def _is_worked(self, storage: Storage, kind: Kind, job: Job, make: Callable[[datetime], None]) -> bool:
+        """Makes a piece, unless another is at it or the job has ended; whether it was made here. Whoever asked is told
+        what is foreseen, and what is not costs this piece alone."""
+        key, now, guard = str(job.id), self.clock(), Guard(self.metrics)
+        with storage.database.writing() as store:
+            if kind.queue(store).claim(key, now, now + LEASE) is None:
+                return False
         try:
-            with guard.at_request("jobs", str(id)):
-                work_piece(storage, id, now, self.coverage_factor)
-        except FORESEEN:
+            with guard.at_request(kind.name, key):
+                make(now)
+        except FORESEEN as fault:
             with storage.database.writing() as store:
-                Jobs(store).put_off(id, None)
+                kind.queue(store).hold_up(key, str(fault))
+                kind.queue(store).put_off(key, None)
             raise
         if guard.failed:
-            skip_piece(storage, id, now)
+            kind.end(storage, key, now)
+        return True

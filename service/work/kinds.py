@@ -3,71 +3,119 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from typing import Any, Generic, Protocol, TypeVar
 
 from service.fleet.changes import summarise
 from service.groups.records import Group
 from service.groups.store import Groups
-from service.jobs.records import JobFailure, Piece
+from service.jobs.records import KEPT, Job, JobFailure, JobKind, Made, Piece
 from service.jobs.store import Jobs
-from service.jobs.words import AT_FAULT
-from service.models.records import Task
+from service.jobs.words import AT_FAULT, FILE_AT_FAULT, left_in_words
+from service.kit.failure_words import with_last_try
+from service.languages.language import Language
+from service.models.records import task_of
 from service.models.store import Recomputations
+from service.papers.fleet.file import fleet_file
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records import diagnose, refresh_group
-from service.records.recalibrate import recompute
+from service.records.recalibrate import Recalibrated, recalibrate, recompute
 from service.records.refresh_outlooks import refresh_beside
 from service.storage import Storage
+from service.storage.made import drop_made, put_made
 from service.storage.store import Store
-from service.work.job_pieces import skip_piece, work_piece
+from service.uploads.take_in import give_up
 
 PUT_OFF = timedelta(minutes=10)
 """After a try that something passing hindered, as on a file that is lost; whoever reads a diagnosis tries at once."""
 MOST_ATTEMPTS = 3
 """Tries at which the program may fail, or its process die, before work is given up: two could be a machine in need."""
-T = TypeVar("T")
-"""What stands in a queue."""
-
-
-class Queue(Protocol[T]):
-    """What is asked for."""
-
-    def waiting(self, now: datetime, limit: int) -> tuple[T, ...]:
-        """What nobody is at, the first before all."""
-
-    def claim(self, one: T, now: datetime, until: datetime, /) -> int | None:
-        """How often it was begun since a try ended with an answer; None where another is at it."""
-
-    def extend(self, one: T, until: datetime, /) -> None:
-        """Whoever claimed it is still at it."""
-
-    def hold_up(self, one: T, why: str, /) -> None:
-        """Keeps why a try failed."""
-
-    def give_back(self, one: T, /) -> None:
-        """The program failed or its process died: the next one may take it at once."""
-
-    def put_off(self, one: T, until: datetime | None, /) -> None:
-        """Ends a lease after a try that says why: nobody begins it before a time."""
+MOST_TRIES_OF_A_FILE = 10
+"""At which the program may fail, or its service be ended: a file that is read for minutes outlives some restarts, and
+what was acknowledged is not given up for them."""
+PUT_OFF_A_FILE = timedelta(minutes=1)
+"""After a try that something passing hindered: somebody waits for the verdict."""
+LEASE = timedelta(seconds=30)
+"""What a dead service was at is begun anew after it."""
 
 
 @dataclass(frozen=True)
-class Kind(Generic[T]):
+class Kind:
     """One kind of it."""
 
     name: str
     """As the log and the figures name it."""
     kind: WorkKind
-    queue: Callable[[Store], Queue[T]]
-    make: Callable[[Storage, T, datetime, float], object] | None
-    """In a process of its own, with the time and the coverage factor; None for what the service does itself."""
-    give_up: Callable[[Storage, T, datetime], None]
-    """Keeps that the program failed at it, or that no process outlived it."""
+    make: Callable[[Storage, str, datetime, float], object] | None
+    """In a process of its own, by its key, with the time and the coverage factor; None for what the service does
+    itself."""
+    give_up: Callable[[Storage, str, datetime], None] | None = None
+    """Keeps that the program failed at it, or that no process outlived it; None where the queue keeps it."""
     most: int = MOST_ATTEMPTS
     put_off: timedelta = PUT_OFF
     is_awaited: bool = False
     """Somebody may wait for one, which then comes before the others."""
+
+    def queue(self, store: Store) -> WorkQueue:
+        """Where it waits."""
+        return WorkQueue(store, self.kind)
+
+    def end(self, storage: Storage, key: str, now: datetime) -> None:
+        """Gives a piece up."""
+        if self.give_up is not None:
+            self.give_up(storage, key, now)
+            return
+        with storage.database.writing() as store:
+            self.queue(store).give_up(key)
+
+
+def work_piece(storage: Storage, id: int, now: datetime, coverage_factor: float) -> None:
+    """Does the next piece of a job, unless it has ended."""
+    with storage.database.writing() as store:
+        job = Jobs(store).begin(id, now)
+    if not job.is_open:
+        return
+    if job.kind is JobKind.REPORT:
+        _report(storage, job, now)
+    else:
+        _recalibrate_next(storage, job, now, coverage_factor)
+
+
+def skip_piece(storage: Storage, id: int, now: datetime) -> None:
+    """The program failed at it, or no process outlived it: it is listed, and the next one follows."""
+    with storage.database.writing() as store:
+        job = Jobs(store).get(id)
+        reason = with_last_try(AT_FAULT, job.held_up)
+        unit = Jobs(store).next_unit(job) if job.kind is JobKind.RECALIBRATION else None
+        if unit is None:
+            Jobs(store).fail(id, JobFailure(job.subject, reason), now)
+        else:
+            Jobs(store).advance(job, unit[0], Piece(failure=JobFailure(unit[1], reason)), now)
+
+
+def _report(storage: Storage, job: Job, now: datetime) -> None:
+    with storage.database.reading() as store:
+        content = fleet_file(store, job.form, now, Language(job.language))
+    digest = put_made(storage.files, job.id, content)
+    made = Made(f"fleet-{now:%Y-%m-%d}.{job.form}", len(content), digest, now + KEPT)
+    with storage.database.writing() as store:
+        kept = Jobs(store).finish(job.id, made, now)
+    if not kept:
+        drop_made(storage.files, job.id)
+
+
+def _recalibrate_next(storage: Storage, job: Job, now: datetime, coverage_factor: float) -> None:
+    with storage.database.reading() as store:
+        unit = Jobs(store).next_unit(job)
+    if unit is None:
+        with storage.database.writing() as store:
+            Jobs(store).finish(job.id, None, now)
+        return
+
+    def count(store: Store, done: Recalibrated) -> None:
+        failure = JobFailure(done.unit, left_in_words(done.left)) if done.left else None
+        Jobs(store).advance(job, unit[0], Piece(done.recomputed, len(done.verdicts), failure), now)
+
+    recalibrate(storage, unit[1], now, coverage_factor=coverage_factor, who=job.who, then=count)
 
 
 def _make_group(storage: Storage, place: str, now: datetime, _: float) -> None:
@@ -83,61 +131,44 @@ def _group(storage: Storage, place: str) -> Group:
         return Groups(store).at(place)
 
 
-def _give_up_outlook(storage: Storage, serial: str, _: datetime) -> None:
-    with storage.database.writing() as store:
-        WorkQueue(store, WorkKind.OUTLOOK).give_up(serial)
-
-
-def _give_up_summary(storage: Storage, place: str, _: datetime) -> None:
-    """What was made last stays, until a record of the group changes again."""
-    with storage.database.writing() as store:
-        WorkQueue(store, WorkKind.SUMMARY).give_up(place)
-
-
-def _give_up_model(storage: Storage, task: Task, now: datetime) -> None:
+def _give_up_model(storage: Storage, key: str, now: datetime) -> None:
+    task = task_of(key)
     with storage.database.writing() as store:
         Recomputations(store).give_up(task, now)
         Jobs(store).count_unit(task.revision, Piece(failure=JobFailure(task.unit, AT_FAULT)), now)
 
 
-DIAGNOSES: Kind[str] = Kind(
-    "pending diagnoses",
-    WorkKind.DIAGNOSIS,
-    lambda store: WorkQueue(store, WorkKind.DIAGNOSIS),
-    diagnose.diagnose,
-    diagnose.give_up,
-    is_awaited=True,
+DIAGNOSES = Kind("pending diagnoses", WorkKind.DIAGNOSIS, diagnose.diagnose, diagnose.give_up, is_awaited=True)
+OUTLOOKS = Kind(
+    "pending outlooks", WorkKind.OUTLOOK, lambda storage, serial, now, _: refresh_beside(storage, serial, now)
 )
-OUTLOOKS: Kind[str] = Kind(
-    "pending outlooks",
-    WorkKind.OUTLOOK,
-    lambda store: WorkQueue(store, WorkKind.OUTLOOK),
-    lambda storage, serial, now, _: refresh_beside(storage, serial, now),
-    _give_up_outlook,
+MODELS = Kind(
+    "pending models",
+    WorkKind.RECOMPUTATION,
+    lambda storage, key, now, k: recompute(storage, task_of(key), now, k),
+    _give_up_model,
 )
-MODELS: Kind[Task] = Kind(
-    "pending models", WorkKind.RECOMPUTATION, lambda store: Recomputations(store), recompute, _give_up_model
+JOBS = Kind(
+    "jobs",
+    WorkKind.JOB,
+    lambda storage, id, now, k: work_piece(storage, int(id), now, k),
+    lambda storage, id, now: skip_piece(storage, int(id), now),
 )
-JOBS: Kind[int] = Kind("jobs", WorkKind.JOB, lambda store: Jobs(store), work_piece, skip_piece)
-SUMMARIES: Kind[str] = Kind(
-    "pending summaries",
-    WorkKind.SUMMARY,
-    lambda store: WorkQueue(store, WorkKind.SUMMARY),
-    lambda storage, place, now, _: summarise(storage, place, now),
-    _give_up_summary,
-)
-GROUPS: Kind[str] = Kind(
-    "pending groups",
-    WorkKind.GROUP,
-    lambda store: WorkQueue(store, WorkKind.GROUP),
-    _make_group,
-    _give_up_group,
-    most=MOST_ATTEMPTS + 1,
-)
+SUMMARIES = Kind("pending summaries", WorkKind.SUMMARY, lambda storage, place, now, _: summarise(storage, place, now))
+"""Given up, what was made last stays until a record of the group changes again."""
+GROUPS = Kind("pending groups", WorkKind.GROUP, _make_group, _give_up_group, most=MOST_ATTEMPTS + 1)
 """One try more than others: a session of which no process outlives the statistics is given up at its fourth try, which
 is the group's fourth too, and the group goes on without it."""
-IN_TURN: tuple[Kind[Any], ...] = (OUTLOOKS, MODELS, JOBS, DIAGNOSES)
+UPLOADS = Kind(
+    "uploads",
+    WorkKind.UPLOAD,
+    None,
+    lambda storage, id, now: give_up(storage, int(id), FILE_AT_FAULT, now),
+    most=MOST_TRIES_OF_A_FILE,
+    put_off=PUT_OFF_A_FILE,
+)
+IN_TURN: tuple[Kind, ...] = (OUTLOOKS, MODELS, JOBS, DIAGNOSES)
 """One of each in turn, so that none waits for all of the others."""
-AT_LAST: tuple[Kind[Any], ...] = (SUMMARIES, GROUPS)
+AT_LAST: tuple[Kind, ...] = (SUMMARIES, GROUPS)
 """While nothing else waits: summaries rest on all outlooks, and every diagnosis changes what a group rests on."""
 KINDS = {kind.kind: kind for kind in (*IN_TURN, *AT_LAST)}

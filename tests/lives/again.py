@@ -14,7 +14,7 @@ from service.app import utc_now
 from service.kit.metrics import Metrics
 from service.sessions.tables import CalibrationRow
 from service.settings import Settings
-from service.work.watch_fleet import look
+from service.work.watch import look
 from tests.databases import Databases
 from tests.lives.quiet import differences, state, wait_until_quiet
 from tests.lives.service import Service

@@ -25,7 +25,7 @@ from service.queue.store import WorkQueue
 from service.sessions.records import DiagnosisState
 from service.settings import Settings
 from service.storage import Storage
-from service.work import diagnosis_reader as read_diagnosis
+from service.work import readers as read_diagnosis
 from service.work.helper import Helper
 from service.work.kinds import DIAGNOSES, MOST_ATTEMPTS
 from service.work.loop import LEASE, Worker, work_next

@@ -11,7 +11,7 @@ from service.papers.desk import Desk
 from service.papers.sealing import Seal
 from service.people.dependencies import StorageOf
 from service.web.application import application_of
-from service.work.diagnosis_reader import Reader
+from service.work.readers import Reader
 
 
 def _desk(request: Request, storage: StorageOf) -> Desk:

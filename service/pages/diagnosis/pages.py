@@ -37,7 +37,7 @@ from service.web.dependencies import Now, Reading
 from service.web.fields import NO_NUL
 from service.web.render import render
 from service.work.dependencies import ReaderOf
-from service.work.diagnosis_reader import GLANCE
+from service.work.readers import GLANCE
 
 WAIT = "A large session takes some seconds; this page reads itself again."
 CLAIM = "conditional-pass"

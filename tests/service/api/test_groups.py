@@ -17,9 +17,9 @@ from service.queue.store import WorkQueue
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
-from service.work.group_reader import MOST_WAITING, GroupReader
 from service.work.kinds import GROUPS as QUEUE
-from service.work.loop import LEASE
+from service.work.kinds import LEASE
+from service.work.readers import MOST_WAITING_FOR_GROUPS, GroupReader
 from tests.conftest import Holding
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
@@ -49,7 +49,7 @@ def test_what_somebody_is_at_is_202_where_too_many_wait_for_it(settings: Setting
     with storage.database.writing() as store:
         WorkQueue(store, WorkKind.GROUP).claim(Groups(store).find(Level.UNIT, "BA-017").place, NOW, NOW + LEASE)
     app = create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)
-    for _ in range(MOST_WAITING):
+    for _ in range(MOST_WAITING_FOR_GROUPS):
         app.state.application.part(GroupReader).places.acquire()
     with http_client(app) as client:
         answer = client.get("/api/v1/units/BA-017/diagnosis")

@@ -15,7 +15,7 @@ from service.settings import Settings
 from service.storage import Storage
 from service.units.store import Units
 from service.uploads.receive import upload
-from service.work.derivations import derive_waiting
+from service.work.watch import derive_waiting
 from tests.conftest import SettingsHolding
 from tests.patience import until
 from tests.service.doubtful import MISTAKEN

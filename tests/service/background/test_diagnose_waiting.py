@@ -21,11 +21,11 @@ from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
-from service.work.asking import ask_for_missing
-from service.work.diagnosis_reader import Reader
 from service.work.helper import DIED, Helper, Still
-from service.work.kinds import DIAGNOSES, MOST_ATTEMPTS, PUT_OFF, Kind
-from service.work.loop import EXTEND, LEASE, Worker, work_next
+from service.work.kinds import DIAGNOSES, LEASE, MOST_ATTEMPTS, PUT_OFF, Kind
+from service.work.loop import EXTEND, Worker, work_next
+from service.work.readers import Reader
+from service.work.watch import ask_for_missing
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes
 from tests.serving import http_client
@@ -153,7 +153,7 @@ def test_what_no_process_outlives_is_given_up_and_says_so(own: Worker, helper: H
     for _ in range(MOST_ATTEMPTS):
         with own.storage.database.writing() as store:
             WorkQueue(store, WorkKind.DIAGNOSIS).claim(id, NOW, NOW)
-            WorkQueue(store, WorkKind.DIAGNOSIS).give_back(id)
+            WorkQueue(store, WorkKind.DIAGNOSIS).give_back(id, NOW)
     assert work_next(own, helper.make, Event(), DIAGNOSES)
     assert (state_of(own.storage, id), waiting(own.storage)) == (DiagnosisState.FAILED, ())
 
@@ -226,7 +226,7 @@ def test_two_services_on_one_database_make_each_diagnosis_once(settings: Setting
 def test_whoever_is_long_at_it_says_so(own: Worker, monkeypatch: pytest.MonkeyPatch) -> None:
     id = stored(own.storage)
 
-    def slow(kind: Kind[str], id: str, now: datetime, still: Still) -> None:
+    def slow(kind: Kind, id: str, now: datetime, still: Still) -> None:
         own.clock.now = NOW + 2 * EXTEND  # type: ignore[attr-defined]
         assert still()
         assert waiting(own.storage, NOW + LEASE) == ()

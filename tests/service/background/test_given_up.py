@@ -5,15 +5,14 @@ import signal
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from threading import Event
-from typing import Any
 
 import pytest
 
 from service.groups.records import Level
 from service.groups.store import Groups
 from service.groups.words.group import FAILED
+from service.jobs.changes import retry_failed
 from service.jobs.failures_store import Failures
-from service.jobs.retry import retry_failed
 from service.kit.bell import Bell
 from service.kit.failure_words import unit_failed, with_last_try
 from service.kit.guard import AT_FAULT, Failure
@@ -66,7 +65,7 @@ def killed(helper: Helper, now: datetime, still: Still) -> Failure | None:
     return helper.make(OUTLOOKS, UNIT, now, still)
 
 
-def tries(own: Worker, helper: Helper, kind: Kind[Any]) -> int:
+def tries(own: Worker, helper: Helper, kind: Kind) -> int:
     """How often it is begun until nothing of it waits."""
     count = 0
     while work_next(own, lambda _, __, now, still: killed(helper, now, still), Event(), kind):
@@ -152,7 +151,7 @@ def test_a_session_at_fault_is_not_blamed_on_its_group(storage: Storage, two: St
 
 @one_engine
 def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings, two: Storage) -> None:
-    def fails(kind: Kind[str], one: str, now: datetime, still: Still) -> Failure | None:
+    def fails(kind: Kind, one: str, now: datetime, still: Still) -> Failure | None:
         return Failure("ValueError", "no")
 
     own = diagnosing(settings, two)
@@ -162,7 +161,7 @@ def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings
 
 @one_engine
 def test_what_the_program_fails_at_is_given_up_too(settings: Settings, two: Storage) -> None:
-    def fails(kind: Kind[str], one: str, now: datetime, still: Still) -> Failure | None:
+    def fails(kind: Kind, one: str, now: datetime, still: Still) -> Failure | None:
         return Failure("KeyError", AT_FAULT, is_foreseen=False)
 
     begun = 0

@@ -16,14 +16,15 @@ from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
 from service.models.records import ModelRevision, Progress, Task
 from service.models.store import Models, Recomputations
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.records.recalibrate import recompute
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
 from service.work.helper import Helper, Still
-from service.work.job_pieces import work_piece
-from service.work.kinds import JOBS, MOST_ATTEMPTS, Kind
-from service.work.loop import LEASE, Worker, work_next
+from service.work.kinds import JOBS, LEASE, MOST_ATTEMPTS, Kind, work_piece
+from service.work.loop import Worker, work_next
 from tests.databases import one_engine
 from tests.service.background.test_given_up import accepted
 from tests.service.grouped import GROUP
@@ -68,7 +69,7 @@ def helper(settings: Settings) -> Iterator[Helper]:
 
 def claim(storage: Storage, id: int, now: datetime = NOW) -> int | None:
     with storage.database.writing() as store:
-        return Jobs(store).claim(id, now, now + LEASE)
+        return WorkQueue(store, WorkKind.JOB).claim(str(id), now, now + LEASE)
 
 
 def read(storage: Storage, id: int) -> Job:
@@ -110,7 +111,7 @@ def test_a_piece_that_two_were_at_is_counted_once(three: Storage) -> None:
     with three.database.writing() as store:
         unit = Jobs(store).next_unit(before)
         assert unit is not None
-        Jobs(store).advance(before, unit[0], Piece())
+        Jobs(store).advance(before, unit[0], Piece(), NOW)
     assert read(three, id).done == 1
 
 
@@ -129,7 +130,7 @@ def test_it_is_cancelled_between_two_pieces_and_keeps_what_is_whole(three: Stora
 def test_the_units_of_a_changed_model_are_one_job(two_sessions: Storage) -> None:
     changed, job = change_model(two_sessions)
     with two_sessions.database.reading() as store:
-        assert Jobs(store).waiting(NOW, 10) == ()
+        assert WorkQueue(store, WorkKind.JOB).waiting(NOW, 10) == ()
     recompute(two_sessions, Task(changed.id, "BA-017"), NOW, 2.0)
     recompute(two_sessions, Task(changed.id, "BA-017"), NOW, 2.0)
     ended = read(two_sessions, job.id)
@@ -147,10 +148,10 @@ def test_a_changed_model_is_cancelled_for_units_that_nobody_is_at(two_sessions: 
 @one_engine
 def test_several_jobs_take_turns(three: Storage) -> None:
     ids = [ask_job(three, new, NOW).id for new in (AGAIN, REPORT)]
-    claim(three, ids[0], NOW + timedelta(seconds=1))
+    claim(three, ids[0])
     with three.database.writing() as store:
-        Jobs(store).give_back(ids[0])
-        assert Jobs(store).waiting(NOW + timedelta(seconds=2), 10) == (ids[1], ids[0])
+        WorkQueue(store, WorkKind.JOB).give_back(str(ids[0]), NOW + timedelta(seconds=1))
+        assert WorkQueue(store, WorkKind.JOB).waiting(NOW, 10) == (str(ids[1]), str(ids[0]))
 
 
 @one_engine
@@ -168,7 +169,7 @@ def test_a_process_of_its_own_does_it(settings: Settings, three: Storage, helper
 
 @one_engine
 def test_a_unit_at_which_the_program_fails_is_listed_and_the_others_follow(settings: Settings, three: Storage) -> None:
-    def fails(kind: Kind[int], id: int, now: datetime, still: Still) -> Failure | None:
+    def fails(kind: Kind, id: str, now: datetime, still: Still) -> Failure | None:
         return Failure("KeyError", AT_FAULT, is_foreseen=False)
 
     id = ask_job(three, AGAIN, NOW).id

@@ -16,10 +16,10 @@ from service.records.refresh_group import current, refresh_group
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
-from service.work.asking import ask_for_outdated
 from service.work.helper import Helper
 from service.work.kinds import GROUPS
 from service.work.loop import LEASE, Worker, work_next
+from service.work.watch import ask_for_outdated
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 

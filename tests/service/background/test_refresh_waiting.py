@@ -24,8 +24,8 @@ from service.storage import Storage
 from service.units.store import Units
 from service.uploads.receive import upload
 from service.work.helper import Helper
-from service.work.kinds import OUTLOOKS
-from service.work.loop import LEASE, Worker, work_next
+from service.work.kinds import LEASE, OUTLOOKS
+from service.work.loop import Worker, work_next
 from tests.databases import one_engine
 from tests.service.records import step, way
 from tests.service.sessions import session_bytes, session_id

@@ -12,12 +12,14 @@ from service.errors import AwayError, BusyError, ConflictError, NotFoundError
 from service.jobs import changes as ask_job
 from service.jobs.changes import cancel_job
 from service.jobs.records import Job, JobState
-from service.jobs.store import Jobs, UploadJobs
+from service.jobs.store import Jobs
 from service.kit import limits
 from service.kit.arriving_files import Replaced, SentFile
 from service.kit.bell import Bell
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.records.reception import Reception
 from service.sessions.store import Sessions
 from service.settings import Settings
@@ -25,8 +27,8 @@ from service.storage import Files, Storage
 from service.storage.waiting import FOLDER, UNASKED
 from service.uploads import take_in as flow
 from service.uploads.take_in import ask_upload, sweep_waiting, take_in
-from service.work.loop import Worker, work_next
-from service.work.uploads import MOST_TRIES, UPLOADS, taking_in
+from service.work.kinds import MOST_TRIES_OF_A_FILE, UPLOADS
+from service.work.loop import Worker, taking_in, work_next
 from tests import builders
 from tests.databases import one_engine
 from tests.estimator.test_reading_csv import csv_of
@@ -140,6 +142,7 @@ def test_cancelled_while_it_is_read_it_leaves_nothing(storage: Storage, few_cell
 def test_once_it_is_being_stored_nobody_cancels_it(storage: Storage) -> None:
     job = asked(storage)
     with storage.database.writing() as store:
+        WorkQueue(store, WorkKind.UPLOAD).claim(str(job.id), NOW, NOW)
         assert Jobs(store).begin_storing(job.id)
     with pytest.raises(ConflictError, match="being stored"):
         cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
@@ -168,7 +171,7 @@ def test_what_passes_is_tried_again_after_a_minute_and_says_why(
         assert work()
     assert (read(storage, job.id).held_up, work()) == ("The database does not answer.", False)
     with storage.database.reading() as store:
-        assert UploadJobs(store).waiting(NOW + timedelta(minutes=1), 10) == (job.id,)
+        assert WorkQueue(store, WorkKind.UPLOAD).waiting(NOW + timedelta(minutes=1), 10) == (str(job.id),)
 
 
 @one_engine
@@ -181,7 +184,7 @@ def test_one_at_which_the_program_fails_is_given_up(
     job, work = asked(storage), uploads(storage, settings)
     with monkeypatch.context() as patch:
         patch.setattr(Files, "keep", fails)
-        assert [work() for _ in range(MOST_TRIES + 2)] == [True] * (MOST_TRIES + 1) + [False]
+        assert [work() for _ in range(MOST_TRIES_OF_A_FILE + 2)] == [True] * (MOST_TRIES_OF_A_FILE + 1) + [False]
     assert (read(storage, job.id).state, waiting(storage)) == (JobState.FAILED, [])
 
 
@@ -225,17 +228,19 @@ def test_too_many_are_asked_to_come_again_and_leave_nothing(storage: Storage, mo
 def test_a_job_whose_storing_ended_without_a_session_can_be_cancelled(storage: Storage, ended: str) -> None:
     job = asked(storage)
     with storage.database.writing() as store:
-        UploadJobs(store).claim(job.id, NOW, NOW)
+        WorkQueue(store, WorkKind.UPLOAD).claim(str(job.id), NOW, NOW)
         Jobs(store).begin_storing(job.id)
     with pytest.raises(ConflictError):
         cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
     later = NOW + timedelta(minutes=5)
     with storage.database.writing() as store:
+        queue = WorkQueue(store, WorkKind.UPLOAD)
         if ended == "give_back":
-            UploadJobs(store).give_back(job.id)
+            queue.give_back(str(job.id), NOW)
         elif ended == "put_off":
-            UploadJobs(store).put_off(job.id, later)
+            queue.put_off(str(job.id), later)
         else:
-            UploadJobs(store).claim(job.id, later, later)
+            queue.claim(str(job.id), later, later)
+            Jobs(store).begin(job.id, later)
     cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
     assert read(storage, job.id).state is JobState.CANCELLED

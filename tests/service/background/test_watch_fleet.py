@@ -13,7 +13,7 @@ from service.flags.records import Matter
 from service.flags.store import FlagQuery, Flags
 from service.kit.metrics import Metrics
 from service.storage import Storage
-from service.work.watch_fleet import Pace, look, watch_fleet
+from service.work.watch import Pace, look, watch_fleet
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.patience import LONG
 from tests.service.dated import upload_and_date

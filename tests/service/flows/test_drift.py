@@ -10,7 +10,7 @@ from service.outlook.reading import outlook_of
 from service.outlook.records import Action, ParameterTrend, UnitOutlook
 from service.sessions.store import Sessions
 from service.storage import Storage
-from service.work.outlooks import relearn
+from service.work.watch import relearn
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.dated import upload_and_date
 from tests.service.recordings import recording_bytes

@@ -5,15 +5,16 @@ from collections.abc import Callable
 from datetime import datetime
 from uuid import uuid4
 
-from service.jobs.store import UploadJobs
 from service.kit.arriving_files import SentFile
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.records.reception import Reception
 from service.storage import Storage
 from service.uploads.receive import upload
 from service.uploads.take_in import ask_upload, take_in
-from service.work.loop import LEASE
+from service.work.kinds import LEASE
 
 Way = Callable[[Storage, bytes, datetime], None]
 
@@ -45,9 +46,9 @@ def by_a_job(storage: Storage, content: bytes, now: datetime) -> None:
 def go_on(storage: Storage, now: datetime) -> None:
     """What a service does that is started again: jobs that are open are taken up."""
     with storage.database.reading() as store:
-        waiting = UploadJobs(store).waiting(now + LEASE, 100)
+        waiting = WorkQueue(store, WorkKind.UPLOAD).waiting(now + LEASE, 100)
     for id in waiting:
-        take_in(Reception(storage, 2.0, Metrics(), lambda: None), id, now)
+        take_in(Reception(storage, 2.0, Metrics(), lambda: None), int(id), now)
 
 
 WAYS: dict[str, Way] = {"as bytes": as_bytes, "landed": landed, "by a job": by_a_job}

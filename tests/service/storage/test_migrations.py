@@ -1,6 +1,7 @@
 """Migrations make the schema that the code expects, and go down and up again on a database with data."""
 
-from datetime import UTC, datetime
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 
 import pytest
 from alembic.autogenerate import compare_metadata
@@ -9,7 +10,13 @@ from sqlalchemy import inspect, text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import AwayError
+from service.flags.records import Delivery
+from service.flags.webhooks_store import Webhooks
 from service.jobs.failures_store import Failures
+from service.jobs.records import Job, JobKind, NewJob
+from service.jobs.store import Jobs
+from service.models.records import Scope
+from service.models.store import Models, Recomputations
 from service.opening import open_database
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -20,7 +27,8 @@ from service.storage.schema import downgrade, head_revision, stored_revision, up
 from service.storage.tables import Base
 from service.uploads.receive import upload
 from tests.databases import Databases
-from tests.service.sessions import session_bytes
+from tests.service.background.test_given_up import accepted
+from tests.service.sessions import FAILED, session_bytes
 
 
 def test_the_migrated_schema_is_the_one_of_the_tables(store_url: str) -> None:
@@ -115,3 +123,32 @@ def test_what_waits_is_carried_over_with_why_it_failed(store_url: str, storage: 
         assert Failures(store).listed(now, 10) == listed
     assert len(places) == 3
     assert len(listed) == 2
+
+
+def test_jobs_messages_and_recomputations_wait_across_a_change_of_the_schema(store_url: str, storage: Storage) -> None:
+    now = datetime(2026, 11, 21, tzinfo=UTC)
+    with storage.database.writing() as store:
+        Webhooks(store).add("http://127.0.0.1:9/hook", "sixteen or more letters", "K. Ito", now)
+    session, *_ = [upload(storage, content, "a.json", now).id for content in FAILED]
+    with storage.database.writing() as store:
+        revision = Models(store).add(replace(accepted(), session=session)).id
+        Recomputations(store).ask(revision, Scope.UNIT, "BA-017", now)
+        for _ in range(2):
+            Jobs(store).add(NewJob(JobKind.RECALIBRATION, "K. Ito"), 1, now)
+        WorkQueue(store, WorkKind.JOB).hold_up("1", "no file")
+        WorkQueue(store, WorkKind.JOB).put_off("1", now + timedelta(minutes=10))
+        Jobs(store).cancel(2, "K. Ito", now)
+    before = _work(storage, now)
+    assert [len(waiting) for waiting in before[0]] == [1, 1, 2]
+    storage.database.close()
+    downgrade(store_url, "0031")
+    upgrade(store_url)
+    assert _work(storage, now) == before
+
+
+def _work(storage: Storage, now: datetime) -> tuple[list[tuple[str, ...]], list[Job], tuple[Delivery, ...]]:
+    """What waits in the queue after a quarter of an hour, with the records of it."""
+    kinds, later = (WorkKind.RECOMPUTATION, WorkKind.JOB, WorkKind.MESSAGE), now + timedelta(minutes=15)
+    with storage.database.reading() as store:
+        waiting = [WorkQueue(store, kind).waiting(later, 10) for kind in kinds]
+        return waiting, [Jobs(store).get(id) for id in (1, 2)], Webhooks(store).deliveries(1, 10)
