@@ -8,7 +8,7 @@ import numpy as np
 from estimator.alignment.align import align, prepared
 from estimator.alignment.as_calibration import alignment_calibration, settled
 from estimator.alignment.held_out import Prediction, held_out, prediction
-from estimator.alignment.lever_arms import FEWEST, LEVEL, TOLD_APART, LeverArm, LeverArms, lever_arms
+from estimator.alignment.lever_arms import DECISIVE, FEWEST, LEVEL, LeverArm, LeverArms, lever_arms
 from estimator.alignment.results import AlignmentResult
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes.catalogue import UNEXPLAINED
@@ -71,11 +71,11 @@ def diagnose_alignment(session: CalibrationSession) -> Diagnosis:
 def _findings(arms: LeverArms) -> Iterator[Finding]:
     """One a sensor; where the file states positions and only two show, one of both: either may sit elsewhere."""
     found = [(arm, _finding(arm, arms)) for arm in arms.named]
-    if not (arms.stated and found and len(arms.found) < FEWEST):
+    if not (arms.stated and found and len(arms.estimates) < FEWEST):
         yield from (finding for _, finding in found)
         return
     arm, first = max(found, key=lambda pair: pair[1].strength)
-    sensors = tuple(one.sensor.name for one in arms.found)
+    sensors = tuple(one.sensor.name for one in arms.estimates)
     said = CAUSE.apart(sensors, _centimetres(*arm.distance))
     yield replace(first, sentence=said, sensors=sensors, amplitude=(), sigma=(), units=())
 
@@ -89,7 +89,7 @@ def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
         sentence=said,
         advice=CAUSE.correct if arms.stated else CAUSE.advice,
         sensors=(name,),
-        p_value=family_wise(arm.felt.p_value("lever arm"), len(arms.found)),
+        p_value=family_wise(arm.response.p_value("lever arm"), len(arms.estimates)),
         strength=_strength(arm, "lever arm"),
         amplitude=tuple(map(float, arm.place)),
         sigma=tuple(map(float, np.sqrt(np.diag(arm.covariance)))),
@@ -108,7 +108,7 @@ def _centimetres(length: float, sigma: float) -> str:
 
 
 def _strength(arm: LeverArm, model: str) -> float:
-    return float(np.sqrt(max(arm.felt.drop[model][0], 0.0)))
+    return float(np.sqrt(max(arm.response.drop[model][0], 0.0)))
 
 
 def _separation(arm: LeverArm, rival: str) -> Separation:
@@ -119,7 +119,7 @@ def _separation(arm: LeverArm, rival: str) -> Separation:
 def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
     """Shares by BIC."""
     names = {"lever arm": CAUSE.identifier, **CALLED}
-    worth = np.array([arm.felt.worth(model, pieces) for model in names])
+    worth = np.array([arm.response.worth(model, pieces) for model in names])
     share = np.exp(0.5 * (worth - worth.max()))
     lines = zip(names, share / share.sum(), strict=True)
     for model, probability in sorted(lines, key=lambda line: -line[1]):
@@ -127,11 +127,11 @@ def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
 
 
 def _structures(arms: LeverArms) -> Iterator[Structure]:
-    level = LEVEL / max(len(arms.found), 1)
-    for arm in arms.found:
+    level = LEVEL / max(len(arms.estimates), 1)
+    for arm in arms.estimates:
         who = (arm.sensor.name,)
         if arm.other:
-            yield Structure(WHERE[arm.other], who, arm.felt.p_value(arm.other), _strength(arm, arm.other))
+            yield Structure(WHERE[arm.other], who, arm.response.p_value(arm.other), _strength(arm, arm.other))
         elif arm.more < level:
             yield Structure(BEYOND, who, arm.more, _strength(arm, "beyond"))
 
@@ -146,10 +146,10 @@ def _score(told: Prediction) -> Score:
 
 
 def _limit(arms: LeverArms) -> Limit:
-    if not arms.found:
+    if not arms.estimates:
         return Limit(CAUSE.identifier, None, CAUSE.units, "every accelerometer points along the turn axis")
-    need = required(1, LEVEL / len(arms.found))
-    sigma = np.max([np.sqrt(np.diag(arm.covariance)) for arm in arms.found], axis=0)
+    need = required(1, LEVEL / len(arms.estimates))
+    sigma = np.max([np.sqrt(np.diag(arm.covariance)) for arm in arms.estimates], axis=0)
     return Limit(CAUSE.identifier, tuple(map(float, need * sigma)), CAUSE.units, "")
 
 
@@ -163,7 +163,7 @@ def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -
     if arms.origin is not None:
         place, covariance = arms.origin
         length, sigma = float(np.hypot(*place)), float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
-        if length > TOLD_APART**0.5 * sigma:
+        if length > DECISIVE**0.5 * sigma:
             said = _centimetres(length, sigma)
             yield f"The origin of the stated positions lies {said} from the turn axis, and that is taken off."
     if arms.named:

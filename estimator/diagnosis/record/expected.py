@@ -142,10 +142,10 @@ def _covariance(found: Solution, i: int, rows: Array) -> Array | None:
     """(k, k) of the predictions of sensor i in ``rows`` (k,), relative to g; None where the fit leaves one open."""
     linear, known = linearise(found.rows, found.unknowns), found.knowledge
     sigma = found.rows.sigma[rows, i]
-    own, shared = linear.own[rows, i] * sigma[:, None], linear.shared[rows, i] * sigma[:, None]
+    local, shared = linear.local[rows, i] * sigma[:, None], linear.shared[rows, i] * sigma[:, None]
     through = np.einsum("ka,kab->kb", shared, linear.inverse[rows])
     h = -np.einsum("kb,kpb->kp", through, linear.coupling[rows])
-    h[:, 5 * i : 5 * i + 5] += own
+    h[:, 5 * i : 5 * i + 5] += local
     if np.abs(h @ known.unseen).max(initial=0.0) > SEEN:
         return None
     return np.asarray(h @ known.covariance @ h.T + np.diag(np.einsum("kb,kb->k", through, shared)))
