@@ -24,7 +24,7 @@ CENTIMETRE, MICRO_G = 0.01, STANDARD_GRAVITY * 1e-6
 CAUSE = Cause()
 CALLED = {"vibration": "vibration-rectification", "wobble": "axis-wobble", "delay or rate": UNEXPLAINED}
 """The catalogue's names of rivals; it has none of a delay."""
-TELLS = {
+SEPARATING = {
     "vibration": "measure with a rule where the sensor stands, or mount it so that it stands across its axis",
     "wobble": "turn both ways, and to stops a quarter turn apart",
     "delay or rate": "turn the other way round as well",
@@ -70,23 +70,23 @@ def diagnose_alignment(session: CalibrationSession) -> Diagnosis:
 
 def _findings(arms: LeverArms) -> Iterator[Finding]:
     """One a sensor; where the file states positions and only two show, one of both: either may sit elsewhere."""
-    found = [(arm, _finding(arm, arms)) for arm in arms.named]
-    if not (arms.stated and found and len(arms.estimates) < FEWEST):
-        yield from (finding for _, finding in found)
+    named = [(arm, _finding(arm, arms)) for arm in arms.named]
+    if not (arms.stated and named and len(arms.estimates) < FEWEST):
+        yield from (finding for _, finding in named)
         return
-    arm, first = max(found, key=lambda pair: pair[1].strength)
-    sensors = tuple(one.sensor.name for one in arms.estimates)
-    said = CAUSE.apart(sensors, _centimetres(*arm.distance))
-    yield replace(first, sentence=said, sensors=sensors, amplitude=(), sigma=(), units=())
+    arm, first = max(named, key=lambda pair: pair[1].strength)
+    sensors = tuple(estimate.sensor.name for estimate in arms.estimates)
+    sentence = CAUSE.apart(sensors, _centimetres(*arm.distance))
+    yield replace(first, sentence=sentence, sensors=sensors, amplitude=(), sigma=(), units=())
 
 
 def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
     name, (length, sigma) = arm.sensor.name, arm.distance
-    told = _centimetres(length, sigma)
-    said = CAUSE.contradicted(name, told) if arms.stated else CAUSE.told(name, told)
+    length_text = _centimetres(length, sigma)
+    sentence = CAUSE.contradicted(name, length_text) if arms.stated else CAUSE.told(name, length_text)
     return Finding(
         cause=CAUSE.identifier,
-        sentence=said,
+        sentence=sentence,
         advice=CAUSE.correct if arms.stated else CAUSE.advice,
         sensors=(name,),
         p_value=family_wise(arm.response.p_value("lever arm"), len(arms.estimates)),
@@ -113,7 +113,7 @@ def _strength(arm: LeverArm, model: str) -> float:
 
 def _separation(arm: LeverArm, rival: str) -> Separation:
     now = _strength(arm, f"lever arm beside {rival}")
-    return Separation(CALLED[rival], (arm.sensor.name,), now, TELLS[rival], None)
+    return Separation(CALLED[rival], (arm.sensor.name,), now, SEPARATING[rival], None)
 
 
 def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
@@ -141,8 +141,8 @@ def _gain(arms: LeverArms) -> Gain:
     return Gain(before, after, held_out(arms), None)
 
 
-def _score(told: Prediction) -> Score:
-    return Score(told.rms, told.chi2, told.log_score, {ACCELEROMETER: told.rms})
+def _score(prediction: Prediction) -> Score:
+    return Score(prediction.rms, prediction.chi2, prediction.log_score, {ACCELEROMETER: prediction.rms})
 
 
 def _limit(arms: LeverArms) -> Limit:
@@ -164,8 +164,8 @@ def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -
         place, covariance = arms.origin
         length, sigma = float(np.hypot(*place)), float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
         if length > DECISIVE**0.5 * sigma:
-            said = _centimetres(length, sigma)
-            yield f"The origin of the stated positions lies {said} from the turn axis, and that is taken off."
+            text = _centimetres(length, sigma)
+            yield f"The origin of the stated positions lies {text} from the turn axis, and that is taken off."
     if arms.named:
         yield f"Lever arms are part of every alignment's model. Without them {_off(without, result)}."
         yield ALIKE

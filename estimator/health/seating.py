@@ -274,7 +274,7 @@ def _stands(tau: Array, stand_of: Array, old: Scatter) -> Array:
 def _sums(seating: Seating) -> tuple[_Sums, _Sums]:
     """A and B/θ² of every pair of unit and stand, and of every stand."""
     cells, stands = len(seating.stand_of), len(seating.scatter.fixed)
-    cells_sums, fixed = np.zeros((2, cells)), np.zeros((2, stands))
+    by_cell, fixed = np.zeros((2, cells)), np.zeros((2, stands))
     for part in seating.parts:
         there, same = part.units.there, part.units.same
         blocks = np.einsum("uiaja->uij", part.precision)
@@ -283,9 +283,9 @@ def _sums(seating: Seating) -> tuple[_Sums, _Sums]:
         fixed_trace = (blocks * same).sum(axis=2) - _taken(part.seen, together, seating.covariance)
         fixed_square = np.einsum("uia,uij,uja->ui", part.rest, same, part.rest, optimize=True)
         trace, square = np.einsum("uii->ui", blocks) - taken, (part.rest**2).sum(axis=2)
-        cells_sums += _binned(part.units.cell[there], (trace[there], square[there]), cells)
+        by_cell += _binned(part.units.cell[there], (trace[there], square[there]), cells)
         fixed += _binned(part.units.stand[there], (fixed_trace[there], fixed_square[there]), stands)
-    return _Sums(*cells_sums), _Sums(*fixed)
+    return _Sums(*by_cell), _Sums(*fixed)
 
 
 def _taken(first: Array, second: Array, covariance: Array) -> Array:

@@ -157,17 +157,17 @@ def _candidates(seating: Seating) -> list[_Taken]:
 
 def _with(seating: Seating, groups: Sequence[Units], taken: Sequence[_Taken]) -> Seating:
     """The model with these events, its variances made anew."""
-    return seated(groups, columns(groups, [event.event for event in taken]), seating.stand_of, seating.scatter)
+    return seated(groups, columns(groups, [entry.event for entry in taken]), seating.stand_of, seating.scatter)
 
 
 def _pruned(seating: Seating, groups: Sequence[Units], taken: list[_Taken]) -> tuple[Seating, tuple[_Taken, ...]]:
     """Without events that are no longer evident, the least evident first."""
     while taken:
-        failing = [i for i, event in enumerate(taken) if not _is_evident(seating, i, event)]
+        failing = [i for i, entry in enumerate(taken) if not _is_evident(seating, i, entry)]
         if not failing:
             break
         least = min(failing, key=lambda i: event_test(seating, i, taken[i].looked).evidence)
-        taken = [event for i, event in enumerate(taken) if i != least]
+        taken = [entry for i, entry in enumerate(taken) if i != least]
         seating = _with(seating, groups, taken)
     return seating, tuple(taken)
 
@@ -258,9 +258,9 @@ def _overlapping(seating: Seating, e: int) -> list[int]:
 def _state(number: int, name: str, explained: _Explained) -> StandState:
     """One stand."""
     shifts = [
-        _shift(explained.seating, e, event) for e, event in enumerate(explained.taken) if event.event.stand == number
+        _shift(explained.seating, e, entry) for e, entry in enumerate(explained.taken) if entry.event.stand == number
     ]
-    others = [_shift(new, len(new.value) - 1, event) for event, new in explained.tried if event.event.stand == number]
+    others = [_shift(new, len(new.value) - 1, entry) for entry, new in explained.tried if entry.event.stand == number]
     seating = float(np.sqrt(explained.seating.scatter.cell[explained.seating.stand_of == number].mean()))
     in_time = tuple(sorted(shifts, key=lambda shift: shift.since))
     return StandState(name, seating, in_time, None if shifts or not others else others[0])
@@ -323,5 +323,5 @@ def _alone(covariance: Array) -> Array:
         return covariance + 1e-24 * np.eye(covariance.shape[1])
     best = int(np.argmin(np.where(others, traces, np.inf)))
     share = 1 - 0.5 * traces[best] / np.where(others, traces, traces[best])
-    share_of_each = np.where(others[:, None, None], covariance * share[:, None, None], covariance[best] / 2)
-    return np.asarray(share_of_each)
+    alone = np.where(others[:, None, None], covariance * share[:, None, None], covariance[best] / 2)
+    return np.asarray(alone)

@@ -47,7 +47,7 @@ def transfer(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     if not state.history:
         return None
     residuals = WhitenedResiduals.of(state.history[-1])
-    lasted = [(f.best, part) for f, part, n in zip(state.found, fitted.slices, new, strict=True) if not n]
+    lasted = [(f.best, part) for f, part, n in zip(state.detections, fitted.slices, new, strict=True) if not n]
     effect = effect_in(residuals, lasted, fitted)
     if effect is None:
         return None
@@ -55,19 +55,21 @@ def transfer(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     return Transfer(started_at, predicted(residuals, effect.absent), predicted(residuals, effect))
 
 
-def effect_in(residuals: WhitenedResiduals, found: Sequence[tuple[Scored, slice]], fitted: Amplitudes) -> Effect | None:
+def effect_in(
+    residuals: WhitenedResiduals, effects: Sequence[tuple[Scored, slice]], fitted: Amplitudes
+) -> Effect | None:
     """Some findings, with their places among the amplitudes, in the session of ``residuals``; None if none can show.
 
     What acts in one session only, or cannot show in that one, is left out.
     """
     columns, places = [], []
-    for scored, part in found:
+    for scored, part in effects:
         if not scored.cause.can_be_modelled:
             continue
-        there, own = scored.columns_in(residuals.baseline.setting), len(scored.cause.units)
+        there, width = scored.columns_in(residuals.baseline.setting), len(scored.cause.units)
         if there is not None:
-            columns.append(there[..., :own])
-            places.append(part.start + np.arange(own))
+            columns.append(there[..., :width])
+            places.append(part.start + np.arange(width))
     if not columns:
         return None
     chosen = np.concatenate(places)
@@ -81,11 +83,11 @@ def newness(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
     parameters changed.
     """
     if not state.history:
-        return (None,) * len(state.found)
+        return (None,) * len(state.detections)
     residuals = WhitenedResiduals.of(state.history[-1])
     return tuple(
         None if f.best.cause.between else is_new(f.best, residuals, effect_in(residuals, [(f.best, part)], fitted))
-        for f, part in zip(state.found, fitted.slices, strict=True)
+        for f, part in zip(state.detections, fitted.slices, strict=True)
     )
 
 

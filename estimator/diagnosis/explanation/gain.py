@@ -27,7 +27,7 @@ def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Se
     ``given``: of the record as it came, where it had to be put right; ``new``: of every finding, whether it came since
     the history.
     """
-    named = [f for f in state.found if not f.best.cause.between]
+    named = [f for f in state.detections if not f.best.cause.between]
     given = as_stated(state) if given is None or state.courses else given
     before, after = score(given, unaided(given)), score(state.baseline, predicted_anew(state, named))
     dearer = volume(state.baseline) - volume(given)

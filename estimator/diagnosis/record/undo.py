@@ -31,6 +31,6 @@ def undo_record_errors(
 
 def taken_back(error: RecordError, errors: Sequence[RecordError]) -> bool:
     """Whether a record error was undone and then done again, because another one had misled the first look."""
-    own = error.undone
-    same = [e for e in errors if (e.undone.cause, e.undone.places) == (own.cause, own.places)]
+    undone = error.undone
+    same = [e for e in errors if (e.undone.cause, e.undone.places) == (undone.cause, undone.places)]
     return len(same) % 2 == 0

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
-from estimator.diagnosis.selection.common_or_own import common_or_own, with_events
+from estimator.diagnosis.selection.common_or_own import with_events, with_likelier_vector_course
 from estimator.diagnosis.selection.confirmation import hold, too_sure
 from estimator.diagnosis.selection.heavy_tails import without_names_of_tails
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
@@ -31,9 +31,9 @@ def accepted(start: SearchState) -> SearchState:
     claims, state = doubted(start), None
     if not claims or shared_event(start):
         state = believed(start)
-        if not claims or any(f.event for f in state.found):
+        if not claims or any(f.event for f in state.detections):
             claims = doubted(state)
-    rival = whatever_the_scale(start, claims) if claims else None
+    rival = under_free_scale(start, claims) if claims else None
     return without_names_of_tails(without_names_in_no_noise(confirmed(start, rival or state or believed(start))))
 
 
@@ -46,14 +46,14 @@ def confirmed(start: SearchState, state: SearchState) -> SearchState:
     claims = state.noise_claims
     while doubt := too_sure(state):
         claims = (*claims, *doubt)
-        unknown = with_unknown_scale(start, claims, state.found)
-        if hold(unknown, state.found):
+        unknown = with_unknown_scale(start, claims, state.detections)
+        if hold(unknown, state.detections):
             break
         state = replace(believed(unknown), noise_claims=state.noise_claims)
     return state
 
 
-def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState | None:
+def under_free_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState | None:
     """The causes that hold with the noise of some sensors known up to a factor; None where what they leave scatters as
     stated.
 
@@ -61,18 +61,20 @@ def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
     turn out to be right are believed again.
     """
     wide = of_whole_kinds(start, claims)
-    found = believed(with_unknown_scale(start, wide))
-    left = doubted(found)
-    again = with_quieter_kinds_whole(start, left)
-    if left and sensors_of(again) != sensors_of(wide):
-        found = believed(with_unknown_scale(start, again, found.found))
-        left = doubted(found) or left
-    return replace(found, noise_claims=left) if left else None
+    accepted = believed(with_unknown_scale(start, wide))
+    doubts = doubted(accepted)
+    again = with_quieter_kinds_whole(start, doubts)
+    if doubts and sensors_of(again) != sensors_of(wide):
+        accepted = believed(with_unknown_scale(start, again, accepted.detections))
+        doubts = doubted(accepted) or doubts
+    return replace(accepted, noise_claims=doubts) if doubts else None
 
 
 def believed(start: SearchState) -> SearchState:
     """The causes that a search finds and that hold: they fit, and no course of the applied vector explains as much."""
-    return with_unlike_noise(without_unpredictive(without_common_rows(common_or_own(start, held(start), held))))
+    return with_unlike_noise(
+        without_unpredictive(without_common_rows(with_likelier_vector_course(start, held(start), held)))
+    )
 
 
 def held(start: SearchState) -> SearchState:

@@ -46,13 +46,13 @@ class Pattern(Signature):
     equation = ""
     units = ()
     advice = "Look at the residuals there; no cause of the catalogue has this pattern."
-    of_one = ""
+    description = ""
     """What is said in place of the sentence where one is counted."""
 
     def where(self, shape: Shape) -> str:
         """Where the pattern lives, in words."""
-        if self.of_one and shape.nonlinear == (1.0,):
-            return self.of_one
+        if self.description and shape.nonlinear == (1.0,):
+            return self.description
         return self.sentence.format(*(f"{v:g}" for v in shape.nonlinear))
 
 
@@ -92,7 +92,7 @@ class HarmonicSeries(Pattern):
 class SensorPeriodic(Pattern):
     identifier = "sensor-periodic"
     sentence = "a wave of {0} periods over the session"
-    of_one = "a wave of one period over the session"
+    description = "a wave of one period over the session"
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         for place in places_in_session(setting):
@@ -206,7 +206,7 @@ class CommonPeriodic(Pattern):
     identifier = "common-periodic"
     needs = frozenset({"stand"})
     sentence = "the applied vector, common to all sensors: a wave of {0} periods over the session"
-    of_one = "the applied vector, common to all sensors: a wave of one period over the session"
+    description = "the applied vector, common to all sensors: a wave of one period over the session"
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         assert setting.d_beta is not None

@@ -37,7 +37,7 @@ def test_errors_of_one_sensor_three_times_too_small_give_it_no_other_name() -> N
 def test_of_a_name_on_one_sensor_the_doubtful_tail_is_that_of_f() -> None:
     state = start(("bias-jump",), 0.2 * effect("bias-jump"))
     found = candidate(state, "bias-jump")
-    state = replace(state, found=(found,))
+    state = replace(state, detections=(found,))
     energy, freedom = (x[SENSOR] for x in sensor_scatter(state))
     expected = f.sf(found.best.statistic / (energy / freedom), 1, freedom) * found.best.places * state.families
     assert p_if_unknown(state, found, SENSOR) == pytest.approx(expected, rel=0.02)
@@ -46,7 +46,7 @@ def test_of_a_name_on_one_sensor_the_doubtful_tail_is_that_of_f() -> None:
 def test_a_name_that_stated_noise_alone_bears_is_doubted() -> None:
     session = stated(measured(0.12 * effect("bias-jump")), 0.5, SECOND)
     state = begin(baseline_of(session), (), start(("bias-jump",)).catalogue)
-    state = replace(state, found=(candidate(state, "bias-jump"),))
+    state = replace(state, detections=(candidate(state, "bias-jump"),))
     assert [claim.sensors for claim in too_sure(state)] == [(SENSOR,)]
 
 
@@ -73,7 +73,7 @@ def test_noise_that_hides_behind_the_stand_is_seen_in_the_whole_session() -> Non
     for seed in range(20):
         session = simulate(schedule, truth_of(schedule), np.random.default_rng([63, seed]), noise=NOISE)
         state = begin(baseline_of(stated(session, 1 / 3, SECOND)), (), start(("bias-jump",)).catalogue)
-        state = replace(state, found=(candidate(state, "bias-jump"),))
+        state = replace(state, detections=(candidate(state, "bias-jump"),))
         energy, freedom = (x[SENSOR] for x in sensor_scatter(state))
         own.append(energy / freedom)
         whole.append(evidence_of_more(state)[0][SENSOR])
