@@ -22,7 +22,7 @@ from estimator.alignment.filtering import (
     relative,
     run,
 )
-from estimator.alignment.levers import FARTHEST, taken_off
+from estimator.alignment.levers import FARTHEST, without_lever_arms
 from estimator.alignment.noise import LEAST_DENSITY, Noise, at_rest
 from estimator.alignment.positions import (
     Stop,
@@ -112,7 +112,7 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     require_positions(stationary)
     require_rest(stationary, rates, row)
     require_turns(stationary, angle, rates[:, 2], row)
-    session = taken_off(session, gyros.values[:, 2], row)
+    session = without_lever_arms(session, gyros.values[:, 2], row)
     accelerometers = triad(session, ACCELEROMETER, row)
     resting = np.concatenate([accelerometers.values[stop.first : stop.last] for stop in stationary])
     require_level(resting.mean(axis=0), gravity(session.site))

@@ -76,14 +76,16 @@ def _findings(arms: LeverArms) -> Iterator[Finding]:
         return
     arm, first = max(named, key=lambda pair: pair[1].strength)
     sensors = tuple(estimate.sensor.name for estimate in arms.estimates)
-    sentence = CAUSE.apart(sensors, _centimetres(*arm.distance))
+    sentence = CAUSE.separation_sentence(sensors, _centimetres(*arm.distance))
     yield replace(first, sentence=sentence, sensors=sensors, amplitude=(), sigma=(), units=())
 
 
 def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
     name, (length, sigma) = arm.sensor.name, arm.distance
     length_text = _centimetres(length, sigma)
-    sentence = CAUSE.contradicted(name, length_text) if arms.stated else CAUSE.told(name, length_text)
+    sentence = (
+        CAUSE.contradiction_sentence(name, length_text) if arms.stated else CAUSE.lever_sentence(name, length_text)
+    )
     return Finding(
         cause=CAUSE.identifier,
         sentence=sentence,
@@ -167,11 +169,11 @@ def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -
             text = _centimetres(length, sigma)
             yield f"The origin of the stated positions lies {text} from the turn axis, and that is taken off."
     if arms.named:
-        yield f"Lever arms are part of every alignment's model. Without them {_off(without, result)}."
+        yield f"Lever arms are part of every alignment's model. Without them {_error_without(without, result)}."
         yield ALIKE
 
 
-def _off(without: AlignmentResult, result: AlignmentResult) -> str:
+def _error_without(without: AlignmentResult, result: AlignmentResult) -> str:
     """By how much the zeros and mounting errors would be off."""
     moved = {name: _value(without, name) - _value(result, name) for name in ("nabla_x", "nabla_y", "E_xz", "E_yz")}
     zeros = max(abs(moved["nabla_x"]), abs(moved["nabla_y"])) / MICRO_G

@@ -24,7 +24,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.flipped_run import with_fitted_flip
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.start import as_they_scatter
+from estimator.diagnosis.selection.start import with_residual_scatter
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.scores import beside, eigen_scores, shrinkage, starts_of
@@ -118,7 +118,7 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
     energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)
     claims = contradicted(baseline, energy, free)
     if claims:
-        baseline = refitted(as_they_scatter(baseline, claims, plain_columns(seen)))
+        baseline = refitted(with_residual_scatter(baseline, claims, plain_columns(seen)))
         seen = without_outliers(seen_in(baseline))
         left, freedom = left_of(seen)
         energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)

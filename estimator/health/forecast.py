@@ -202,17 +202,17 @@ def future(draws: Draws, prior: Prior, ahead: Array, rng: np.random.Generator) -
     last = float(ahead[-1])
     effective = last * float(prior.remaining_rate(draws.age, ahead[-1:])[0])
     for part in map(int, np.flatnonzero(prior.rate)):
-        rows, expected = _struck(quiet, prior.rate[part], effective, rng)
+        rows, expected = _next_jumps(quiet, prior.rate[part], effective, rng)
         _move(level, rows, part, (prior.comes(draws.age, expected), ahead), rng)
-        rows, come = _struck(~quiet, again[part], last, rng)
+        rows, come = _next_jumps(~quiet, again[part], last, rng)
         _move(level, rows, part, (come, ahead), rng)
     return Future(draws.weight, level)
 
 
-def _struck(own: Array, rate: float, years: float, rng: np.random.Generator) -> tuple[Array, Array]:
-    """(m,) places among ``own`` (N,) bool in which an event comes within years, and (m,) years until it does."""
+def _next_jumps(per_draw: Array, rate: float, years: float, rng: np.random.Generator) -> tuple[Array, Array]:
+    """(m,) places among ``per_draw`` (N,) bool in which an event comes within years, and (m,) years until it does."""
     chance = -np.expm1(-rate * years)
-    rows = np.flatnonzero(own)
+    rows = np.flatnonzero(per_draw)
     rows = rows[rng.random(len(rows)) < chance]
     return rows, -np.log1p(-chance * rng.random(len(rows))) / rate
 

@@ -238,9 +238,9 @@ def _median(chance: Array) -> float:
     return float(reach(chance[None], now + MEDIAN * (1 - now))[0]) if now < MEDIAN else 0.0
 
 
-def _moments(draws: Draws, way: Array) -> tuple[float, float]:
+def _moments(draws: Draws, unit: Array) -> tuple[float, float]:
     """Mean and one sigma of the level along a direction, T."""
-    along = draws.level @ way
+    along = draws.level @ unit
     middle = float(draws.mean(along))
     return middle, float(np.sqrt(draws.mean((along - middle) ** 2)))
 

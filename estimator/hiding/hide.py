@@ -22,7 +22,7 @@ import numpy as np
 from estimator.causes.catalogue import CATALOGUE
 from estimator.causes.contract import Cause, Correction, Setting, Shape, Signature
 from estimator.causes.noise import ExcessNoise
-from estimator.diagnosis.diagnose import unsearched
+from estimator.diagnosis.diagnose import initial_state
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
@@ -167,7 +167,7 @@ def drawn_effect(
 ) -> tuple[Shape, Array]:
     """A shape of the cause and its amplitudes (q,), per column of the shape, of a strength in standard errors."""
     *earlier, now = (baseline_of(session) for session in sessions)
-    traces = next(iter(unsearched(now, earlier, [cause]).traces), None)
+    traces = next(iter(initial_state(now, earlier, [cause]).traces), None)
     if traces is None:
         raise UnhideableError(f"{cause.identifier} has nothing here to act on")
     if sensor is not None and traces.common:

@@ -43,7 +43,7 @@ def readiness(session: CalibrationSession, question: Question, rng: np.random.Ge
     allowed, limits = allowances(session, series, question)
     faults = content_faults(session, series, allowed)
     if any(fault.blocks for fault in faults):
-        return _told(_unread(session, question, faults), session, series)
+        return _with_record(_unread(session, question, faults), session, series)
     return _judged(session, question, (series, allowed, limits), faults, rng)
 
 
@@ -219,6 +219,6 @@ def _unread(session: CalibrationSession, question: Question, faults: tuple[Fault
     return Readiness(*fields)
 
 
-def _told(base: Readiness, session: CalibrationSession, series: Series) -> Readiness:
+def _with_record(base: Readiness, session: CalibrationSession, series: Series) -> Readiness:
     """With what was recorded."""
     return replace(base, recorded=float(series.edges[-1, 1]), time=series.time, change=series.change)

@@ -59,7 +59,7 @@ def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
     if quadratic is not None or not affordable(plain, stated):
         return plain
     extended = lowest(run, run(plain.rows if stated else rows, plain.unknowns, True), [])
-    return extended if deserved(extended, plain, stated) else plain
+    return extended if is_supported(extended, plain, stated) else plain
 
 
 def affordable(plain: Solution, stated: bool) -> bool:
@@ -72,14 +72,14 @@ def affordable(plain: Solution, stated: bool) -> bool:
 def lowest(run: Run, solution: Solution, others: list[Unknowns]) -> Solution:
     """The lowest of the minima around ``solution`` and from other starts, all compared under its noise."""
     best = solution
-    for start in (*others, *around(solution)):
+    for start in (*others, *starts_around(solution)):
         tried = search(solution.rows, start, solution.quadratic)
         if tried.converged and tried.chi2 < best.chi2 - LOWER:
             best = tried
     return solution if best is solution else run(solution.rows, best.unknowns, solution.quadratic)
 
 
-def around(solution: Solution) -> list[Unknowns]:
+def starts_around(solution: Solution) -> list[Unknowns]:
     """Points `FAR` standard errors up and down the least known directions, each orientation turned to suit; none where
     the search has not ended, since standard errors mean nothing there."""
     if not solution.converged:
@@ -97,7 +97,7 @@ def without_terms(unknowns: Unknowns) -> Unknowns:
     return replace(unknowns, quadratic=np.zeros_like(unknowns.quadratic))
 
 
-def deserved(extended: Solution, plain: Solution, stated: bool) -> bool:
+def is_supported(extended: Solution, plain: Solution, stated: bool) -> bool:
     """Whether the quadratic terms are plainly there, or known well at the minimum that belongs to them."""
     used = explained(extended) if stated else extended
     if not used.knowledge.full or not used.converged:

@@ -42,7 +42,7 @@ class Effect:
 def transfer(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> Transfer | None:
     """Scores of the latest earlier session before and after; None where no finding can have acted there.
 
-    ``new``: `newness` of every finding.
+    ``new``: `are_new` of every finding.
     """
     if not state.history:
         return None
@@ -76,7 +76,7 @@ def effect_in(
     return Effect(np.concatenate(columns, axis=-1), fitted.value[chosen], fitted.covariance[np.ix_(chosen, chosen)])
 
 
-def newness(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
+def are_new(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
     """Whether each finding came since the latest earlier session; None without history or for what moved since.
 
     The readings of that session say it: with the effect or without. Where they are undecided, it is how the

@@ -105,7 +105,7 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     """Unexplained structure and where it lives."""
     patterns = [
         Structure(
-            where=where_it_lives(f),
+            where=pattern_description(f),
             sensors=tuple(state.names[i] for i in f.best.sensors),
             p_value=f.p_family,
             strength=f.best.strength,
@@ -125,7 +125,7 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     )
 
 
-def where_it_lives(detection: Detection) -> str:
+def pattern_description(detection: Detection) -> str:
     """A pattern's own words; of a name that was taken back, that it does not hold."""
     if isinstance(detection.best.cause, Pattern):
         return detection.best.cause.where(detection.best.shape)

@@ -79,10 +79,12 @@ def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> F
         advice=f"Measure again at about {temperatures.usual:.0f} °C, as in the earlier sessions, or calibrate over "
         f"temperature, before you act on this: the session was measured at {temperatures.now:.0f} °C.",
     )
-    return replace(compared, sentence=in_words(compared, temperatures)) if finding.cause == DRIFT else compared
+    return (
+        replace(compared, sentence=temperature_advice(compared, temperatures)) if finding.cause == DRIFT else compared
+    )
 
 
-def in_words(finding: Finding, temperatures: Temperatures) -> str:
+def temperature_advice(finding: Finding, temperatures: Temperatures) -> str:
     """What is known of a drift, and no more."""
     sensors = ", ".join(finding.sensors)
     return (

@@ -78,20 +78,22 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
     known = [observable.T @ map @ h.covariance @ map.T @ observable for h, map in zip(alike, maps, strict=True)]
     information = [(root := inverse_root(covariance)).T @ root for covariance in known]
     turn = observable.T @ turn_response(p)
-    information = [without(i, turn) if h.sits_otherwise else i for h, i in zip(alike, information, strict=True)]
+    information = [
+        without_directions(i, turn) if h.sits_otherwise else i for h, i in zip(alike, information, strict=True)
+    ]
     covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
     shares = [observable @ covariance @ part @ observable.T for part in information]
     whiten = observable @ inverse_root(covariance + observable.T @ now.covariance @ observable) @ observable.T
-    steps = [step + map @ taken_off(h) for h, step, map in zip(alike, steps, maps, strict=True)]
+    steps = [step + map @ effect_of_turns(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
     earlier = tuple(
         EarlierSession(WhitenedResiduals.of(h), share @ map, replace(h.setting, parameters=p))
         for h, share, map in zip(alike, shares, maps, strict=True)
     )
-    return ParameterChange(whiten @ (taken_off(now) - step), whiten, earlier)
+    return ParameterChange(whiten @ (effect_of_turns(now) - step), whiten, earlier)
 
 
-def taken_off(baseline: Baseline) -> Array:
+def effect_of_turns(baseline: Baseline) -> Array:
     """(P,) dimensionless: what the turns that a baseline is linear about would make of its parameters if left in."""
     setting = baseline.setting
     if not (setting.turn.any() or setting.flip_turn.any()):
@@ -101,7 +103,7 @@ def taken_off(baseline: Baseline) -> Array:
     return residuals.response @ residuals.whitened(columns[..., None])[:, 0]
 
 
-def without(information: Array, directions: Array) -> Array:
+def without_directions(information: Array, directions: Array) -> Array:
     """(q, q) information that leaves nothing known along ``directions`` (q, k), both dimensionless."""
     along = information @ directions
     return np.asarray(information - along @ np.linalg.pinv(directions.T @ along, hermitian=True) @ along.T)

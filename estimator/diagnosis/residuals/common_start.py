@@ -9,7 +9,7 @@ from estimator.content import each_remembered
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import near
 from estimator.diagnosis.residuals.flipped_run import with_fitted_flip
-from estimator.diagnosis.residuals.turns import NEGLIGIBLE, in_the_frame_of, turns_between
+from estimator.diagnosis.residuals.turns import NEGLIGIBLE, in_frame_of, turns_between
 from estimator.session import TWO_AXIS_STAND
 
 ROUNDS = 3
@@ -31,7 +31,7 @@ def baselines(now: Baseline, history: Sequence[Baseline]) -> tuple[Baseline, lis
     if now.session.programme == TWO_AXIS_STAND and earlier:
         best = min([baseline, *earlier], key=lambda b: float(np.trace(b.covariance)))
         baseline, *earlier = fitted_near([baseline, *earlier], best)
-    return baseline, in_the_frame_of(baseline, earlier)
+    return baseline, in_frame_of(baseline, earlier)
 
 
 @each_remembered

@@ -47,7 +47,7 @@ class Prediction:
         return -0.5 * (self.count * float(np.log(self.square)) + self.volume)
 
 
-def counted(baseline: Baseline) -> Array:
+def row_redundancy(baseline: Baseline) -> Array:
     """(R,) number of readings of every row less the directions that they serve to estimate."""
     return np.asarray(baseline.residual.shape[1] - baseline.whiten.projected_out.sum(axis=1))
 
@@ -58,7 +58,7 @@ def fold_of(rows: int) -> Array:
 
 
 @once
-def unaided(baseline: Baseline) -> Prediction:
+def predicted_without_effects(baseline: Baseline) -> Prediction:
     """Every row predicted with no effect in the model."""
     return predicted(baseline, [()] * FOLDS)
 
@@ -66,7 +66,7 @@ def unaided(baseline: Baseline) -> Prediction:
 def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Prediction:
     """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there."""
     R, m = baseline.residual.shape
-    whiten, number = baseline.whiten, counted(baseline)
+    whiten, number = baseline.whiten, row_redundancy(baseline)
     whitened = baseline.whitened_design[: R * m]
     data = whiten(baseline.residual[..., None]).reshape(R, m)
     errors, volume, squares = np.zeros((R, m)), 0.0, 0.0

@@ -110,21 +110,21 @@ def turns_between(nows: Sequence[Baseline], earlier: Sequence[Baseline]) -> Arra
     return turn
 
 
-def in_the_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline]:
+def in_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline]:
     """Earlier baselines turned into the frame of ``now``; those of other sensors as they are."""
     alike = [h for h in history if h.setting.kinds == now.setting.kinds]
     if not alike:
         return list(history)
     turns = dict(zip(map(id, alike), turns_between([now] * len(alike), alike), strict=True))
     latest, shared = alike[-1], turns[id(alike[-1])]
-    reference = seen_from(now, latest, shared)
+    reference = turned_covariance(now, latest, shared)
 
     def framed(baseline: Baseline) -> Baseline:
         if baseline.setting.kinds != now.setting.kinds:
             return baseline
         turn = turns[id(baseline)]
-        otherwise = baseline is not latest and sits_otherwise(
-            now, turn @ shared.T, seen_from(now, baseline, turn) + reference
+        otherwise = baseline is not latest and is_reseated(
+            now, turn @ shared.T, turned_covariance(now, baseline, turn) + reference
         )
         if otherwise or now.gauge_free.any():
             return replace(turned_baseline(baseline, turn), sits_otherwise=otherwise)
@@ -133,14 +133,14 @@ def in_the_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline
     return [framed(h) for h in history]
 
 
-def seen_from(now: Baseline, earlier: Baseline, turn: Array) -> Array:
+def turned_covariance(now: Baseline, earlier: Baseline, turn: Array) -> Array:
     """(P, P) dimensionless: covariance of the parameters of a session that is turned by (3, 3), in those of ``now``."""
     carry = carried(now.parameters, turn @ earlier.parameters.axis_tangents)
     return np.asarray(carry @ earlier.covariance @ carry.T)
 
 
-def sits_otherwise(now: Baseline, difference: Array, covariance: Array) -> bool:
+def is_reseated(now: Baseline, difference: Array, covariance: Array) -> bool:
     """Whether the block sat otherwise in one session than in the latest: turned by ``difference`` (3, 3), with
-    the ``covariance`` (P, P) of both, dimensionless, as `seen_from` ``now``."""
+    the ``covariance`` (P, P) of both, dimensionless, as `turned_covariance` ``now``."""
     seen = inverse_root(covariance) @ turn_response(now.parameters) @ vector_of(difference)
     return bool(p_value(seen @ seen, 3) < OTHERWISE)

@@ -12,7 +12,7 @@ import numpy as np
 from estimator.causes.contract import Shape
 from estimator.content import once
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.prediction import FOLDS, Prediction, fold_of, predicted, unaided
+from estimator.diagnosis.residuals.prediction import FOLDS, Prediction, fold_of, predicted, predicted_without_effects
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
@@ -40,8 +40,8 @@ def without_unpredictive(state: SearchState) -> SearchState:
     judged = [f for f in state.detections if predicts(state, f)]
     if not judged:
         return state
-    nothing = unaided(state.baseline)
-    named = predicted_anew(state, judged)
+    nothing = predicted_without_effects(state.baseline)
+    named = predicted_from_folds(state, judged)
     known = not state.baseline.unstated.any()
     gained = named.log_score - nothing.log_score if known else named.scale_free - nothing.scale_free
     if gained > -WORSE:
@@ -66,7 +66,7 @@ def predicts(state: SearchState, detection: Detection) -> bool:
     return bool(each.sum() > WITHIN * fitted.sum() and by_fold.max() < WITHIN * each.sum())
 
 
-def predicted_anew(state: SearchState, judged: Sequence[Detection]) -> Prediction:
+def predicted_from_folds(state: SearchState, judged: Sequence[Detection]) -> Prediction:
     """Every row predicted by the causes of some findings, chosen again in the folds that do not hold it."""
     return _predicted(state.residuals, state.traces, tuple(judged))
 

@@ -24,7 +24,7 @@ from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.lack_of_fit import MISFIT
 from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.selection.shared_event import with_shared_event
-from estimator.diagnosis.selection.start import begun_with
+from estimator.diagnosis.selection.start import restart_from
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course, components
 from estimator.diagnosis.signatures.scores import score
 from estimator.diagnosis.signatures.traces import Group, Scored
@@ -44,11 +44,11 @@ def in_parity_space(start: SearchState, *, size: bool) -> SearchState:
     if not turns:
         return replace(start, traces=(), patterns=())
     sigma = np.full((setting.rows, len(turns)), np.inf)
-    free = refitted(renoised(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
-    return begun_with(start, free)
+    free = refitted(with_restricted_noise(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
+    return restart_from(start, free)
 
 
-def renoised(free: Baseline) -> Baseline:
+def with_restricted_noise(free: Baseline) -> Baseline:
     """A baseline in parity space with the noise that is not stated estimated there (restricted likelihood).
 
     The others of a kind are taken to be alike, as everywhere (`calibration.noise`).
@@ -108,14 +108,14 @@ LEAK = 0.025
 the course, or what an unseen change of all scale factors leaves of it."""
 
 
-def nearly(state: SearchState) -> float:
+def misfit_allowance(state: SearchState) -> float:
     """ln evidence that one name alone may lack: a cause that describes all but a small part is it, though its own
     formula is linear where the stand turned by minutes of arc."""
     alone = len(state.detections) == 1 and not (state.structures or state.scatter)
     return 0.5 * MISFIT * state.detections[0].best.statistic if alone else 0.0
 
 
-def settled(start: SearchState, state: SearchState, unknown: Array) -> tuple[SearchState, SearchState]:
+def with_residual_noise(start: SearchState, state: SearchState, unknown: Array) -> tuple[SearchState, SearchState]:
     """Nothing found, and what was found, ``unknown`` sensors' (m,) bool noise taken as what that leaves.
 
     A noise estimated from residuals that hold an effect hides it, from a course more than from a name. Where no name is
@@ -131,8 +131,8 @@ def settled(start: SearchState, state: SearchState, unknown: Array) -> tuple[Sea
     as_stated = not (unknown & ~start.baseline.unstated).any()
     between = any(f.best.cause.between for f in (*state.detections, *state.structures))
     past = (start if as_stated else state).history if between else ()
-    begun = begun_with(replace(start, history=past), refitted(known))
-    detections, structures = seen_from(begun, state.detections), seen_from(begun, state.structures)
+    begun = restart_from(replace(start, history=past), refitted(known))
+    detections, structures = rescored_detections(begun, state.detections), rescored_detections(begun, state.structures)
     seen = replace(begun, detections=detections, structures=structures)
     return begun, replace(seen, excess=state.excess, autocorrelated=state.autocorrelated)
 
@@ -191,9 +191,9 @@ def log_evidence_of_sensors(start: SearchState, state: SearchState) -> float:
 
     Where noise is not known it is what the findings leave: what explains more also leaves less of it.
     """
-    begun, seen = settled(start, state, state.baseline.unstated)
+    begun, seen = with_residual_noise(start, state, state.baseline.unstated)
     same = begun.history == start.history
-    plain = start if same else begun_with(replace(start, history=begun.history), start.baseline)
+    plain = start if same else restart_from(replace(start, history=begun.history), start.baseline)
     return penalised_log_evidence(seen) + log_evidence_of_noise(state, begun, plain)
 
 
@@ -203,11 +203,11 @@ def with_likelier_vector_course(
     """The state, or its rival with a course of the applied vector, whichever is likelier; ``start``: nothing found."""
     if not concerns_all(state):
         return state
-    begun, seen = settled(start, state, state.baseline.unstated)
-    plain = settled(start, state, start.baseline.unstated)[0] if state.scatter else begun
+    begun, seen = with_residual_noise(start, state, state.baseline.unstated)
+    plain = with_residual_noise(start, state, start.baseline.unstated)[0] if state.scatter else begun
     noise = log_evidence_of_noise(state, begun, plain)
     ground = likeliest_ground(begun, plain, noise)
-    evidence = penalised_log_evidence(seen) + nearly(seen) + noise
+    evidence = penalised_log_evidence(seen) + misfit_allowance(seen) + noise
     if ground.log_evidence - FURTHER - evidence < -DISTINCT and not is_overfitted(state):
         return state
     rival = with_free_vector(start, ground.begun, ground.course, search)
@@ -244,7 +244,7 @@ def with_free_vector(
     ``begun``: the search of ``start`` with the noise by which both are weighed.
     """
     parity = search(in_parity_space(start, size=False))
-    supported = seen_from(begun, parity.detections)
+    supported = rescored_detections(begun, parity.detections)
     joint = likeliest_course(begun, supported)
     paid = joint.log_evidence + penalised_log_evidence(replace(begun, detections=supported)) - FURTHER * bool(supported)
     if supported and paid > course.log_evidence:
@@ -270,7 +270,7 @@ def likeliest_course(start: SearchState, detections: Sequence[Detection]) -> App
     return max(tried, key=lambda c: c.log_evidence)
 
 
-def seen_from(start: SearchState, detections: Sequence[Detection]) -> tuple[Detection, ...]:
+def rescored_detections(start: SearchState, detections: Sequence[Detection]) -> tuple[Detection, ...]:
     """Findings of another search as the residuals of ``start`` show them, those that show there at all."""
     nothing = np.zeros((len(start.residuals.z), 0))
     seen = []

@@ -24,11 +24,11 @@ from scipy.special import expit, logit
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.common_or_own import seen_from
+from estimator.diagnosis.selection.common_or_own import rescored_detections
 from estimator.diagnosis.selection.excess_noise import sensor_scatter, with_unknown_noise
 from estimator.diagnosis.selection.ranking import conditional_p_value, extended_basis
 from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
-from estimator.diagnosis.selection.start import as_they_scatter
+from estimator.diagnosis.selection.start import with_residual_scatter
 from estimator.diagnosis.signatures.lasting import MANY
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.diagnosis.signatures.products import Projected
@@ -48,10 +48,10 @@ FEWEST = 2.0
 """
 
 
-def too_sure(state: SearchState) -> tuple[NoiseClaim, ...]:
+def doubtful_claims(state: SearchState) -> tuple[NoiseClaim, ...]:
     """Sensors whose stated noise names may not rest on: it is too small by strong evidence, or may be and a name would
     then not hold."""
-    ratio, larger = evidence_of_more(state)
+    ratio, larger = evidence_of_larger_noise(state)
     sensors = sorted({i for f in state.detections for i in doubted_for(state, f, larger)})
     freedom, kinds = sensor_scatter(state)[1], state.baseline.setting.kinds
     return tuple(NoiseClaim(kinds[i], (i,), float(ratio[i]), float(freedom[i])) for i in sensors)
@@ -60,14 +60,16 @@ def too_sure(state: SearchState) -> tuple[NoiseClaim, ...]:
 def doubted_for(state: SearchState, detection: Detection, larger: Array) -> set[int]:
     """Sensors that one name may not rest on; ``larger`` (m,) ln B(E)."""
     sensors = [i for i in detection.best.sensors or range(len(larger)) if np.isfinite(larger[i])]
-    at_its_mercy = {i: float(expit(logit(WRONG) + larger[i])) * p_if_unknown(state, detection, i) for i in sensors}
+    at_its_mercy = {
+        i: float(expit(logit(WRONG) + larger[i])) * p_value_in_unknown_noise(state, detection, i) for i in sensors
+    }
     bound = LEVEL / max(len(sensors), 1) if sum(at_its_mercy.values()) >= LEVEL else np.inf
     return {i for i in sensors if larger[i] > STRONG or at_its_mercy[i] >= bound}
 
 
-def hold(state: SearchState, names: tuple[Detection, ...]) -> bool:
+def hold_jointly(state: SearchState, names: tuple[Detection, ...]) -> bool:
     """Whether names of another search are all significant beside one another in the noise of this one."""
-    seen = seen_from(state, names)
+    seen = rescored_detections(state, names)
     joint = replace(state, detections=seen)
     again = [rescored(state.residuals, f.best, joint.attributed(without=f)) for f in seen]
     return len(seen) == len(names) and all(
@@ -75,7 +77,7 @@ def hold(state: SearchState, names: tuple[Detection, ...]) -> bool:
     )
 
 
-def p_if_unknown(state: SearchState, detection: Detection, sensor: int) -> float:
+def p_value_in_unknown_noise(state: SearchState, detection: Detection, sensor: int) -> float:
     """Family-wise p-value of a name beside the others, the noise of a sensor known from its readings alone."""
     doubting, attributed = with_unknown_noise(state, sensor), state.attributed(without=detection)
     basis = extended_basis(attributed, detection.best.trace)[:, attributed.shape[1] :]
@@ -83,7 +85,7 @@ def p_if_unknown(state: SearchState, detection: Detection, sensor: int) -> float
     return conditional_p_value(detection, replace(detection.best, p_value=p_value), state.families)
 
 
-def evidence_of_more(state: SearchState) -> tuple[Array, Array]:
+def evidence_of_larger_noise(state: SearchState) -> tuple[Array, Array]:
     """(m,) variance over the stated one, and (m,) ln B(E) of noise larger than stated; −∞ where none is stated or
     nothing tells it."""
     energy, freedom = sensor_scatter(state)
@@ -95,7 +97,7 @@ def evidence_of_more(state: SearchState) -> tuple[Array, Array]:
         joint = with_free_effects(state)
         plain = WhitenedResiduals.of(joint)
         for i in sensors_with_detections(state):
-            scaled = as_they_scatter(joint, [[i]])
+            scaled = with_residual_scatter(joint, [[i]])
             factor = float(np.median(scaled.variance[:, i] / joint.variance[:, i]))
             whole = log_likelihood_ratio(WhitenedResiduals.of(scaled), plain) if factor > 1 else 0.0
             if whole > gained[i]:

@@ -16,7 +16,7 @@ from estimator.diagnosis.selection.excess_noise import (
 )
 from estimator.diagnosis.selection.ranking import joint_log_evidence, on_other_sensors, strongest
 from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.selection.start import begin_anew
+from estimator.diagnosis.selection.start import restart_with_known_noise
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.traces import Group
 
@@ -37,12 +37,12 @@ def forward_selection(state: SearchState) -> SearchState:
         if noisy is not None and (best is None or noisy.log_evidence > best.cause_log_evidence - DECISIVE):
             scatter, best = scatter_or_cause(state, noisy)
             if scatter:
-                state = begin_anew(state, scatter)
+                state = restart_with_known_noise(state, scatter)
                 continue
         if best is None:
             break
         extended = (*state.detections, best, *on_other_sensors(state, best, state.traces))
-        often = too_often(extended)
+        often = repeated_too_often(extended)
         if not often:
             state = replace(state, detections=extended)
         elif all(f.best.cause.repeats > 1 for f in extended if f.best.group in often):
@@ -75,7 +75,7 @@ def log_evidence_of_two(doubting: SearchState, first: Detection) -> float:
     return joint_log_evidence(state) - joint_log_evidence(doubting)
 
 
-def too_often(detections: Sequence[Detection]) -> frozenset[Group]:
+def repeated_too_often(detections: Sequence[Detection]) -> frozenset[Group]:
     """Causes named on a sensor more often than they can act there: then it is not that cause."""
     times = Counter(f.best.group for f in detections)
     return frozenset(f.best.group for f in detections if times[f.best.group] > f.best.cause.repeats)

@@ -23,7 +23,7 @@ from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.selection.start import as_they_scatter, begun_with, with_earlier_scatter
+from estimator.diagnosis.selection.start import restart_from, with_earlier_scatter, with_residual_scatter
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import Array
 from estimator.significance import p_value
@@ -218,9 +218,9 @@ def with_unknown_scale(
     unstated[sensors], expected[sensors] = True, 0.0
     off = [group for claim in claims if claim.freedom > 0 for group in groups_of(claim)]
     named = np.concatenate([f.best.shape.columns for f in detections], axis=-1) if detections else None
-    scaled = as_they_scatter(baseline, off, named)
+    scaled = with_residual_scatter(baseline, off, named)
     changed = replace(scaled, unstated=unstated, expected_ratio=expected)
     again = refitted(changed)
     moved = np.abs(again.parameters.axis - baseline.parameters.axis).max()
     earlier = with_earlier_scatter(start, sensors)
-    return replace(begun_with(earlier, again if moved < LINEAR else changed), noise_claims=claims)
+    return replace(restart_from(earlier, again if moved < LINEAR else changed), noise_claims=claims)

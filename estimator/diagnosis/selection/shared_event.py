@@ -113,8 +113,8 @@ def shared_event(start: SearchState) -> tuple[Detection, ...]:
         return ()
     tried = [(every[k], *joined(start, every[k])) for k in best]
     course, chosen, _ = max(tried, key=lambda candidate: candidate[2])
-    event = priced(start, course, chosen, len(every)) if len(chosen) > 1 else ()
-    if not event or family_p_value(start, event) >= LEVEL or otherwise(start, course.of(chosen), len(every)):
+    event = with_prior_cost(start, course, chosen, len(every)) if len(chosen) > 1 else ()
+    if not event or family_p_value(start, event) >= LEVEL or has_likelier_rival(start, course.of(chosen), len(every)):
         return ()
     return ranked(start, event)
 
@@ -200,7 +200,7 @@ def noise_given_course(residuals: WhitenedResiduals, course: Course, unit: Array
     return np.asarray(np.where(residuals.baseline.unstated[sensors], np.sqrt(ratio), 1.0))
 
 
-def priced(start: SearchState, course: Course, numbers: Sequence[int], moments: int) -> tuple[Scored, ...]:
+def with_prior_cost(start: SearchState, course: Course, numbers: Sequence[int], moments: int) -> tuple[Scored, ...]:
     """Sensors of an event, each scored on what those before it leave; the first pays for the choice of them, and of
     one of so many ``moments``."""
     basis, priced_scores = np.zeros((len(start.residuals.z), 0)), list[Scored]()
@@ -219,7 +219,7 @@ def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
     return family_wise(float(p_value(power, freedom)), event[0].places * start.families)
 
 
-def otherwise(start: SearchState, course: Course, moments: int) -> bool:
+def has_likelier_rival(start: SearchState, course: Course, moments: int) -> bool:
     """Whether something else is likelier than an event of a course's sensors at one of so many ``moments``: zeros that
     wander, each by itself, or the whole block turned at one moment."""
     m, k = start.sensor_count, len(course.numbers)

@@ -67,17 +67,17 @@ def since(baseline: Baseline, history: Sequence[Baseline]) -> Baseline:
     return replace(baseline, setting=replace(baseline.setting, turn=turn))
 
 
-def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> SearchState:
+def restart_with_known_noise(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> SearchState:
     """The search begun anew with one sensor's variance as it is, known from its own residuals alone."""
     sensors = [entry.sensor for entry in scatter]
     unstated = state.baseline.unstated.copy()
     unstated[sensors] = True
-    known = as_they_scatter(replace(state.baseline, unstated=unstated), [[i] for i in sensors])
+    known = with_residual_scatter(replace(state.baseline, unstated=unstated), [[i] for i in sensors])
     ratio = np.median(known.variance / state.baseline.variance, axis=0)
     scaled = [entry if entry.ratio == 1 else replace(entry, ratio=float(ratio[entry.sensor])) for entry in scatter]
     excess = (*state.excess, *(s for s in scaled if isinstance(s, ExcessVariance)))
     autocorrelated = (*state.autocorrelated, *(s for s in scaled if isinstance(s, Autocorrelation)))
-    begun = begun_with(with_earlier_scatter(state, sensors), refitted(known))
+    begun = restart_from(with_earlier_scatter(state, sensors), refitted(known))
     return replace(begun, excess=excess, autocorrelated=autocorrelated)
 
 
@@ -85,11 +85,11 @@ def with_earlier_scatter(state: SearchState, sensors: Sequence[int]) -> SearchSt
     """The state whose earlier sessions state nothing of the noise of some sensors either: their residuals tell it."""
     kinds = state.baseline.setting.kinds
     each = [[i] for i in sensors]
-    history = (refitted(as_they_scatter(h, each)) if h.setting.kinds == kinds else h for h in state.history)
+    history = (refitted(with_residual_scatter(h, each)) if h.setting.kinds == kinds else h for h in state.history)
     return replace(state, history=tuple(history))
 
 
-def as_they_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], named: Array | None = None) -> Baseline:
+def with_residual_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], named: Array | None = None) -> Baseline:
     """The baseline with the variance of some sensors that of their own residuals (restricted likelihood).
 
     Sensors of one group are off by one factor. ``named`` (R, m, q) are effects, any unit, that count as no noise. Step
@@ -119,7 +119,7 @@ def remaining_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> t
     return of_sensor @ z**2, of_sensor @ freedom
 
 
-def begun_with(state: SearchState, baseline: Baseline) -> SearchState:
+def restart_from(state: SearchState, baseline: Baseline) -> SearchState:
     """The search begun anew with another baseline; what the file states of the noise is kept."""
     again = begin(baseline, state.history, state.catalogue)
     return replace(again, stated=state.stated, noise_claims=state.noise_claims)

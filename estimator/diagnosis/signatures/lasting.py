@@ -107,7 +107,7 @@ def absorbed_before(
         if setting.beta is None or not cause.available(setting):
             return None
         if columns_of is None and isinstance(cause, SensorCause):
-            each = [of_one_sensor(absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
+            each = [absorbed_terms(absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
             absorbed = absorbed + np.concatenate(each, axis=1)
         else:
             columns = (columns_of or cause.all_columns)(setting, shapes)
@@ -134,7 +134,7 @@ def alike(change: ParameterChange, recorded: frozenset[str]) -> tuple[tuple[Sett
     return tuple(groups.values())
 
 
-def of_one_sensor(absorbs: Array, terms: Array) -> Array:
+def absorbed_terms(absorbs: Array, terms: Array) -> Array:
     """(P, S·q) dimensionless: what a session absorbs, (P, R) of one sensor, per m/s², of terms (S, R, q), m/s²."""
     return np.asarray(absorbs @ terms.swapaxes(0, 1).reshape(terms.shape[1], -1))
 

@@ -217,7 +217,7 @@ def _scored(projected: Projected, traces: Sequence[Traces], chosen: Sequence[int
         of_cause = tested[cause[tested] == k]
         visible[of_cause] = within_reason(projected, traces[k], shape[of_cause], fit.value[of_cause])
     tested = tested[visible[tested]]
-    visible[tested] = shows_itself(
+    visible[tested] = is_visible_within(
         projected, [traces[k] for k in cause[tested]], fit.at(tested), raw[tested], sensor[tested]
     )
     places = np.array([max(t.places, 1) for t in selected])[np.searchsorted(chosen, cause)]
@@ -239,7 +239,7 @@ def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) ->
     return again
 
 
-def shows_itself(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: Array, sensor: Array) -> Array:
+def is_visible_within(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: Array, sensor: Array) -> Array:
     """(S,) bool: whether shapes of causes that act within the session show there, and not only in what changed since
     the history.
 

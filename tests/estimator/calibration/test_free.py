@@ -8,7 +8,7 @@ import pytest
 from estimator import read_session
 from estimator.calibration.free import accelerometer_rows, calibrate_free
 from estimator.calibration.free.model import Rows, Unknowns, jacobian, linearise, predicted
-from estimator.calibration.free.optional import around
+from estimator.calibration.free.optional import starts_around
 from estimator.calibration.free.schedule import classified
 from estimator.calibration.free.solve import search
 from estimator.calibration.free.start import starts
@@ -195,4 +195,4 @@ def test_nothing_is_looked_for_around_a_search_that_has_not_ended():
     rows, _ = accelerometer_rows(absurd, classified(absurd)[0], 9.81)
     found = search(rows, starts(rows)[0], False)
     assert not found.converged
-    assert around(found) == []
+    assert starts_around(found) == []

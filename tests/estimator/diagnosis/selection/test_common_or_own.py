@@ -8,12 +8,12 @@ import pytest
 from estimator.causes import cause
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.acceptance import held
+from estimator.diagnosis.selection.acceptance import fitting_causes
 from estimator.diagnosis.selection.common_or_own import (
     in_parity_space,
     penalised_log_evidence,
-    settled,
     with_likelier_vector_course,
+    with_residual_noise,
 )
 from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.start import begin
@@ -39,14 +39,14 @@ def swaying(size: float) -> Array:
 
 def test_an_error_of_the_stand_that_no_cause_describes_gets_no_name() -> None:
     begun = start(OWN, swaying(2e-4))
-    left = with_likelier_vector_course(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert not left.detections
     assert [course.components for course in left.courses] == [("α",)]
 
 
 def test_the_course_is_the_one_that_was_there() -> None:
     begun = start(OWN, swaying(2e-4))
-    (course,) = with_likelier_vector_course(begun, held(begun), held).courses
+    (course,) = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes).courses
     beta, flipped = begun.baseline.setting.beta, begun.baseline.setting.flipped
     true = 2e-4 * np.cos(2 * beta + 0.3) * (1 + flipped)
     assert np.corrcoef(course.value[:, 0], true)[0, 1] > 0.9
@@ -54,7 +54,7 @@ def test_the_course_is_the_one_that_was_there() -> None:
 
 def test_a_cause_of_one_sensor_beside_it_is_still_named() -> None:
     begun = start(OWN, swaying(2e-4) + effect("cubic-nonlinearity"))
-    left = with_likelier_vector_course(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert names(left) == [("cubic-nonlinearity", (SENSOR,))]
     assert left.courses
 
@@ -62,14 +62,14 @@ def test_a_cause_of_one_sensor_beside_it_is_still_named() -> None:
 @pytest.mark.parametrize("known", ["beta-second-harmonic", "stand-drift", "axis-wobble", "alpha-shift"])
 def test_an_error_of_the_stand_that_a_cause_describes_keeps_its_name(known: str) -> None:
     begun = start((*OWN, known), effect(known))
-    left = with_likelier_vector_course(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert names(left) == [(known, ())]
     assert not left.courses
 
 
 def test_two_true_causes_of_two_sensors_keep_their_names() -> None:
     begun = start(OWN, effect("cubic-nonlinearity") + effect("bias-ramp", 3))
-    left = with_likelier_vector_course(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert names(left) == [("bias-ramp", (3,)), ("cubic-nonlinearity", (SENSOR,))]
 
 
@@ -94,7 +94,7 @@ def test_noise_that_no_file_states_is_what_the_names_leave() -> None:
     unstated = replace(measured(added), standard_errors=np.full((ROWS, 4), np.nan))
     begun = begin(baseline_of(unstated), (), [cause("beta-second-harmonic")])
     named = replace(begun, detections=(candidate(begun, "beta-second-harmonic", ()),))
-    known, seen = settled(begun, named, begun.baseline.unstated)
+    known, seen = with_residual_noise(begun, named, begun.baseline.unstated)
     true = baseline_of(measured(0.0)).variance
     assert np.median(begun.baseline.variance / true) > 1.5
     assert np.median(known.baseline.variance / true) == pytest.approx(1, abs=0.3)
@@ -106,6 +106,6 @@ def test_a_turn_of_the_block_since_the_history_is_common() -> None:
     turn = np.cross(np.array([2e-4, -1e-4, 1e-4]), setting.n)
     added = setting.through(turn[..., None])[..., 0] * setting.parameters.scale
     begun = start(("sensor-drift", *OWN), added, (measured(0.0, 11), measured(0.0, 12)))
-    left = with_likelier_vector_course(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert not left.detections
     assert left.courses

@@ -11,8 +11,8 @@ from estimator.diagnosis.selection.forward import (
     forward_selection,
     holds_pattern,
     log_evidence_of_two,
+    repeated_too_often,
     scatter_or_cause,
-    too_often,
     with_structures,
 )
 from estimator.diagnosis.selection.ranking import strongest
@@ -101,8 +101,8 @@ def test_a_cause_likelier_than_a_course_is_named() -> None:
 
 def test_a_cause_named_more_often_than_it_can_act_is_too_often() -> None:
     found = candidate(start(("bias-jump",), JUMPS), "bias-jump")
-    assert too_often([found] * 2) == frozenset()
-    assert too_often([found] * 3) == {("bias-jump", (SENSOR,))}
+    assert repeated_too_often([found] * 2) == frozenset()
+    assert repeated_too_often([found] * 3) == {("bias-jump", (SENSOR,))}
 
 
 def test_a_cause_named_too_often_is_refuted_and_the_others_stay() -> None:
