@@ -67,7 +67,7 @@ class LeverResponse:
     for how many columns."""
 
     def p_value(self, model: str, excess: float = 1.0) -> float:
-        """Probability of such a drop where there is none; ``excess``: by which the noise is larger than reckoned."""
+        """Probability of such a drop where there is none; ``excess``: by which the noise is larger than assumed."""
         chi2, columns = self.drop[model]
         if columns == 0 or self.freedom <= 0:
             return 1.0

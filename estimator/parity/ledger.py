@@ -85,7 +85,7 @@ class Blocks:
             jitter=np.maximum(left["jitter"], right["jitter"]),
             lowest=np.minimum(left["lowest"], right["lowest"]),
             highest=np.maximum(left["highest"], right["highest"]),
-            parity_variance=mean("own"),
+            parity_variance=mean("parity_variance"),
             gain=left["gain"] + right["gain"],
             shake=mean("shake"),
             spin=mean("spin"),
