@@ -54,7 +54,7 @@ def false_names() -> None:
             rough=(1.0, 3.0)[number % 2],
             wobble=(0.5, 2.0)[number % 2],
         )
-        arms = lever_arms(prepared(turned(run, 1000 + number))).found
+        arms = lever_arms(prepared(turned(run, 1000 + number))).estimates
         named += any(arm.named for arm in arms)
         other += any(arm.other or arm.more < LEVEL / len(arms) for arm in arms)
     print(f"of {SESSIONS} sound sessions: a lever arm named in {named}, something else said in {other}")

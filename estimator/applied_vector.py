@@ -194,8 +194,8 @@ def _geometry(schedule: Schedule) -> Geometry:
     """The same of any session with this schedule."""
     kinds = schedule.kinds
     different = list(dict.fromkeys(kinds))
-    own = np.stack([_kind_geometry(schedule, kind) for kind in different], axis=2)
-    of_sensor = own[:, :, [different.index(kind) for kind in kinds]]
+    by_kind = np.stack([_kind_geometry(schedule, kind) for kind in different], axis=2)
+    of_sensor = by_kind[:, :, [different.index(kind) for kind in kinds]]
     sigma = schedule.stand.sigma
     sigmas = np.array([getattr(sigma, name) for name in CONSTANT_ERRORS])
     acts = (sigmas > 0) & of_sensor[1:-1].any(axis=(1, 2, 3))

@@ -38,7 +38,7 @@ def tangents(axis: Array) -> Array:
     return frame
 
 
-def in_frame(covariance: Array, own: Array, frame: Array) -> Array:
+def in_frame(covariance: Array, basis: Array, frame: Array) -> Array:
     """A covariance of turns along one pair of tangents, along another pair.
 
     A turn c along the tangents T moves the axis by T·c, so the covariance in space is T·C·Tᵀ, and along the frame F it
@@ -47,14 +47,14 @@ def in_frame(covariance: Array, own: Array, frame: Array) -> Array:
 
     Parameters
     ----------
-    covariance : (2, 2) of turns along ``own``, rad²; leading axes free.
-    own, frame : (3, 2) orthonormal columns, dimensionless; leading axes free.
+    covariance : (2, 2) of turns along ``basis``, rad²; leading axes free.
+    basis, frame : (3, 2) orthonormal columns, dimensionless; leading axes free.
 
     Returns
     -------
     (2, 2), rad².
     """
-    turn = np.swapaxes(frame, -1, -2) @ own
+    turn = np.swapaxes(frame, -1, -2) @ basis
     return np.asarray(turn @ covariance @ np.swapaxes(turn, -1, -2))
 
 
@@ -90,7 +90,7 @@ def eigh(matrix: Array) -> tuple[Array, Array]:
         values, vectors = np.linalg.eigh(matrix)
     except np.linalg.LinAlgError:
         n = matrix.shape[-1]
-        each = [patient_eigh(one, driver="ev") for one in matrix.reshape(-1, n, n)]
+        each = [patient_eigh(symmetric, driver="ev") for symmetric in matrix.reshape(-1, n, n)]
         values = np.stack([v for v, _ in each]).reshape(matrix.shape[:-1])
         vectors = np.stack([w for _, w in each]).reshape(matrix.shape)
     return values, vectors

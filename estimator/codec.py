@@ -46,13 +46,15 @@ class Form:
 
 def named(*names: str) -> Form:
     """A tuple written as an object, each part under its name."""
-    return Form(lambda parts: dict(zip(names, parts, strict=True)), lambda found: tuple(found[name] for name in names))
+    return Form(
+        lambda parts: dict(zip(names, parts, strict=True)), lambda document: tuple(document[name] for name in names)
+    )
 
 
 DEGREES = Form(lambda angle: np.degrees(angle).tolist(), lambda listed: np.radians(np.array(listed, dtype=float)))
 """Of angles, rad inside."""
 RUN = Form(
-    lambda flipped: ["flipped" if one else "direct" for one in flipped],
+    lambda flipped: ["flipped" if is_flipped else "direct" for is_flipped in flipped],
     lambda names: np.array([name == "flipped" for name in names]),
 )
 """Of whether the block is flipped, row by row."""
@@ -119,7 +121,7 @@ def json_numbers(array: NDArray[Any]) -> Any:
 def _attributes(cls: type) -> tuple[tuple[str, tuple[str, ...], Form | None, bool], ...]:
     """Name, path, form and whether it is optional, of all that is written."""
     layout = layout_of(cls)
-    names = layout.order or tuple(one.name for one in fields(cls))
+    names = layout.order or tuple(attribute.name for attribute in fields(cls))
     return tuple((name, layout.path(name), layout.forms.get(name), name in layout.optional) for name in names)
 
 
@@ -138,9 +140,9 @@ class Codec:
         if kind is float:
             return value if isfinite(value) else None
         if kind is tuple or kind is list:
-            return [self.written(one) for one in value]
+            return [self.written(item) for item in value]
         if isinstance(value, Mapping):
-            return {key: self.written(one) for key, one in value.items()}
+            return {key: self.written(item) for key, item in value.items()}
         return self._written(value)
 
     def _written(self, value: Any) -> Any:
@@ -172,22 +174,22 @@ class Codec:
 
     def read(self, cls: type[T], document: Any) -> T:
         """The object that was written; ValueError with the place of what cannot be read."""
-        found: T = self._reader(cls)(document)
-        return found
+        value: T = self._reader(cls)(document)
+        return value
 
     def _reader(self, hint: Any) -> Reader:
         if hint not in self._readers:
-            self._readers[hint] = self._made(hint)
+            self._readers[hint] = self._reader_for(hint)
         return self._readers[hint]
 
-    def _made(self, hint: Any) -> Reader:
+    def _reader_for(self, hint: Any) -> Reader:
         if hint in SIMPLE:
             return SIMPLE[hint]
         if hint in self._forms:
             return _formed(self._forms[hint])
         origin, inner = get_origin(hint), get_args(hint)
         if origin in (Union, UnionType):
-            return self._one_of(inner)
+            return self._union_reader(inner)
         if origin is tuple:
             return self._tuple(inner)
         if origin is np.ndarray:
@@ -202,8 +204,8 @@ class Codec:
             return self._dataclass(hint)
         raise TypeError(f"{hint} is not kept as JSON")
 
-    def _one_of(self, inner: tuple[Any, ...]) -> Reader:
-        (kind,) = (one for one in inner if one is not NoneType)
+    def _union_reader(self, inner: tuple[Any, ...]) -> Reader:
+        (kind,) = (member for member in inner if member is not NoneType)
         read = self._reader(kind)
         return lambda value: None if value is None else read(value)
 
@@ -224,8 +226,8 @@ class Codec:
                 raise UnreadableError(f"an object is expected, not {document!r:.80}")
             if document.get("format", layout.format) != layout.format and layout.format:
                 raise UnreadableError(f"it is {document['format']!r}, not {layout.format}", "format")
-            own = document if layout.earlier is None else layout.earlier(dict(document))
-            return cls(**{place.name: value for place in plan if (value := place.found(own)) is not MISSING})
+            current = document if layout.earlier is None else layout.earlier(dict(document))
+            return cls(**{place.name: value for place in plan if (value := place.value_in(current)) is not MISSING})
 
         return read
 
@@ -233,13 +235,15 @@ class Codec:
         layout, hints = layout_of(cls), get_type_hints(cls)
         return [
             _Place(
-                one.name,
-                layout.path(one.name),
-                _optional(layout.forms[one.name]) if one.name in layout.forms else self._reader(hints[one.name]),
-                one.default is not MISSING or one.default_factory is not MISSING,
+                attribute.name,
+                layout.path(attribute.name),
+                _optional(layout.forms[attribute.name])
+                if attribute.name in layout.forms
+                else self._reader(hints[attribute.name]),
+                attribute.default is not MISSING or attribute.default_factory is not MISSING,
             )
-            for one in fields(cls)
-            if one.init
+            for attribute in fields(cls)
+            if attribute.init
         ]
 
 
@@ -252,7 +256,7 @@ class _Place:
     read: Reader
     has_default: bool
 
-    def found(self, document: Any) -> Any:
+    def value_in(self, document: Any) -> Any:
         """Its value; MISSING where the document lacks it and it has a default."""
         for key in self.path:
             if not isinstance(document, Mapping) or key not in document:
@@ -316,9 +320,9 @@ def _listed(value: Any) -> Any:
 def _each(value: Any, parts: tuple[Reader, ...]) -> Iterable[Any]:
     if len(_listed(value)) != len(parts):
         raise UnreadableError(f"{len(parts)} entries are expected, not {len(value)}")
-    for place, (one, read) in enumerate(zip(value, parts, strict=True)):
+    for place, (item, read) in enumerate(zip(value, parts, strict=True)):
         try:
-            yield read(one)
+            yield read(item)
         except UnreadableError as problem:
             raise problem.within(place) from None
 
@@ -327,13 +331,13 @@ def _mapping(read: Reader) -> Reader:
     whole = _of(Mapping, "an object")
 
     def entries(value: Any) -> dict[str, Any]:
-        found = {}
-        for key, one in whole(value).items():
+        mapping = {}
+        for key, item in whole(value).items():
             try:
-                found[key] = read(one)
+                mapping[key] = read(item)
             except UnreadableError as problem:
                 raise problem.within(key) from None
-        return found
+        return mapping
 
     return entries
 

@@ -24,7 +24,7 @@ LARGEST = 600
 """Readings of a session that is remembered: what is worked out of it is then a megabyte at most."""
 
 
-FIELDS = {kind: tuple(own.name for own in fields(kind)) for kind in (CalibrationSession, Sensor)}
+FIELDS = {kind: tuple(attribute.name for attribute in fields(kind)) for kind in (CalibrationSession, Sensor)}
 """Of what holds arrays and cannot be compared itself."""
 
 
@@ -48,12 +48,12 @@ def remembered(
     def known(content: Content, *rest: *Rest) -> Result:
         return function(content.session, *rest)
 
-    def asked(session: CalibrationSession, *rest: *Rest) -> Result:
+    def wrapper(session: CalibrationSession, *rest: *Rest) -> Result:
         if session.readings.size > LARGEST:
             return function(session, *rest)
         return known(Content(held(session), session), *rest)
 
-    return asked
+    return wrapper
 
 
 def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest], Result]:
@@ -63,13 +63,13 @@ def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest],
     """
     known: WeakKeyDictionary[Owner, dict[Hashable, Result]] = WeakKeyDictionary()
 
-    def asked(owner: Owner, *rest: *Rest) -> Result:
-        own = known.setdefault(owner, {})
-        if rest not in own:
-            own[rest] = function(owner, *rest)
-        return own[rest]
+    def wrapper(owner: Owner, *rest: *Rest) -> Result:
+        results = known.setdefault(owner, {})
+        if rest not in results:
+            results[rest] = function(owner, *rest)
+        return results[rest]
 
-    return asked
+    return wrapper
 
 
 class OfSession(Hashable, Protocol):
@@ -92,20 +92,20 @@ def each_remembered(
     """
     known: dict[Hashable, Result] = {}
 
-    def asked(each: list[Worked], *rest: *Rest) -> list[Result]:
+    def wrapper(each: list[Worked], *rest: *Rest) -> list[Result]:
         before = known.copy()
-        found = {one: before[one, *rest] for one in each if (one, *rest) in before}
-        missing = [one for one in each if one not in found]
-        found |= zip(missing, function(missing, *rest) if missing else [], strict=True)
-        for one, result in found.items():
-            if one.session.readings.size <= LARGEST:
-                known.pop((one, *rest), None)
-                known[one, *rest] = result
+        results = {item: before[item, *rest] for item in each if (item, *rest) in before}
+        missing = [item for item in each if item not in results]
+        results |= zip(missing, function(missing, *rest) if missing else [], strict=True)
+        for item, result in results.items():
+            if item.session.readings.size <= LARGEST:
+                known.pop((item, *rest), None)
+                known[item, *rest] = result
         for key in list(known)[:-REMEMBERED]:
             known.pop(key, None)
-        return [found[one] for one in each]
+        return [results[item] for item in each]
 
-    return asked
+    return wrapper
 
 
 def held(part: Any) -> Hashable:

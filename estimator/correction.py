@@ -94,8 +94,8 @@ class BlockCorrection:
             own = [by_scale / slope, -1.0 / slope, -(a[i] ** 2) / slope, *(-sensor.tangents.T @ f)]
             columns.append(np.outer(self.matrix[:, i], own))
         jacobian = np.concatenate(columns, axis=1)
-        found: Array = jacobian @ self.covariance @ jacobian.T
-        return found
+        total: Array = jacobian @ self.covariance @ jacobian.T
+        return total
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,9 +118,9 @@ def correction_of(session: CalibrationSession, calibration: Calibration) -> Corr
     """
     blocks, left_out = [], []
     for kind in dict.fromkeys(s.kind for s in calibration.sensors):
-        own = [s for s in calibration.sensors if s.kind == kind]
-        unseen = {s.name: why for s in own if (why := _unseen(s))}
-        sensors = tuple(_sensor(session, s) for s in own if s.name not in unseen)
+        of_this_kind = [s for s in calibration.sensors if s.kind == kind]
+        unseen = {s.name: why for s in of_this_kind if (why := _unseen(s))}
+        sensors = tuple(_sensor(session, s) for s in of_this_kind if s.name not in unseen)
         left_out += list(unseen.items())
         if _spans(sensors):
             axes = np.stack([s.axis for s in sensors])
@@ -144,23 +144,23 @@ def _spans(sensors: Sequence[SensorCorrection]) -> bool:
     return bool(size[2] > FLATTEST * size[0])
 
 
-def _sensor(session: CalibrationSession, found: SensorCalibration) -> SensorCorrection:
-    declared = next(s for s in session.sensors if s.name == found.name)
-    assert found.scale.value is not None
-    assert found.bias.value is not None
-    assert found.axis is not None
+def _sensor(session: CalibrationSession, calibration: SensorCalibration) -> SensorCorrection:
+    declared = next(s for s in session.sensors if s.name == calibration.name)
+    assert calibration.scale.value is not None
+    assert calibration.bias.value is not None
+    assert calibration.axis is not None
     return SensorCorrection(
-        name=found.name,
-        kind=found.kind,
+        name=calibration.name,
+        kind=calibration.kind,
         reading_unit=declared.reading_unit,
         offset=declared.nominal_offset or 0.0,
-        count_time=session.count_time if found.kind == GYROSCOPE else None,
-        scale=found.scale.value,
-        bias=found.bias.value,
-        quadratic=found.quadratic.value or 0.0,
-        quadratic_known=found.quadratic.value is not None,
-        axis=found.axis,
-        tangents=found.axis_tangents,
+        count_time=session.count_time if calibration.kind == GYROSCOPE else None,
+        scale=calibration.scale.value,
+        bias=calibration.bias.value,
+        quadratic=calibration.quadratic.value or 0.0,
+        quadratic_known=calibration.quadratic.value is not None,
+        axis=calibration.axis,
+        tangents=calibration.axis_tangents,
     )
 
 

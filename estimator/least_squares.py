@@ -49,9 +49,9 @@ def least_squares(columns: Array, values: Array, faint: float = FLAT, prior: Arr
         columns = np.concatenate([columns, np.diag(np.sqrt(prior))])
         values = np.concatenate([values, np.zeros((len(prior), *values.shape[1:]))])
     basis, inverse = decomposed(columns, faint)
-    left = values - basis @ (basis.T @ values)
+    residual = values - basis @ (basis.T @ values)
     rank = basis.shape[1]
-    return Fit(inverse @ values, inverse @ inverse.T, (left**2).sum(axis=0), rank, len(columns) - rank)
+    return Fit(inverse @ values, inverse @ inverse.T, (residual**2).sum(axis=0), rank, len(columns) - rank)
 
 
 def decomposed(columns: Array, faint: float = FLAT) -> tuple[Array, Array]:
@@ -86,12 +86,12 @@ def inverse(F: Array, faint: float = FAINT) -> Array:
     return np.asarray(scale[:, None] * (part / value[live]) @ part.T * scale)
 
 
-def given(U: Array, F: Array, free: Sequence[int] | Array, left: float) -> tuple[Array, Array]:
+def given(U: Array, F: Array, free: Sequence[int] | Array, energy: float) -> tuple[Array, Array]:
     """Scores (D, …) and information (D, D) given some columns left free; 0 of a column of whose information these leave
-    no more than the share ``left``."""
-    own = np.asarray(free, dtype=int)
-    cross = F[:, own] @ inverse(F[np.ix_(own, own)])
-    score, rest = U - cross @ U[own], F - cross @ F[own]
-    gone = np.diagonal(rest) <= left * np.diagonal(F)
+    no more than the share ``energy``."""
+    indices = np.asarray(free, dtype=int)
+    cross = F[:, indices] @ inverse(F[np.ix_(indices, indices)])
+    score, rest = U - cross @ U[indices], F - cross @ F[indices]
+    gone = np.diagonal(rest) <= energy * np.diagonal(F)
     rest[gone], rest[:, gone], score[gone] = 0.0, 0.0, 0.0
     return score, rest

@@ -41,14 +41,14 @@ class NominalVector:
     @property
     def correction(self) -> Array:
         """(3, 3) S, dimensionless."""
-        found: Array = np.linalg.inv(self.matrix)
-        return found
+        inverse: Array = np.linalg.inv(self.matrix)
+        return inverse
 
     @property
     def bias(self) -> Array:
         """(3,) o, m/s² (rad/s)."""
-        found: Array = self.correction @ self.offset
-        return found
+        bias: Array = self.correction @ self.offset
+        return bias
 
     def corrected(self, vectors: Array) -> Array:
         """f of vectors fₙ (R, 3), m/s² (rad/s): the same shape and unit."""
@@ -60,8 +60,8 @@ def nominal_vectors(session: CalibrationSession, block: BlockCorrection, reading
     scale, projection = _nominal(session, block)
     offset = np.array([sensor.offset for sensor in block.sensors])
     period = np.array([sensor.count_time or 1.0 for sensor in block.sensors])
-    found: Array = (readings - offset) / (period * scale) @ projection.T
-    return found
+    vectors: Array = (readings - offset) / (period * scale) @ projection.T
+    return vectors
 
 
 def nominal_vector(session: CalibrationSession, block: BlockCorrection) -> NominalVector:
@@ -86,9 +86,9 @@ def nominal_vector(session: CalibrationSession, block: BlockCorrection) -> Nomin
 def _nominal(session: CalibrationSession, block: BlockCorrection) -> tuple[Array, Array]:
     """(m,) Kₙ and (3, m) Pₙ of the block's sensors."""
     declared = {sensor.name: sensor for sensor in session.sensors}
-    own = [declared[sensor.name] for sensor in block.sensors]
-    axes = np.stack([sensor.nominal_axis for sensor in own])
-    return np.array([sensor.nominal_scale for sensor in own]), np.linalg.pinv(axes)
+    declared_sensors = [declared[sensor.name] for sensor in block.sensors]
+    axes = np.stack([sensor.nominal_axis for sensor in declared_sensors])
+    return np.array([sensor.nominal_scale for sensor in declared_sensors]), np.linalg.pinv(axes)
 
 
 def _jacobian(block: BlockCorrection, by_scale: Array, weighted: Array, inverse: Array, offset: Array) -> Array:
@@ -101,5 +101,5 @@ def _jacobian(block: BlockCorrection, by_scale: Array, weighted: Array, inverse:
         for matrix, shift in moved:
             turned = -inverse @ matrix @ inverse
             columns.append(np.concatenate([turned.ravel(), inverse @ shift + turned @ offset]))
-    found: Array = np.stack(columns, axis=1)
-    return found
+    jacobian: Array = np.stack(columns, axis=1)
+    return jacobian

@@ -27,10 +27,10 @@ def function_on_demand(home: str, name: str) -> Callable[..., Any]:
     """A function that stands for another, whose module is imported when it is first called."""
 
     @cache
-    def found() -> Any:
+    def target() -> Any:
         return getattr(import_module(home), name)
 
     def call(*arguments: Any, **options: Any) -> Any:
-        return found()(*arguments, **options)
+        return target()(*arguments, **options)
 
     return call

@@ -63,14 +63,16 @@ class SensorParameters:
 
     def si_factors(self, norm: Array) -> Array:
         """(..., 5 m) factors from dimensionless elements to SI; ``norm`` (m,) as in `stepped`, m/s² (rad/s)."""
-        one = np.ones_like(self.scale)
-        factors = np.stack([self.scale, one * norm, one / norm, one, one], axis=-1)
+        ones = np.ones_like(self.scale)
+        factors = np.stack([self.scale, ones * norm, ones / norm, ones, ones], axis=-1)
         return factors.reshape(*self.scale.shape[:-1], -1)
 
 
 def together(each: Sequence[SensorParameters]) -> SensorParameters:
     """Parameters (m,) of S sessions as (S, m)."""
-    return SensorParameters(*(np.stack([getattr(p, own.name) for p in each]) for own in fields(SensorParameters)))
+    return SensorParameters(
+        *(np.stack([getattr(p, attribute.name) for p in each]) for attribute in fields(SensorParameters))
+    )
 
 
 def names(sensors: tuple[Sensor, ...]) -> tuple[str, ...]:

@@ -154,17 +154,17 @@ def noises(energy: Array, spectra: Array) -> Noises:
     return Noises(amplitude, weight / weight.sum())
 
 
-def mean_variance(found: Energies) -> Array:
+def mean_variance(energies: Energies) -> Array:
     """(n, m) variance of the mean of each rest, unit of the readings squared; a restless one has its own scale."""
-    known = np.asarray(np.isfinite(found.value).all(axis=(1, 2)))
-    spectra, means = mixture(found.samples.astype(float), found.value.shape[1] + 1)
-    unrest, variance = np.ones(len(known)), np.zeros_like(found.least)
+    known = np.asarray(np.isfinite(energies.value).all(axis=(1, 2)))
+    spectra, means = mixture(energies.samples.astype(float), energies.value.shape[1] + 1)
+    unrest, variance = np.ones(len(known)), np.zeros_like(energies.least)
     for _ in range(PASSES):
         calm = known & (unrest < RESTLESS)
-        likely = noises(found.value[calm], spectra[calm])
+        likely = noises(energies.value[calm], spectra[calm])
         variance, S = likely.over(means), likely.over(spectra[known])
-        unrest[known] = (found.value[known] / np.where(S > 0, S, 1.0)).mean(axis=(1, 2))
+        unrest[known] = (energies.value[known] / np.where(S > 0, S, 1.0)).mean(axis=(1, 2))
         if np.array_equal(calm, known & (unrest < RESTLESS)) or not (known & (unrest < RESTLESS)).any():
             break
     scale = np.where(unrest < RESTLESS, 1.0, unrest)[:, None]
-    return np.maximum(variance * scale, np.where(known[:, None], found.least, 0.0))
+    return np.maximum(variance * scale, np.where(known[:, None], energies.least, 0.0))

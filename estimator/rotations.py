@@ -62,8 +62,8 @@ def common_turn(vectors: Array, others: Array, settled: float = SETTLED) -> Arra
     turn = nearest_turn(np.concatenate([vectors, faint], axis=-2), both)
     moving = np.ones(turn.shape[:-2], dtype=bool)
     for _ in range(ROUNDS):
-        apart = vectors @ np.swapaxes(turn, -1, -2) - others
-        near = np.maximum(np.linalg.norm(apart, axis=-1, keepdims=True), CLOSEST)
+        difference = vectors @ np.swapaxes(turn, -1, -2) - others
+        near = np.maximum(np.linalg.norm(difference, axis=-1, keepdims=True), CLOSEST)
         weighted = vectors * (near.min(axis=-2, keepdims=True) / near)
         new = nearest_turn(np.concatenate([weighted, faint], axis=-2), both)
         moved = np.abs(new - turn).max(axis=(-1, -2)) >= settled

@@ -187,7 +187,7 @@ class CalibrationSession:
         a counter that is reset may all be alike, as at a steady rate without noise: a mean of them is no better than
         one.
         """
-        one = QUANTISATION[self.counter or FREE_RUNNING]
+        variance = QUANTISATION[self.counter or FREE_RUNNING]
         if self.counts_averaged is None or self.counter == RESET:
-            return one
-        return np.asarray(one / self.counts_averaged[:, None] ** 2)
+            return variance
+        return np.asarray(variance / self.counts_averaged[:, None] ** 2)

@@ -156,14 +156,16 @@ def uncounted(
     repeatability = np.array([s.bias_repeatability for s in schedule.sensors])
     clean = response(truth, n) + truth.scale * repeatability * rng.standard_normal(shape)
     sigma = np.broadcast_to(np.asarray(noise, dtype=float), shape)
-    readings = put_out(clean, schedule, lasted, sigma * rng.standard_normal(shape), rng)
+    readings = counter_output(clean, schedule, lasted, sigma * rng.standard_normal(shape), rng)
     offset = np.array([s.nominal_offset or 0.0 for s in schedule.sensors])
     stated = sigma if state_noise else np.full(shape, np.nan)
     known = schedule.directions if schedule.direction_sigma is not None else None
     return replace(schedule, readings=readings + offset, standard_errors=np.array(stated), directions=known)
 
 
-def put_out(clean: Array, schedule: CalibrationSession, lasted: float, error: Array, rng: np.random.Generator) -> Array:
+def counter_output(
+    clean: Array, schedule: CalibrationSession, lasted: float, error: Array, rng: np.random.Generator
+) -> Array:
     """(R, m) readings from noiseless ones and their errors (R, m): of pulse gyros how far the counter comes, the rest
     as they are.
 

@@ -111,7 +111,7 @@ def average(session: CalibrationSession, residual: Callable[[CalibrationSession]
         setting = np.column_stack([session.beta, session.flipped])
         changed = np.any(np.diff(setting, axis=0) != 0, axis=1)
         return averaged(session, at_rest(session, labelled(np.concatenate([[0], np.cumsum(changed)]))))
-    return chosen(session, residual)
+    return average_best(session, residual)
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
@@ -131,50 +131,53 @@ def trimmed(start: Indices, stop: Indices) -> Intervals:
     return Intervals(start + trim, stop - trim)
 
 
-def at_rest(session: CalibrationSession, found: Intervals) -> Intervals:
+def at_rest(session: CalibrationSession, intervals: Intervals) -> Intervals:
     """The labelled stretches; ScheduleError where the block moves in most of them."""
-    return unless_moving(found, moving(session, found))
+    return require_still(intervals, moving(session, intervals))
 
 
-def unless_moving(found: Intervals, moves: NDArray[np.bool_]) -> Intervals:
-    """The same, told in which of them the block ``moves`` (n,)."""
-    if 2 * np.count_nonzero(moves) <= len(found):
-        return found
-    rows = ", ".join(f"{a + 1} to {b}" for a, b in zip(found.start[moves][:3], found.stop[moves][:3], strict=True))
+def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
+    """The same, given in which of them the block ``moves`` (n,)."""
+    if 2 * np.count_nonzero(moves) <= len(intervals):
+        return intervals
+    rows = ", ".join(
+        f"{a + 1} to {b}" for a, b in zip(intervals.start[moves][:3], intervals.stop[moves][:3], strict=True)
+    )
     raise ScheduleError(
         [
             Problem(
                 "table",
-                f"the block moves in {np.count_nonzero(moves)} of {len(found)} positions (samples {rows}, …): it turns "
-                f"by more than {MOTION:g} rad while it should rest; label still samples only, or check sample_rate_hz",
+                f"the block moves in {np.count_nonzero(moves)} of {len(intervals)} positions (samples {rows}, …): it "
+                f"turns by more than {MOTION:g} rad while it should rest; label still samples only, "
+                "or check sample_rate_hz",
             )
         ]
     )
 
 
-def moving(session: CalibrationSession, found: Intervals) -> NDArray[np.bool_]:
+def moving(session: CalibrationSession, intervals: Intervals) -> NDArray[np.bool_]:
     """(n,) whether the block turns in a stretch: an accelerometer drifts by more than `MOTION` g, far beyond its noise.
 
     A slow turn is as quiet as rest to a short window; over a whole stretch it is not.
     """
-    moves = np.zeros(len(found), dtype=bool)
-    if not long_enough_to_move(found):
+    moves = np.zeros(len(intervals), dtype=bool)
+    if not long_enough_to_move(intervals):
         return moves
-    quarter = found.samples // PIECES
-    pieces = [Intervals(found.start + k * quarter, found.start + (k + 1) * quarter) for k in range(PIECES)]
+    quarter = intervals.samples // PIECES
+    pieces = [Intervals(intervals.start + k * quarter, intervals.start + (k + 1) * quarter) for k in range(PIECES)]
     for i, sensor in enumerate(session.sensors):
         if sensor.kind == ACCELEROMETER:
             values = session.readings[:, i]
             drift = np.ptp([piece.means(values) for piece in pieces], axis=0)
             if (drift > far_turn(sensor)).any():
-                jitter = found.sums(np.diff(values, append=values[-1]) ** 2) / (2 * found.samples)
+                jitter = intervals.sums(np.diff(values, append=values[-1]) ** 2) / (2 * intervals.samples)
                 moves |= turned(sensor, drift, jitter / quarter)
     return moves
 
 
-def long_enough_to_move(found: Intervals) -> bool:
+def long_enough_to_move(intervals: Intervals) -> bool:
     """Whether the stretches are long enough to look at their quarters."""
-    return len(found) > 0 and bool(found.samples.min() >= 2 * PIECES)
+    return len(intervals) > 0 and bool(intervals.samples.min() >= 2 * PIECES)
 
 
 def far_turn(sensor: Sensor) -> float:
@@ -221,7 +224,7 @@ def moments(readings: Array, block: int) -> tuple[Array, Array]:
 def smallest_steps(readings: Array) -> Array:
     """(m,) least change, above zero, from sample to sample of readings (R, m), their unit; infinite where none is."""
     steps = [np.abs(np.diff(channel)) for channel in readings.T]
-    return np.array([own.min(where=own > 0, initial=np.inf) for own in steps])
+    return np.array([changes.min(where=changes > 0, initial=np.inf) for changes in steps])
 
 
 def quietness_of(block: int, mean: Array, within: Array, steps: Array) -> Quietness:
@@ -261,20 +264,20 @@ def still(quiet: Quietness, threshold: float, rate: float) -> Intervals:
     return Intervals(start[enough], stop[enough])
 
 
-def chosen(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
+def average_best(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
     """The averaged session under the threshold that calibrates best; ScheduleError where none finds enough rests."""
     assert session.sample_rate is not None
     quiet = quietness(session.readings[:, watched_for_rest(session)], session.sample_rate)
     tried: dict[tuple[int, ...], tuple[float, CalibrationSession]] = {}
     for threshold in THRESHOLDS:
-        found = still(quiet, threshold, session.sample_rate)
-        found = found.at(~moving(session, found))
-        key = (*found.start.tolist(), *found.stop.tolist())
-        if len(found) >= FEWEST and key not in tried:
-            candidate = averaged(session, found)
+        intervals = still(quiet, threshold, session.sample_rate)
+        intervals = intervals.at(~moving(session, intervals))
+        key = (*intervals.start.tolist(), *intervals.stop.tolist())
+        if len(intervals) >= FEWEST and key not in tried:
+            candidate = averaged(session, intervals)
             tried[key] = (residual(candidate), candidate)
     if not tried:
-        raise ScheduleError([Problem("table", none_found(len(session.readings)))])
+        raise ScheduleError([Problem("table", no_rests_message(len(session.readings)))])
     return min(tried.values(), key=lambda pair: pair[0])[1]
 
 
@@ -284,7 +287,7 @@ def watched_for_rest(session: CalibrationSession) -> NDArray[np.bool_]:
     return accelerometers if accelerometers.any() else ~accelerometers
 
 
-def none_found(samples: int) -> str:
+def no_rests_message(samples: int) -> str:
     """What to tell the person whose log never stands still."""
     return (
         f"found fewer than {FEWEST} stretches in {samples} samples in which the block stands still for "
@@ -293,33 +296,33 @@ def none_found(samples: int) -> str:
     )
 
 
-def averaged(session: CalibrationSession, found: Intervals) -> CalibrationSession:
+def averaged(session: CalibrationSession, intervals: Intervals) -> CalibrationSession:
     """One row an interval. What is set rather than read (run, β, directions) is taken from its first sample."""
     assert session.sample_rate is not None
-    start = found.start
-    middle = (found.start + found.stop - 1) / 2 / session.sample_rate
+    start = intervals.start
+    middle = (intervals.start + intervals.stop - 1) / 2 / session.sample_rate
     return replace(
         session,
-        readings=found.means(session.readings),
-        standard_errors=errors_by_kind(session, found),
-        at_ends=found.means(ends(session.readings)),
-        vibration=variances(session, found),
-        time=middle if session.time is None else found.means(session.time),
-        temperature=None if session.temperature is None else found.means(session.temperature),
+        readings=intervals.means(session.readings),
+        standard_errors=errors_by_kind(session, intervals),
+        at_ends=intervals.means(ends(session.readings)),
+        vibration=variances(session, intervals),
+        time=middle if session.time is None else intervals.means(session.time),
+        temperature=None if session.temperature is None else intervals.means(session.temperature),
         flipped=None if session.flipped is None else session.flipped[start],
         beta=None if session.beta is None else session.beta[start],
         directions=None if session.directions is None else session.directions[start],
         position=None if session.position is None else session.position[start],
         sample_rate=None,
-        counts_averaged=found.samples.astype(float) if contiguous(session) else None,
+        counts_averaged=intervals.samples.astype(float) if contiguous(session) else None,
     )
 
 
-def variances(session: CalibrationSession, found: Intervals) -> Array:
+def variances(session: CalibrationSession, intervals: Intervals) -> Array:
     """(n, m) variance of the input within every interval, by nominal scales, (m/s²)² or (rad/s)²."""
     inputs = session.readings / [s.nominal_scale for s in session.sensors]
     inputs = inputs - inputs.mean(axis=0)
-    return np.maximum(found.means(inputs**2) - found.means(inputs) ** 2, 0.0)
+    return np.maximum(intervals.means(inputs**2) - intervals.means(inputs) ** 2, 0.0)
 
 
 def ends(readings: Array) -> Array:
@@ -333,22 +336,24 @@ def contiguous(session: CalibrationSession) -> bool:
     return session.count_time is not None and abs(session.count_time * session.sample_rate - 1.0) < SAME_TIME
 
 
-def mean_errors(readings: Array, found: Intervals) -> Array:
+def mean_errors(readings: Array, intervals: Intervals) -> Array:
     """(n, m) standard errors of the means of readings (R, m) of sensors of one kind, in their unit.
 
     NaN where every interval is a single sample.
     """
-    shown = energies(readings, found.start, found.stop)
-    return np.full((len(found), readings.shape[1]), np.nan) if shown is None else np.sqrt(mean_variance(shown))
+    shown = energies(readings, intervals.start, intervals.stop)
+    return np.full((len(intervals), readings.shape[1]), np.nan) if shown is None else np.sqrt(mean_variance(shown))
 
 
-def by_kind(session: CalibrationSession, errors: Callable[[list[int]], Array]) -> Array:
+def errors_of_kinds(session: CalibrationSession, errors: Callable[[list[int]], Array]) -> Array:
     """(n, m) standard errors, reading units: those of the channels of every kind, told by their numbers."""
     kinds = [s.kind for s in session.sensors]
     alike = [[i for i, other in enumerate(kinds) if other == kind] for kind in sorted(set(kinds))]
-    return np.concatenate([errors(own) for own in alike], axis=1)[:, np.argsort([i for own in alike for i in own])]
+    return np.concatenate([errors(channels) for channels in alike], axis=1)[
+        :, np.argsort([i for channels in alike for i in channels])
+    ]
 
 
-def errors_by_kind(session: CalibrationSession, found: Intervals) -> Array:
+def errors_by_kind(session: CalibrationSession, intervals: Intervals) -> Array:
     """(n, m) standard errors of the means over the intervals, reading units."""
-    return by_kind(session, lambda own: mean_errors(session.readings[:, own], found))
+    return errors_of_kinds(session, lambda channels: mean_errors(session.readings[:, channels], intervals))

@@ -28,7 +28,7 @@ from estimator import read_session
 from estimator.arrays import tangents
 from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.flipped_run import about_its_flip
+from estimator.diagnosis.residuals.flipped_run import with_fitted_flip
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.candidates import columns_of
 from estimator.groups.statistics import HARMONIC, Block
@@ -56,7 +56,7 @@ def sessions_of(seed: tuple[int, ...]) -> list[Seen]:
     """The sessions of a unit without an effect, of schedules drawn at random."""
     found = []
     for document in draw_group("unit", "none", seed).sessions:
-        baseline = about_its_flip(baseline_of(averaged(read_session(document))))
+        baseline = with_fitted_flip(baseline_of(averaged(read_session(document))))
         residuals = WhitenedResiduals.of(baseline)
         covariance = residuals.response @ residuals.response.T
         found.append(Seen(residuals, covariance, baseline.parameters.axis, dict(columns_of(baseline))))

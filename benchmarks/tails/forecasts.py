@@ -15,7 +15,7 @@ from estimator.health.fits import Readings
 from estimator.health.forecast import earliest, staying
 from estimator.health.pooled import Prior
 from estimator.health.posterior import Draws, draw
-from estimator.health.prognosis import felt, prognosis, swing, ways
+from estimator.health.prognosis import alternatives, felt, prognosis, swing
 from estimator.health.shapes import DRIFTS, courses
 
 
@@ -65,7 +65,7 @@ def _by_rival(one: History, prior: Prior, *, is_missing: bool) -> tuple[float, D
     base = Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1), prior.tails)
     found = detect(base, prior.usual_walk, np.full(n, np.inf), one.temperature, LEVEL)
     family = courses(found.readings.time, felt(found.warmth, one.temperature))
-    given = [(reweighted(way, family, prior, is_missing=is_missing), log) for way, log in ways(found, prior)]
+    given = [(reweighted(way, family, prior, is_missing=is_missing), log) for way, log in alternatives(found, prior)]
     draws = draw(given, family, prior, rng)
     stays = staying(draws, prior, swing(found.warmth, draws, one.temperature), rng)
     return earliest(draws, stays, drifts=any(change.kind in DRIFTS for change in found.changes)), draws

@@ -25,7 +25,7 @@ import numpy as np
 from estimator.health.error_laws import FREEDOMS
 from estimator.health.fits import PART_SIZES, Fits, Readings, fits
 from estimator.health.pooled import Prior
-from estimator.health.posterior import Hypotheses, weighed
+from estimator.health.posterior import Hypotheses, hypotheses_of
 from estimator.health.shapes import Shapes
 from estimator.session import Array
 
@@ -42,7 +42,7 @@ def reweighted(readings: Readings, family: Shapes, prior: Prior, *, is_missing: 
     worth = readings
     for _ in range(ROUNDS):
         found = fits(worth, family)
-        square = _squares(found, worth, weighed(found, prior))
+        square = _squares(found, worth, hypotheses_of(found, prior))
         kappa = _precision(square / readings.sigma**2, prior.tails, is_missing=is_missing)
         worth = replace(worth, sigma=readings.sigma / np.sqrt(kappa))
     return worth

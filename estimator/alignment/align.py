@@ -22,7 +22,7 @@ from estimator.alignment.filtering import (
     relative,
     run,
 )
-from estimator.alignment.levers import FARTHEST, taken_off
+from estimator.alignment.levers import FARTHEST, without_lever_arms
 from estimator.alignment.noise import LEAST_DENSITY, Noise, at_rest
 from estimator.alignment.positions import (
     Stop,
@@ -108,34 +108,34 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     gyros = triad(session, GYROSCOPE, row)
     rates = gyros.values - gyros.values[:, 2:] * np.array([*mounting, 0.0])
     angle = session.turn_angle
-    found = stops(angle, row)
-    require_positions(found)
-    require_rest(found, rates, row)
-    require_turns(found, angle, rates[:, 2], row)
-    session = taken_off(session, gyros.values[:, 2], row)
+    stationary = stops(angle, row)
+    require_positions(stationary)
+    require_rest(stationary, rates, row)
+    require_turns(stationary, angle, rates[:, 2], row)
+    session = without_lever_arms(session, gyros.values[:, 2], row)
     accelerometers = triad(session, ACCELEROMETER, row)
-    resting = np.concatenate([accelerometers.values[stop.first : stop.last] for stop in found])
+    resting = np.concatenate([accelerometers.values[stop.first : stop.last] for stop in stationary])
     require_level(resting.mean(axis=0), gravity(session.site))
     per_step = max(round(STEP / row), 1)
-    begin = found[0].first
-    noise = _noise(found, gyros, accelerometers, row, per_step)
+    begin = stationary[0].first
+    noise = _noise(stationary, gyros, accelerometers, row, per_step)
     return Record(
         session=session,
         first=begin,
         motion=Motion(rates[begin:], accelerometers.values[begin:], row),
         per_step=per_step,
         angle=angle[begin:],
-        stops=[Stop(stop.first - begin, stop.last - begin, stop.angle) for stop in found],
+        stops=[Stop(stop.first - begin, stop.last - begin, stop.angle) for stop in stationary],
         noise=noise,
     )
 
 
-def _noise(found: list[Stop], gyros: Triad, accelerometers: Triad, row: float, per_step: int) -> Noise:
+def _noise(stationary: list[Stop], gyros: Triad, accelerometers: Triad, row: float, per_step: int) -> Noise:
     """As the file states it for single rows, else from the readings at the stops."""
 
     def means(values: Array) -> list[Array]:
         """Of each stop the means (k, 3) over filter steps of values (R, 3), m/s² or rad/s."""
-        parts = [values[stop.first : stop.last] for stop in found]
+        parts = [values[stop.first : stop.last] for stop in stationary]
         return [part[: len(part) // per_step * per_step].reshape(-1, per_step, 3).mean(axis=1) for part in parts]
 
     gyro, _ = at_rest(means(gyros.values), row * per_step)
@@ -158,8 +158,8 @@ def _computed(record: Record, start: Coarse) -> Strapdown:
     stop_of_row = np.full(len(motion.rates), -1)
     for number, stop in enumerate(record.stops):
         stop_of_row[stop.first : stop.last] = number
-    left = Motion(motion.rates - start.gyro_bias, motion.forces - start.accelerometer_bias, motion.row)
-    return strapdown(start.attitude, left, latitude, stop_of_row, record.per_step)
+    corrected = Motion(motion.rates - start.gyro_bias, motion.forces - start.accelerometer_bias, motion.row)
+    return strapdown(start.attitude, corrected, latitude, stop_of_row, record.per_step)
 
 
 def _setting(record: Record, *, lever_arms: bool) -> Setting:
@@ -198,7 +198,7 @@ def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filter
     estimate[EPS] += start.gyro_bias
     estimate[NABLA] += start.accelerometer_bias[:2]
     covariance = filtered.last.P * fit.covariance_factor
-    told = np.diag(relative(filtered.last.P)) < 1
+    determined = np.diag(relative(filtered.last.P)) < 1
     correction = Rotation.from_rotvec(filtered.last.x[PHI]).as_matrix()
     course = Course(
         time=computed.path.step * np.arange(1, len(filtered.estimates) + 1),
@@ -216,7 +216,7 @@ def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filter
         units=UNITS[:n],
         estimate=estimate,
         covariance=covariance,
-        observable={name: bool(seen) for name, seen in zip(STATES[2:13], told[2:13], strict=False)},
+        observable={name: bool(seen) for name, seen in zip(STATES[2:13], determined[2:13], strict=False)},
         attitude=correction @ computed.attitude[-1],
         positions=tuple(stop.angle for stop in record.stops),
         fit=fit,

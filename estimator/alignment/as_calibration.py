@@ -93,27 +93,27 @@ def _calibration(
 
 
 def _sensor(axis: Axis, result: AlignmentResult | RateTableResult) -> SensorCalibration:
-    found = {parameter: _estimate(result, parameter, state) for parameter, state in axis.states.items()}
+    estimates = {parameter: _estimate(result, parameter, state) for parameter, state in axis.states.items()}
     return SensorCalibration(
         name=axis.name,
         kind=axis.kind,
-        scale=found.get("scale", NOTHING),
-        bias=found["bias"],
+        scale=estimates.get("scale", NOTHING),
+        bias=estimates["bias"],
         quadratic=NOTHING,
         axis=None,
         axis_tangents=np.eye(3)[:, :2],
         axis_covariance=np.full((2, 2), np.nan),
-        observable={parameter: estimate.value is not None for parameter, estimate in found.items()},
-        misalignment=found.get("misalignment"),
+        observable={parameter: estimate.value is not None for parameter, estimate in estimates.items()},
+        misalignment=estimates.get("misalignment"),
     )
 
 
 def _estimate(result: AlignmentResult | RateTableResult, parameter: str, state: str) -> Estimate:
     """All of it differs from session to session."""
-    found = result.parameter(state)
-    value = found.value if found.value is None or parameter != "scale" else 1.0 + found.value
+    estimate = result.parameter(state)
+    value = estimate.value if estimate.value is None or parameter != "scale" else 1.0 + estimate.value
     dof = float(result.fit.dof) if result.fit.noise == "estimated" else None
-    return Estimate(value, found.sigma, found.sigma, dof)
+    return Estimate(value, estimate.sigma, estimate.sigma, dof)
 
 
 def settled(result: AlignmentResult) -> NDArray[np.bool_]:
@@ -122,11 +122,11 @@ def settled(result: AlignmentResult) -> NDArray[np.bool_]:
     return np.asarray((sigmas < SETTLED * np.median(sigmas)).all(axis=1))
 
 
-def _innovations(result: AlignmentResult, counted: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
+def _innovations(result: AlignmentResult, included: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
     """(R, 2) innovations and their sigmas as specific force along the block's x and y, m/s², and the times (R,), s."""
     course = result.course
     step = float(course.time[0])
-    chosen = np.flatnonzero(counted)
+    chosen = np.flatnonzero(included)
     level = np.pad(course.innovations[chosen], ((0, 0), (0, 1)))
     value = Rotation.from_matrix(course.attitude[chosen]).inv().apply(level)[:, :2] / step
     sigma = course.innovation_sigmas[chosen] / step

@@ -69,8 +69,8 @@ def inputs_of(session: CalibrationSession, kind: str) -> tuple[Array, Array]:
     chosen = of_kind(session, kind)
     scale = np.array([session.sensors[i].nominal_scale for i in chosen])
     offset = np.array([session.sensors[i].nominal_offset or 0.0 for i in chosen])
-    counted = kind != ACCELEROMETER and session.count_time is not None
-    per_input = scale * (session.count_time if counted and session.count_time else 1.0)
+    pulses = kind != ACCELEROMETER and session.count_time is not None
+    per_input = scale * (session.count_time if pulses and session.count_time else 1.0)
     return (session.readings[:, chosen] - offset) / per_input, per_input
 
 

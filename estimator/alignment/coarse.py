@@ -33,12 +33,12 @@ class Coarse:
     """(3,) m/s², the third 0."""
 
 
-def coarse(found: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
+def coarse(stationary: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
     """The start of the fine alignment.
 
     Parameters
     ----------
-    found : the stops, two different angles at least.
+    stationary : the stops, two different angles at least.
     motion : as the sensors say.
     gyro_noise : (3, 3) density, (rad/s)²/Hz.
 
@@ -46,13 +46,13 @@ def coarse(found: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
     ------
     ScheduleError : the gyros do not tell the Earth's rotation from their noise.
     """
-    angles = np.array([stop.angle for stop in found])
-    rate = np.array([motion.rates[stop.first : stop.last].mean(axis=0) for stop in found])
-    force = np.array([motion.forces[stop.first : stop.last].mean(axis=0) for stop in found])
+    angles = np.array([stop.angle for stop in stationary])
+    rate = np.array([motion.rates[stop.first : stop.last].mean(axis=0) for stop in stationary])
+    force = np.array([motion.forces[stop.first : stop.last].mean(axis=0) for stop in stationary])
     design = turning_design(angles)
     north, gyro_bias, inverse = _solved(design, rate)
     _, accelerometer_bias, _ = _solved(design, force)
-    shortest = min(stop.last - stop.first for stop in found) * motion.row
+    shortest = min(stop.last - stop.first for stop in stationary) * motion.row
     _require_heading(north, inverse, gyro_noise, shortest)
     up = unit(force[0] - accelerometer_bias)
     east = unit(np.cross(rate[0] - gyro_bias, up))
@@ -61,9 +61,9 @@ def coarse(found: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
 
 def turning_design(angles: Array) -> Array:
     """(2 n, 4) matrix, dimensionless, of (h_x, h_y, b_x, b_y) for the horizontal components at angles (n,), rad."""
-    cos, sin, zero, one = np.cos(angles), np.sin(angles), 0 * angles, 0 * angles + 1
-    x = np.stack([cos, sin, one, zero], axis=1)
-    y = np.stack([-sin, cos, zero, one], axis=1)
+    cos, sin, zero, ones = np.cos(angles), np.sin(angles), 0 * angles, 0 * angles + 1
+    x = np.stack([cos, sin, ones, zero], axis=1)
+    y = np.stack([-sin, cos, zero, ones], axis=1)
     return np.stack([x, y], axis=1).reshape(-1, 4)
 
 

@@ -137,14 +137,14 @@ def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filte
     chi2, count = 0.0, 0
     for k in range(len(Phi)):
         ahead = predict(state, Phi[k], Q[k])
-        corrected, found = correct(ahead, measured.velocity[k], H, R)
-        innovations[k], innovation_sigmas[k] = found.value, np.sqrt(np.diag(found.covariance))
+        corrected, innovation = correct(ahead, measured.velocity[k], H, R)
+        innovations[k], innovation_sigmas[k] = innovation.value, np.sqrt(np.diag(innovation.covariance))
         state = corrected if compared[k] else ahead
         if compared[k]:
-            chi2, count = chi2 + found.chi2, count + 2
+            chi2, count = chi2 + innovation.chi2, count + 2
         if model is Model.TURNTABLE and shown[k]:
-            state, found = correct(state, measured.turned[k], H_table, R_table)
-            chi2, count = chi2 + found.chi2, count + 3
+            state, innovation = correct(state, measured.turned[k], H_table, R_table)
+            chi2, count = chi2 + innovation.chi2, count + 3
         estimates[k], sigmas[k] = state.x, np.sqrt(np.diag(state.P))
     return Filtered(estimates, sigmas, innovations, innovation_sigmas, state, chi2, count)
 

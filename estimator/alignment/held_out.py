@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from estimator.alignment.lever_arms import LeverArm, LeverArms
 from estimator.alignment.pieces import Pieces
-from estimator.alignment.turned import weighed
+from estimator.alignment.turned import whitened
 from estimator.least_squares import inverse as inverse_of
 from estimator.session import Array
 
@@ -43,8 +43,8 @@ def held_out(arms: LeverArms) -> str:
 def prediction(arms: LeverArms, *, named: bool) -> Prediction:
     """Of all turns; ``named``: with the named lever arms in the model."""
     parts = arms.pieces
-    told = [_told(parts, arm, arms.lean, fold, named=named) for arm in arms.found for fold in _folds(parts)]
-    errors, squares, logs = (np.concatenate(column) for column in zip(*told, strict=True))
+    scores = [_scores(parts, arm, arms.lean, fold, named=named) for arm in arms.estimates for fold in _folds(parts)]
+    errors, squares, logs = (np.concatenate(column) for column in zip(*scores, strict=True))
     return Prediction(float(np.sqrt(np.mean(errors**2))), float(squares.mean()), float(logs.mean()))
 
 
@@ -60,23 +60,23 @@ def _folds(parts: Pieces) -> list[NDArray[np.bool_]]:
     return [fold for fold in folds if fold.any()]
 
 
-def _told(
-    parts: Pieces, arm: LeverArm, lean: float, out: NDArray[np.bool_], *, named: bool
+def _scores(
+    parts: Pieces, arm: LeverArm, lean: float, fold: NDArray[np.bool_], *, named: bool
 ) -> tuple[Array, Array, Array]:
     """Errors (n,), m/s², of held-out pieces, their whitened squares and log densities, without unit."""
-    i, known = arm.felt.sensor, ~out
-    root = weighed(parts, i, lean * float(np.hypot(*arm.sensor.nominal_axis[:2])), arm.felt.noise_ratio).root
+    i, known = arm.response.sensor, ~fold
+    root = whitened(parts, i, lean * float(np.hypot(*arm.sensor.nominal_axis[:2])), arm.response.noise_ratio).root
     V, z = root @ root.T, parts.values[:, i]
     X = np.column_stack([parts.level, parts.levers]) if named and arm.named else parts.level
     inverse = np.linalg.inv(V[np.ix_(known, known)])
     information = X[known].T @ inverse @ X[known]
     C = inverse_of(information, 1e-15)
     beta = C @ X[known].T @ inverse @ z[known]
-    gain = V[np.ix_(out, known)] @ inverse
-    rest = X[out] - gain @ X[known]
-    errors = z[out] - gain @ z[known] - rest @ beta
-    S = V[np.ix_(out, out)] - gain @ V[np.ix_(known, out)] + rest @ C @ rest.T
+    gain = V[np.ix_(fold, known)] @ inverse
+    rest = X[fold] - gain @ X[known]
+    errors = z[fold] - gain @ z[known] - rest @ beta
+    S = V[np.ix_(fold, fold)] - gain @ V[np.ix_(known, fold)] + rest @ C @ rest.T
     L = np.linalg.cholesky(S)
     white = np.linalg.solve(L, errors)
-    own = np.sqrt(parts.density[i] / parts.time[out])
-    return errors, white**2, -0.5 * white**2 - np.log(np.diag(L) / own) - 0.5 * np.log(2 * np.pi)
+    deviation = np.sqrt(parts.density[i] / parts.time[fold])
+    return errors, white**2, -0.5 * white**2 - np.log(np.diag(L) / deviation) - 0.5 * np.log(2 * np.pi)

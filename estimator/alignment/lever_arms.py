@@ -17,14 +17,14 @@ from estimator.alignment.align import Record, table_wobble
 from estimator.alignment.axes import inputs_of, of_kind
 from estimator.alignment.levers import coefficients, place_of, positions_of, turning
 from estimator.alignment.pieces import Pieces, pieces
-from estimator.alignment.turned import RIVALS, Felt, felt
+from estimator.alignment.turned import RIVALS, LeverResponse, lever_response
 from estimator.applied_vector import gravity
 from estimator.session import ACCELEROMETER, Array, Sensor
 from estimator.significance import p_value as chance_of
 
 LEVEL = 0.003
 """False-alarm rate over all accelerometers of a session, as in diagnoses of calibrations."""
-TOLD_APART = 9.0
+DECISIVE = 9.0
 """Difference of χ² from which a rival is distinguished: three standard errors."""
 FEWEST = 3
 """Sensors of which one that contradicts the others can be told."""
@@ -39,7 +39,7 @@ class LeverArm:
     """(2,) r_x, r_y, m."""
     covariance: Array
     """(2, 2) m²."""
-    felt: Felt
+    response: LeverResponse
     named: bool
     rivals: tuple[str, ...]
     """Of `RIVALS`: what does as well."""
@@ -60,7 +60,7 @@ class LeverArm:
 class LeverArms:
     """Of a session."""
 
-    found: tuple[LeverArm, ...]
+    estimates: tuple[LeverArm, ...]
     """Every accelerometer whose lever arm shows."""
     upright: tuple[str, ...]
     """Accelerometers along the turn axis, whose lever arm does not."""
@@ -75,7 +75,7 @@ class LeverArms:
     @property
     def named(self) -> tuple[LeverArm, ...]:
         """Those that surely stand away."""
-        return tuple(arm for arm in self.found if arm.named)
+        return tuple(arm for arm in self.estimates if arm.named)
 
 
 def lever_arms(record: Record) -> LeverArms:
@@ -85,21 +85,23 @@ def lever_arms(record: Record) -> LeverArms:
     inputs = inputs_of(session, ACCELEROMETER)[0][record.first :]
     parts = pieces(inputs, turning(motion.rates[:, 2], motion.row), record.angle, record.stops, motion.row)
     lean = gravity(session.site) * table_wobble(session)
-    each = _each(parts, sensors, lean)
+    responses = _responses(parts, sensors, lean)
     stated, origin = positions_of(sensors) is not None, None
-    if stated and len(each) > 1:
-        origin = _origin(each, sensors)
+    if stated and len(responses) > 1:
+        origin = _origin(responses, sensors)
         parts = replace(parts, values=parts.values - parts.levers @ _common(sensors, origin[0]).T)
-        each = _each(parts, sensors, lean)
-    seen = {one.sensor for one in each}
-    arms = tuple(_judged(one, sensors[one.sensor], len(parts.time), LEVEL / len(each)) for one in each)
+        responses = _responses(parts, sensors, lean)
+    seen = {response.sensor for response in responses}
+    arms = tuple(
+        _judged(response, sensors[response.sensor], len(parts.time), LEVEL / len(responses)) for response in responses
+    )
     upright = tuple(sensor.name for i, sensor in enumerate(sensors) if i not in seen)
     return LeverArms(arms, upright, origin, stated, parts, lean)
 
 
-def _each(parts: Pieces, sensors: Sequence[Sensor], lean: float) -> list[Felt]:
-    found = (felt(parts, i, sensor.nominal_axis, lean) for i, sensor in enumerate(sensors))
-    return [one for one in found if one is not None]
+def _responses(parts: Pieces, sensors: Sequence[Sensor], lean: float) -> list[LeverResponse]:
+    candidates = (lever_response(parts, i, sensor.nominal_axis, lean) for i, sensor in enumerate(sensors))
+    return [response for response in candidates if response is not None]
 
 
 def _common(sensors: Sequence[Sensor], origin: Array) -> Array:
@@ -108,56 +110,58 @@ def _common(sensors: Sequence[Sensor], origin: Array) -> Array:
     return coefficients(axes, np.tile([*origin, 0.0], (len(sensors), 1)))
 
 
-def _origin(each: Sequence[Felt], sensors: Sequence[Sensor]) -> tuple[Array, Array]:
+def _origin(responses: Sequence[LeverResponse], sensors: Sequence[Sensor]) -> tuple[Array, Array]:
     """The lever arm (2,), m, that all sensors share, and its covariance; one that contradicts all others left out."""
-    p_value, origin = _shared(each, sensors)
-    if p_value >= LEVEL or len(each) < FEWEST:
+    p_value, origin = _shared(responses, sensors)
+    if p_value >= LEVEL or len(responses) < FEWEST:
         return origin
-    others = [_shared([one for one in each if one is not left], sensors) for left in each]
+    others = [
+        _shared([response for response in responses if response is not omitted], sensors) for omitted in responses
+    ]
     best, without = max(others, key=lambda other: other[0])
     return without if best >= LEVEL else origin
 
 
-def _shared(each: Sequence[Felt], sensors: Sequence[Sensor]) -> tuple[float, tuple[Array, Array]]:
+def _shared(responses: Sequence[LeverResponse], sensors: Sequence[Sensor]) -> tuple[float, tuple[Array, Array]]:
     """How likely the lever arms are to differ as much where they are one; that one and its covariance."""
     information, weighted, square = np.zeros((2, 2)), np.zeros(2), 0.0
-    for one in each:
-        place, covariance = _place(one, sensors[one.sensor])
+    for response in responses:
+        place, covariance = _place(response, sensors[response.sensor])
         weight = np.linalg.inv(covariance)
         information, weighted = information + weight, weighted + weight @ place
         square += float(place @ weight @ place)
     origin = np.linalg.solve(information, weighted)
-    columns = 2 * len(each) - 2
-    freedom = min(one.freedom for one in each)
+    columns = 2 * len(responses) - 2
+    freedom = min(response.freedom for response in responses)
     if columns < 1 or freedom <= 0:
         return 1.0, (origin, np.linalg.inv(information))
-    apart = max(square - float(weighted @ origin), 0.0)
-    return float(chance_of(apart, columns, freedom)), (origin, np.linalg.inv(information))
+    excess = max(square - float(weighted @ origin), 0.0)
+    return float(chance_of(excess, columns, freedom)), (origin, np.linalg.inv(information))
 
 
-def _place(one: Felt, sensor: Sensor) -> tuple[Array, Array]:
+def _place(response: LeverResponse, sensor: Sensor) -> tuple[Array, Array]:
     """Position (2,), m, and covariance (2, 2), m²."""
     matrix = place_of(sensor.nominal_axis)
-    return matrix @ one.lever, matrix @ one.covariance @ matrix.T
+    return matrix @ response.lever, matrix @ response.covariance @ matrix.T
 
 
-def _judged(one: Felt, sensor: Sensor, count: int, level: float) -> LeverArm:
+def _judged(response: LeverResponse, sensor: Sensor, count: int, level: float) -> LeverArm:
     """Whether the lever arm is named, and what stands beside it; ``count``: of pieces."""
-    worth = {rival: one.worth(rival, count) for rival in RIVALS}
-    own, best = one.worth("lever arm", count), max(worth, key=lambda rival: worth[rival])
-    beaten = worth[best] > own + TOLD_APART
-    more = one.p_value("beyond")
-    excess = one.excess if more < level else 1.0
-    named = one.p_value("lever arm", excess) < level and not beaten
-    acts = beaten and one.p_value(best) < level
-    place, covariance = _place(one, sensor)
+    worth = {rival: response.worth(rival, count) for rival in RIVALS}
+    evidence, best = response.worth("lever arm", count), max(worth, key=lambda rival: worth[rival])
+    beaten = worth[best] > evidence + DECISIVE
+    more = response.p_value("beyond")
+    excess = response.excess if more < level else 1.0
+    named = response.p_value("lever arm", excess) < level and not beaten
+    acts = beaten and response.p_value(best) < level
+    place, covariance = _place(response, sensor)
     return LeverArm(
         sensor=sensor,
         place=place,
         covariance=excess * covariance,
-        felt=one,
+        response=response,
         named=named,
-        rivals=tuple(rival for rival in RIVALS if worth[rival] > own - TOLD_APART) if named else (),
+        rivals=tuple(rival for rival in RIVALS if worth[rival] > evidence - DECISIVE) if named else (),
         more=more if named else 1.0,
         other=best if acts else "",
     )

@@ -87,7 +87,7 @@ def positions_of(sensors: Sequence[Sensor]) -> Array | None:
     return None if any(place is None for place in places) else np.array(places)
 
 
-def taken_off(session: CalibrationSession, rate: Array, row: float) -> CalibrationSession:
+def without_lever_arms(session: CalibrationSession, rate: Array, row: float) -> CalibrationSession:
     """The session without what accelerometers at stated positions feel of turns.
 
     rate : (R,) mean over rows of ``row`` s, rad/s.

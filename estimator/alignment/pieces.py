@@ -58,7 +58,7 @@ class Pieces:
         return (self.turn >= 0).astype(float)
 
 
-def pieces(inputs: Array, turned: Turning, angle: Array, found: list[Stop], row: float) -> Pieces:
+def pieces(inputs: Array, turned: Turning, angle: Array, stationary: list[Stop], row: float) -> Pieces:
     """The pieces of a session.
 
     Parameters
@@ -66,23 +66,23 @@ def pieces(inputs: Array, turned: Turning, angle: Array, found: list[Stop], row:
     inputs : (R, m) of the accelerometers, m/s².
     turned : how the block turned.
     angle : (R,) of the table at the end of each row, rad.
-    found : the stops.
+    stationary : the stops.
     row : s.
     """
-    found = [_trimmed(stop, turned) for stop in found]
-    edges = _edges(turned, found)
+    stationary = [_trimmed(stop, turned) for stop in stationary]
+    edges = _edges(turned, stationary)
     first = np.array([edge[0] for edge in edges])
     last = np.array([edge[1] for edge in edges])
-    theta = _angle(turned, angle, found, row)
+    theta = _angle(turned, angle, stationary, row)
     rate = turned.rate
     bend = np.abs(turned.faster) * row**2 / 12
     theta = theta - turned.faster * row**2 / 12
     mean = np.sinc(rate * row / (2 * np.pi))
     cos, sin = mean * np.cos(theta), mean * np.sin(theta)
-    told = np.column_stack(
+    signals = np.column_stack(
         [cos, sin, turned.columns, rate, cos**2 - sin**2, 2 * sin * cos, rate * cos, rate * sin, bend, inputs]
     )
-    total = np.vstack([np.zeros(told.shape[1]), np.cumsum(told, axis=0)])
+    total = np.vstack([np.zeros(signals.shape[1]), np.cumsum(signals, axis=0)])
     means = (total[last] - total[first]) / (last - first)[:, None]
     return Pieces(
         values=means[:, 10:],
@@ -95,7 +95,7 @@ def pieces(inputs: Array, turned: Turning, angle: Array, found: list[Stop], row:
         turn=np.array([edge[2] for edge in edges]),
         stop=np.array([edge[3] for edge in edges]),
         bend=means[:, 9],
-        density=_density(inputs, found, row),
+        density=_density(inputs, stationary, row),
     )
 
 
@@ -108,12 +108,12 @@ def _trimmed(stop: Stop, turned: Turning) -> Stop:
     return replace(stop, first=first, last=stop.first + int(inside[-1]) + 1)
 
 
-def _edges(turned: Turning, found: list[Stop]) -> list[tuple[int, int, int, int]]:
+def _edges(turned: Turning, stationary: list[Stop]) -> list[tuple[int, int, int, int]]:
     """First row, one past the last, turn and stop of every piece."""
-    edges, each = [], int(np.clip(MOST // max(len(found) - 1, 1), *PIECES))
-    for number, stop in enumerate(found):
+    edges, each = [], int(np.clip(MOST // max(len(stationary) - 1, 1), *PIECES))
+    for number, stop in enumerate(stationary):
         if number:
-            cuts = _cuts(turned, found[number - 1].last, stop.first, each)
+            cuts = _cuts(turned, stationary[number - 1].last, stop.first, each)
             edges += [(a, b, number - 1, -1) for a, b in pairwise(cuts)]
         edges.append((stop.first, stop.last, -1, number))
     return edges
@@ -129,12 +129,12 @@ def _cuts(turned: Turning, first: int, last: int, most: int) -> list[int]:
     return [*cuts, last]
 
 
-def _angle(turned: Turning, angle: Array, found: list[Stop], row: float) -> Array:
+def _angle(turned: Turning, angle: Array, stationary: list[Stop], row: float) -> Array:
     """(R,) θ in the middle of every row, rad."""
     theta = np.concatenate([angle[:1], 0.5 * (angle[1:] + angle[:-1])])
-    for stop in found:
+    for stop in stationary:
         theta[stop.first : stop.last] = stop.angle
-    for before, after in pairwise(found):
+    for before, after in pairwise(stationary):
         part = turned.rate[before.last : after.first]
         ends = np.cumsum(part) * row
         if len(ends) and ends[-1]:
@@ -143,17 +143,17 @@ def _angle(turned: Turning, angle: Array, found: list[Stop], row: float) -> Arra
     return theta
 
 
-def _density(inputs: Array, found: list[Stop], row: float) -> Array:
+def _density(inputs: Array, stationary: list[Stop], row: float) -> Array:
     """(m,) (m/s²)²/Hz, from how means over `PIECE` scatter about a straight line at every stop; inputs (R, m), m/s²."""
     rows = max(round(PIECE / row), 1)
     squares, freedom = np.zeros(inputs.shape[1]), 0
-    for stop in found:
-        own = inputs[stop.first : stop.last]
-        means = own[: len(own) // rows * rows].reshape(-1, rows, inputs.shape[1]).mean(axis=1)
+    for stop in stationary:
+        samples = inputs[stop.first : stop.last]
+        means = samples[: len(samples) // rows * rows].reshape(-1, rows, inputs.shape[1]).mean(axis=1)
         if len(means) < 3:
             continue
         time = np.column_stack([np.ones(len(means)), np.linspace(-1.0, 1.0, len(means))])
-        left = means - time @ np.linalg.lstsq(time, means)[0]
-        squares, freedom = squares + (left**2).sum(axis=0), freedom + len(means) - 2
+        residual = means - time @ np.linalg.lstsq(time, means)[0]
+        squares, freedom = squares + (residual**2).sum(axis=0), freedom + len(means) - 2
     scatter = squares / max(freedom, 1)
     return np.asarray(rows * row * scatter + LEAST_DENSITY["accelerometer"] ** 2)

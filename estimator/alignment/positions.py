@@ -20,7 +20,7 @@ SHORTEST = 10.0
 """s that make a stop: ten steps of the filter, which noise and the coarse alignment need."""
 FEWEST_ROWS = 10
 """Rows that make a stop: fewer have no scatter to take the noise from."""
-APART = np.radians(20.0)
+LEAST_SEPARATION = np.radians(20.0)
 """rad between stops that count as different positions: closer ones hardly tell biases from the level and north."""
 DISAGREEMENT = (np.radians(1.0), 0.02)
 """How far the gyros may disagree with the table over a turn, rad, and part of the turn: beyond bias and scale of any
@@ -82,47 +82,47 @@ def stops(angle: Array, row: float) -> list[Stop]:
     padded = np.pad(angle, reach, mode="edge")
     still = np.abs(padded[2 * reach :] - padded[: -2 * reach]) < STILL
     edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(np.int8)))
-    found = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-    return [Stop(a, b, float(np.median(angle[a:b]))) for a, b in found if b - a >= max(SHORTEST / row, FEWEST_ROWS)]
+    bounds = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+    return [Stop(a, b, float(np.median(angle[a:b]))) for a, b in bounds if b - a >= max(SHORTEST / row, FEWEST_ROWS)]
 
 
-def require_positions(found: list[Stop]) -> None:
+def require_positions(stationary: list[Stop]) -> None:
     """ScheduleError unless the table stands at two positions that differ."""
-    turns = {round(float(np.degrees(stop.angle)), 1) for stop in found}
-    apart = [abs(np.exp(1j * stop.angle) - np.exp(1j * found[0].angle)) for stop in found]
-    if not found or max(apart) < 2 * np.sin(APART / 2):
+    turns = {round(float(np.degrees(stop.angle)), 1) for stop in stationary}
+    separations = [abs(np.exp(1j * stop.angle) - np.exp(1j * stationary[0].angle)) for stop in stationary]
+    if not stationary or max(separations) < 2 * np.sin(LEAST_SEPARATION / 2):
         where = f"only at {', '.join(f'{turn:g}°' for turn in sorted(turns))}" if turns else "nowhere"
         advice = f"stop for {SHORTEST:g} s and {FEWEST_ROWS} rows or longer at two angles or more, 180° apart at best"
         raise ScheduleError([Problem("turn_angle_deg", f"the table stands {where}; {advice}")])
 
 
-def require_rest(found: list[Stop], rates: Array, row: float) -> None:
+def require_rest(stationary: list[Stop], rates: Array, row: float) -> None:
     """ScheduleError where the gyros turn although the table stands; rates (R, 3) rad/s, ``row`` s."""
     block = max(round(1.0 / row), 1)
     problems = []
-    for stop in found:
-        own = rates[stop.first : stop.last]
-        whole = own[: len(own) // block * block].reshape(-1, block, 3).mean(axis=1)
+    for stop in stationary:
+        samples = rates[stop.first : stop.last]
+        whole = samples[: len(samples) // block * block].reshape(-1, block, 3).mean(axis=1)
         fastest = float(np.linalg.norm(whole, axis=1).max())
         if fastest > MOVING:
-            told = f"the table stands in {stop.rows}, but the gyros read {np.degrees(fastest):.3g} °/s"
+            problem = f"the table stands in {stop.rows}, but the gyros read {np.degrees(fastest):.3g} °/s"
             problems.append(
-                Problem("turn_angle_deg", f"{told}: the block was moved, or the columns do not belong together")
+                Problem("turn_angle_deg", f"{problem}: the block was moved, or the columns do not belong together")
             )
     if problems:
         raise ScheduleError(problems)
 
 
-def require_turns(found: list[Stop], angle: Array, rate_z: Array, row: float) -> None:
+def require_turns(stationary: list[Stop], angle: Array, rate_z: Array, row: float) -> None:
     """ScheduleError where the azimuth gyro did not turn as the table did; angle (R,) rad, rate_z (R,) rad/s, row s."""
     problems = []
-    for before, after in pairwise(found):
+    for before, after in pairwise(stationary):
         first, last = (before.first + before.last) // 2, (after.first + after.last) // 2
         table = float(angle[last] - angle[first])
         gyro = float(rate_z[first + 1 : last + 1].sum() * row)
         if abs(gyro - table) > DISAGREEMENT[0] + DISAGREEMENT[1] * abs(table):
-            told = f"the table turned {np.degrees(table):+.1f}° between {before.rows} and {after.rows}"
-            message = f"{told}, the gyros {np.degrees(gyro):+.1f}° about the block's Z axis"
+            problem = f"the table turned {np.degrees(table):+.1f}° between {before.rows} and {after.rows}"
+            message = f"{problem}, the gyros {np.degrees(gyro):+.1f}° about the block's Z axis"
             advice = (
                 "check the sign and unit of turn_angle_deg, the gyros' scale and range, and that Z is the turn axis"
             )

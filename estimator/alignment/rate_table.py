@@ -73,7 +73,7 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
     row = interval(session)
     gyros = triad(session, GYROSCOPE, row)
     turns = whole_turns(session, gyros.values, row)
-    _require_both_ways(turns)
+    _require_both_directions(turns)
     _require_following(turns)
     return _result(session, turns, gyros)
 
@@ -83,7 +83,7 @@ def whole_turns(session: CalibrationSession, rates: Array, row: float) -> Turns:
     assert session.turn_rate is not None
     change = np.flatnonzero(np.diff(session.turn_rate)) + 1
     edges = np.concatenate([[0], change, [len(rates)]]).tolist()
-    found, short = [], []
+    complete, short = [], []
     for first, last in pairwise(edges):
         speed = float(session.turn_rate[first])
         if speed == 0:
@@ -95,13 +95,13 @@ def whole_turns(session: CalibrationSession, rates: Array, row: float) -> Turns:
                 f"rows {first + 1} to {last} at {np.degrees(speed):g} °/s cover {(last - first) / length:.2f} of a turn"
             )
             short.append(Problem("turn_rate_deg_s", f"{part}; turn through whole turns", first + 1))
-        found += [(speed, first + k * length, first + (k + 1) * length) for k in range(count)]
-    if not found:
+        complete += [(speed, first + k * length, first + (k + 1) * length) for k in range(count)]
+    if not complete:
         raise ScheduleError(short or [Problem("turn_rate_deg_s", "the table never turns; give its rate in every row")])
-    start, stop = np.array([turn[1:] for turn in found]).T
+    start, stop = np.array([turn[1:] for turn in complete]).T
     total = np.vstack([np.zeros(3), np.cumsum(rates, axis=0)])
     return Turns(
-        rates=np.array([turn[0] for turn in found]),
+        rates=np.array([turn[0] for turn in complete]),
         means=(_at(total, stop) - _at(total, start)) / (stop - start)[:, None],
         times=row * (start + stop) / 2,
         rows=stop - start,
@@ -114,7 +114,7 @@ def _at(total: Array, place: Array) -> Array:
     return np.stack([np.interp(place, order, column) for column in total.T], axis=1)
 
 
-def _require_both_ways(turns: Turns) -> None:
+def _require_both_directions(turns: Turns) -> None:
     for sign, word in ((1, "positive"), (-1, "negative")):
         if not (sign * turns.rates > 0).any():
             message = (
@@ -128,11 +128,11 @@ def _require_both_ways(turns: Turns) -> None:
 
 
 def _require_following(turns: Turns) -> None:
-    apart = np.abs(turns.means[:, 2] - turns.rates) > DISAGREEMENT * np.abs(turns.rates) + EARTH_RATE
-    if apart.any():
-        worst = int(np.argmax(apart))
-        told = f"the table turns at {np.degrees(turns.rates[worst]):+g} °/s"
-        message = f"{told}, the gyros at {np.degrees(turns.means[worst, 2]):+.4g} °/s about the block's Z axis"
+    disagrees = np.abs(turns.means[:, 2] - turns.rates) > DISAGREEMENT * np.abs(turns.rates) + EARTH_RATE
+    if disagrees.any():
+        worst = int(np.argmax(disagrees))
+        problem = f"the table turns at {np.degrees(turns.rates[worst]):+g} °/s"
+        message = f"{problem}, the gyros at {np.degrees(turns.means[worst, 2]):+.4g} °/s about the block's Z axis"
         advice = "check the sign and unit of turn_rate_deg_s, the gyros' scale and range, and Z, the table's axis"
         raise ScheduleError([Problem("turn_rate_deg_s", f"{message}; {advice}")])
 

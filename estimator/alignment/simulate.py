@@ -106,8 +106,8 @@ def turned_part(turn: float, programme: Programme) -> Array:
     """(r,) part of a turn by ``turn``, rad, done at the ends of its rows but the last, dimensionless."""
     ramp = round(programme.ramp / programme.row)
     rows = max(round(turn / programme.rate / programme.row), 1) + ramp
-    left = np.minimum(np.arange(rows + 1), np.arange(rows + 1)[::-1])
-    rate = np.minimum(left / ramp, 1.0) if ramp else np.ones(rows + 1)
+    steps_to_end = np.minimum(np.arange(rows + 1), np.arange(rows + 1)[::-1])
+    rate = np.minimum(steps_to_end / ramp, 1.0) if ramp else np.ones(rows + 1)
     done = np.cumsum(0.5 * (rate[1:] + rate[:-1]))
     return np.asarray(done[:-1] / done[-1])
 
@@ -212,8 +212,8 @@ def _readings(sensors: tuple[Sensor, ...], motion: Motion, noise: Imperfections,
     for sensor in sensors:
         accelerometer = sensor.kind == ACCELEROMETER
         inputs, density = (motion.forces, noise.accelerometer) if accelerometer else (motion.rates, noise.gyro)
-        own = inputs @ sensor.nominal_axis + density / np.sqrt(motion.row) * rng.standard_normal(len(inputs))
-        columns.append(sensor.nominal_scale * own + (sensor.nominal_offset or 0.0))
+        values = inputs @ sensor.nominal_axis + density / np.sqrt(motion.row) * rng.standard_normal(len(inputs))
+        columns.append(sensor.nominal_scale * values + (sensor.nominal_offset or 0.0))
     return np.column_stack(columns)
 
 

@@ -33,7 +33,7 @@ RIVALS = ("vibration", "wobble", "delay or rate")
 
 
 @dataclass(frozen=True, eq=False)
-class Weighed:
+class Whitened:
     """One sensor's pieces in standard errors. N pieces."""
 
     values: Array
@@ -47,7 +47,7 @@ class Weighed:
 
 
 @dataclass(frozen=True, eq=False)
-class Felt:
+class LeverResponse:
     """What the turns do to one accelerometer."""
 
     sensor: int
@@ -67,7 +67,7 @@ class Felt:
     for how many columns."""
 
     def p_value(self, model: str, excess: float = 1.0) -> float:
-        """Probability of such a drop where there is none; ``excess``: by which the noise is larger than reckoned."""
+        """Probability of such a drop where there is none; ``excess``: by which the noise is larger than assumed."""
         chi2, columns = self.drop[model]
         if columns == 0 or self.freedom <= 0:
             return 1.0
@@ -79,17 +79,17 @@ class Felt:
         return chi2 - columns * float(np.log(pieces))
 
 
-def rival_columns(found: Pieces) -> dict[str, Array]:
+def rival_columns(pieces: Pieces) -> dict[str, Array]:
     """(N, q) of every rival, each in units of its own."""
-    turns = found.turns
+    turns = pieces.turns
     return {
-        "vibration": np.column_stack([turns, found.levers[:, 0]]),
-        "wobble": np.column_stack([turns[:, None] * found.level[:, 1:], found.twice]),
-        "delay or rate": np.column_stack([found.bent, found.rate]),
+        "vibration": np.column_stack([turns, pieces.levers[:, 0]]),
+        "wobble": np.column_stack([turns[:, None] * pieces.level[:, 1:], pieces.twice]),
+        "delay or rate": np.column_stack([pieces.bent, pieces.rate]),
     }
 
 
-def weighed(found: Pieces, i: int, lean: float, ratio: float = 1.0) -> Weighed:
+def whitened(pieces: Pieces, i: int, lean: float, ratio: float = 1.0) -> Whitened:
     """Sensor i's pieces in standard errors.
 
     Parameters
@@ -97,19 +97,19 @@ def weighed(found: Pieces, i: int, lean: float, ratio: float = 1.0) -> Weighed:
     lean : one sigma of what the axis' lean adds, m/s² (horizontal share of the axis · g · wobble).
     ratio : variance of a piece of a turn over that at rest.
     """
-    white = found.density[i] / found.time * np.where(found.turn >= 0, ratio, 1.0)
-    _, p, q = least_squares(found.level, found.values[:, i]).value
-    V = np.diag(white + found.bend**2 * (p**2 + q**2))
-    for number in range(found.stop.max() + 1):
-        V[np.ix_(found.stop == number, found.stop == number)] += lean**2
-    for number in range(found.turn.max() + 1):
-        own = np.flatnonzero(found.turn == number)
-        V[np.ix_(own, own)] += lean**2 * found.level[own, 1:] @ found.level[own, 1:].T
+    white = pieces.density[i] / pieces.time * np.where(pieces.turn >= 0, ratio, 1.0)
+    _, p, q = least_squares(pieces.level, pieces.values[:, i]).value
+    V = np.diag(white + pieces.bend**2 * (p**2 + q**2))
+    for number in range(pieces.stop.max() + 1):
+        V[np.ix_(pieces.stop == number, pieces.stop == number)] += lean**2
+    for number in range(pieces.turn.max() + 1):
+        members = np.flatnonzero(pieces.turn == number)
+        V[np.ix_(members, members)] += lean**2 * pieces.level[members, 1:] @ pieces.level[members, 1:].T
     root = np.linalg.cholesky(V)
-    return Weighed(solve_triangular(root, found.values[:, i], lower=True), root)
+    return Whitened(solve_triangular(root, pieces.values[:, i], lower=True), root)
 
 
-def felt(found: Pieces, i: int, axis: Array, lean: float) -> Felt | None:
+def lever_response(pieces: Pieces, i: int, axis: Array, lean: float) -> LeverResponse | None:
     """What the turns do to accelerometer i with input axis (3,); None where the axis is upright.
 
     lean : one sigma of gravity's part across the axis from stop to stop, m/s²: g · wobble.
@@ -117,21 +117,21 @@ def felt(found: Pieces, i: int, axis: Array, lean: float) -> Felt | None:
     share = float(np.hypot(*axis[:2]))
     if share < UPRIGHT:
         return None
-    rivals = rival_columns(found)
-    base, lever = found.level, np.column_stack([found.level, found.levers])
+    rivals = rival_columns(pieces)
+    base, lever = pieces.level, np.column_stack([pieces.level, pieces.levers])
     every = np.column_stack([lever, *rivals.values()])
-    ratio, freedom = _noise_ratio(found, i, share * lean, every, lever)
-    own = weighed(found, i, share * lean, ratio)
-    without, with_lever, whole = own.fit(base), own.fit(lever), own.fit(every)
+    ratio, freedom = _noise_ratio(pieces, i, share * lean, every, lever)
+    weighted = whitened(pieces, i, share * lean, ratio)
+    without, with_lever, whole = weighted.fit(base), weighted.fit(lever), weighted.fit(every)
     drop = {"lever arm": drop_of(without, with_lever)}
     drop["beyond"] = drop_of(with_lever, whole)
     for name, columns in rivals.items():
-        instead = own.fit(np.column_stack([base, columns]))
-        both = own.fit(np.column_stack([lever, columns]))
-        drop[name] = drop_of(without, instead)
-        drop[f"lever arm beside {name}"] = drop_of(instead, both)
+        with_rival = weighted.fit(np.column_stack([base, columns]))
+        both = weighted.fit(np.column_stack([lever, columns]))
+        drop[name] = drop_of(without, with_rival)
+        drop[f"lever arm beside {name}"] = drop_of(with_rival, both)
     excess = max(float(with_lever.chi2) / max(with_lever.freedom, 1), 1.0)
-    return Felt(i, with_lever.value[3:], with_lever.covariance[3:, 3:], ratio, freedom, excess, drop)
+    return LeverResponse(i, with_lever.value[3:], with_lever.covariance[3:, 3:], ratio, freedom, excess, drop)
 
 
 def drop_of(less: Fit, more: Fit) -> tuple[float, int]:
@@ -139,22 +139,22 @@ def drop_of(less: Fit, more: Fit) -> tuple[float, int]:
     return float(less.chi2 - more.chi2), more.rank - less.rank
 
 
-def _noise_ratio(found: Pieces, i: int, lean: float, every: Array, lever: Array) -> tuple[float, float]:
+def _noise_ratio(pieces: Pieces, i: int, lean: float, every: Array, lever: Array) -> tuple[float, float]:
     """Variance of sensor i's turning pieces over that at rest, 1 at least, and its degrees of freedom.
 
     What the columns ``every`` (N, q) leave says it, or, where pieces are few, what ``lever`` (N, 5) leaves.
     """
-    moving = found.turn >= 0
+    moving = pieces.turn >= 0
     columns = every if moving.sum() >= 2 * every.shape[1] else lever
-    own = weighed(found, i, lean)
-    scaled = solve_triangular(own.root, columns, lower=True)
-    fit = least_squares(scaled, own.values)
-    left = (own.values - scaled @ fit.value)[moving]
+    weighted = whitened(pieces, i, lean)
+    scaled = solve_triangular(weighted.root, columns, lower=True)
+    fit = least_squares(scaled, weighted.values)
+    residual = (weighted.values - scaled @ fit.value)[moving]
     freedom = float(moving.sum() - fit.rank)
     if freedom < 1:
         return 1.0, 0.0
-    same = found.turn[moving][1:] == found.turn[moving][:-1]
-    square = float(left @ left)
-    related = float((left[1:] * left[:-1])[same].sum()) / square if square else 0.0
-    lasting = (1 + related) / (1 - related) if 0 < related < 1 else 1.0
-    return max(square / freedom * lasting, 1.0), freedom / lasting
+    same = pieces.turn[moving][1:] == pieces.turn[moving][:-1]
+    square = float(residual @ residual)
+    related = float((residual[1:] * residual[:-1])[same].sum()) / square if square else 0.0
+    inflation = (1 + related) / (1 - related) if 0 < related < 1 else 1.0
+    return max(square / freedom * inflation, 1.0), freedom / inflation

@@ -25,20 +25,20 @@ def allan_terms(rests: Rests) -> BlockNoise | None:
 
 def _noise(sensor: Sensor, seen: Variances, model: Model, k: int) -> SensorNoise:
     value = seen.value[:, k]
-    found = fit(model, value) if np.all(value > 0) else None
-    squares = np.array([0.0, value[0] * seen.tau[0], 0.0, 0.0]) if found is None else found.square
+    fitted = fit(model, value) if np.all(value > 0) else None
+    squares = np.array([0.0, value[0] * seen.tau[0], 0.0, 0.0]) if fitted is None else fitted.square
     expected = model.shapes @ squares
     scatter = np.diag(model.covariance(squares))
     freedom = 2 * expected**2 / np.where(scatter > 0, scatter, np.inf)
-    run = None if found is None else (float(seen.tau[found.first]), float(seen.tau[found.end - 1]))
-    terms = tuple(Term(name, None, None, None) for name in TERMS) if found is None else _terms(found)
+    run = None if fitted is None else (float(seen.tau[fitted.first]), float(seen.tau[fitted.end - 1]))
+    terms = tuple(Term(name, None, None, None) for name in TERMS) if fitted is None else _terms(fitted)
     return SensorNoise(sensor.name, sensor.kind, terms, seen.tau, np.sqrt(value), freedom, run)
 
 
-def _terms(found: Fit) -> tuple[Term, ...]:
+def _terms(fitted: Fit) -> tuple[Term, ...]:
     return tuple(
         _term(name, *row)
-        for name, *row in zip(TERMS, found.square, found.sigma, found.decided, found.most, strict=True)
+        for name, *row in zip(TERMS, fitted.square, fitted.sigma, fitted.decided, fitted.most, strict=True)
     )
 
 

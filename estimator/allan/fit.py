@@ -61,9 +61,9 @@ class Fit:
 def fit(model: Model, value: Array) -> Fit | None:
     """Of variances (J,), units squared, each above 0; None where the terms describe no run of octaves."""
     for first, end in _runs(len(value)):
-        found = _fitted(model, value, first, end)
-        if found is not None:
-            return found
+        candidate = _fitted(model, value, first, end)
+        if candidate is not None:
+            return candidate
     return None
 
 
@@ -75,9 +75,9 @@ def _runs(count: int) -> Iterator[tuple[int, int]]:
 
 def _fitted(model: Model, value: Array, first: int, end: int) -> Fit | None:
     """Of one run; None where it is not described."""
-    own = slice(first, end)
-    A, seen = model.shapes[own], value[own]
-    products = model.products[:, :, own, own]
+    octaves = slice(first, end)
+    A, seen = model.shapes[octaves], value[octaves]
+    products = model.products[:, :, octaves, octaves]
     part = Model(A, products)
     C = np.diag(seen**2 * np.diag(_relative(part)))
     theta = np.zeros(4)
@@ -102,8 +102,8 @@ def _weighted(A: Array, seen: Array, C: Array) -> Array:
     """(4,) θ ≥ 0 of least weighted squares."""
     L = np.linalg.cholesky(C)
     size = np.linalg.norm(np.linalg.solve(L, A), axis=0)
-    found, _ = nnls(np.linalg.solve(L, A) / size, np.linalg.solve(L, seen))
-    return np.asarray(found / size)
+    solution, _ = nnls(np.linalg.solve(L, A) / size, np.linalg.solve(L, seen))
+    return np.asarray(solution / size)
 
 
 def _sigmas(A: Array, C: Array) -> Array:

@@ -42,23 +42,23 @@ class Growth:
 def growth(courses: Sequence[Course], level: float) -> tuple[Growth, ...]:
     """Of each course of a term and a kind of sensor; ``level``: the chance of a false ``is_larger``, of each."""
     logs = [np.log(course.value) for course in courses]
-    own = [(course.sigma / course.value) ** 2 for course in courses]
-    freedom, beyond = _beyond(logs, own)
+    variances = [(course.sigma / course.value) ** 2 for course in courses]
+    freedom, beyond = _excess_spread(logs, variances)
     limit = -float(stdtrit(freedom or np.inf, level))
-    found = []
-    for log, variance in zip(logs, own, strict=True):
+    growths = []
+    for log, variance in zip(logs, variances, strict=True):
         usual, change = log[:-1].mean(), log[-1] - log[:-1].mean()
         sigma = np.sqrt(variance[-1] + beyond + (variance[:-1].mean() + beyond) / (len(log) - 1))
         is_larger = change > max(limit * sigma, np.log(WORTH))
-        found.append(Growth(float(np.exp(usual)), float(np.exp(change)), bool(is_larger)))
-    return tuple(found)
+        growths.append(Growth(float(np.exp(usual)), float(np.exp(change)), bool(is_larger)))
+    return tuple(growths)
 
 
-def _beyond(logs: Sequence[Array], own: Sequence[Array]) -> tuple[int, float]:
+def _excess_spread(logs: Sequence[Array], variances: Sequence[Array]) -> tuple[int, float]:
     """Degrees of freedom and variance of what sizes before the newest scatter by beyond their own variances."""
     freedom = sum(len(log) - 2 for log in logs)
     if freedom == 0:
         return 0, 0.0
     squares = sum(float(((log[:-1] - log[:-1].mean()) ** 2).sum()) for log in logs)
-    inner = sum((len(log) - 2) * float(variance[:-1].mean()) for log, variance in zip(logs, own, strict=True))
+    inner = sum((len(log) - 2) * float(variance[:-1].mean()) for log, variance in zip(logs, variances, strict=True))
     return freedom, max(0.0, squares - inner) / freedom

@@ -39,8 +39,8 @@ class Model:
 
     def covariance(self, squares: Array) -> Array:
         """(J, J) of the estimates under squared sizes (4,), units squared."""
-        found = np.einsum("k,l,klij->ij", squares, squares, self.products)
-        return np.asarray(found)
+        total = np.einsum("k,l,klij->ij", squares, squares, self.products)
+        return np.asarray(total)
 
 
 def model_of(seen: Variances) -> Model:
@@ -62,8 +62,8 @@ def _integrals(interval: float, octaves: int) -> Array:
     sine = np.sin(np.pi * f * interval)
     gain = 2 * np.sin(np.pi * factor[:, None] * f * interval) ** 4 / (factor[:, None] * sine) ** 2
     spectra = (8 * sine**2 / interval, np.full(POINTS, 2.0), 1 / (np.pi * f), 2 / (2 * np.pi * f) ** 2)
-    found = np.empty((4, 4, octaves, octaves))
-    for k, one in enumerate(spectra):
+    integrals = np.empty((4, 4, octaves, octaves))
+    for k, spectrum in enumerate(spectra):
         for n, other in enumerate(spectra):
-            found[k, n] = (gain * (weight * one * other)) @ gain.T
-    return found
+            integrals[k, n] = (gain * (weight * spectrum * other)) @ gain.T
+    return integrals

@@ -60,14 +60,14 @@ def rests_of(session: CalibrationSession, reference: Calibration | None = None) 
     """
     if session.sample_rate is None or session.programme not in (*CALIBRATIONS, IN_SERVICE):
         return None
-    found = _unbroken(session, _intervals(session))
-    found = found.at(~moving(session, found))
+    intervals = _unbroken(session, _intervals(session))
+    intervals = intervals.at(~moving(session, intervals))
     if session.programme == IN_SERVICE:
-        found = found.at(_at_rest(session, found, reference))
-    if not len(found):
+        intervals = intervals.at(_at_rest(session, intervals, reference))
+    if not len(intervals):
         return None
     values = (session.readings - _offsets(session)) / _scales(session)
-    stretches = tuple(values[a:b] for a, b in zip(found.start, found.stop, strict=True))
+    stretches = tuple(values[a:b] for a, b in zip(intervals.start, intervals.stop, strict=True))
     return Rests(session.sensors, stretches, 1.0 / session.sample_rate)
 
 
@@ -86,33 +86,33 @@ def _intervals(session: CalibrationSession) -> Intervals:
     return still(quiet, QUIET, session.sample_rate)
 
 
-def _unbroken(session: CalibrationSession, found: Intervals) -> Intervals:
+def _unbroken(session: CalibrationSession, intervals: Intervals) -> Intervals:
     """The stretches, cut where the time jumps."""
     if session.time is None or session.sample_rate is None:
-        return found
+        return intervals
     jumps = np.flatnonzero(np.diff(session.time) > GAP / session.sample_rate) + 1
-    pieces = np.array(list(_cut(found, jumps)), dtype=np.intp).reshape(-1, 2)
+    pieces = np.array(list(_cut(intervals, jumps)), dtype=np.intp).reshape(-1, 2)
     return Intervals(pieces[:, 0], pieces[:, 1])
 
 
-def _cut(found: Intervals, jumps: Array) -> Iterator[tuple[int, int]]:
-    for start, stop in zip(found.start, found.stop, strict=True):
+def _cut(intervals: Intervals, jumps: Array) -> Iterator[tuple[int, int]]:
+    for start, stop in zip(intervals.start, intervals.stop, strict=True):
         inside = jumps[(jumps > start) & (jumps < stop)]
         edges = [int(start), *inside.tolist(), int(stop)]
         yield from pairwise(edges)
 
 
-def _at_rest(session: CalibrationSession, found: Intervals, reference: Calibration | None) -> NDArray[np.bool_]:
+def _at_rest(session: CalibrationSession, intervals: Intervals, reference: Calibration | None) -> NDArray[np.bool_]:
     """(n,) whether the specific force of a stretch has gravity's size and does not shake."""
-    own = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
-    known = None if reference is None else _calibrated(session, own, reference)
+    accelerometers = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
+    known = None if reference is None else _calibrated(session, accelerometers, reference)
     if known is None:
-        return np.zeros(len(found), dtype=bool)
+        return np.zeros(len(intervals), dtype=bool)
     scale, bias, axes = known
     inverse = np.linalg.pinv(axes)
-    calm = np.zeros(len(found), dtype=bool)
-    for i, (start, stop) in enumerate(zip(found.start, found.stop, strict=True)):
-        force = (session.readings[start:stop, own] / scale - bias) @ inverse.T
+    calm = np.zeros(len(intervals), dtype=bool)
+    for i, (start, stop) in enumerate(zip(intervals.start, intervals.stop, strict=True)):
+        force = (session.readings[start:stop, accelerometers] / scale - bias) @ inverse.T
         noise = np.sum(np.diff(force, axis=0).var(axis=0)) / 2
         level = abs(np.linalg.norm(force.mean(axis=0)) / STANDARD_GRAVITY - 1) < LEVEL
         calm[i] = level and np.sum(force.var(axis=0)) < CALM**2 + noise
@@ -120,20 +120,23 @@ def _at_rest(session: CalibrationSession, found: Intervals, reference: Calibrati
 
 
 def _calibrated(
-    session: CalibrationSession, own: list[int], reference: Calibration
+    session: CalibrationSession, accelerometers: list[int], reference: Calibration
 ) -> tuple[Array, Array, Array] | None:
-    """Scale factors (a,), biases (a,) and axes (a, 3) of the accelerometers ``own``, SI; None where one is missing."""
-    found = {sensor.name: sensor for sensor in reference.sensors}
-    known = [found.get(session.sensors[i].name) for i in own]
+    """Scale factors (a,), biases (a,) and axes (a, 3) of the ``accelerometers``, SI; None where one is missing."""
+    calibrated = {sensor.name: sensor for sensor in reference.sensors}
+    known = [calibrated.get(session.sensors[i].name) for i in accelerometers]
     rows = [
-        (one.scale.value, one.bias.value, *one.axis)
-        for one in known
-        if one is not None and one.axis is not None and one.scale.value and one.bias.value is not None
+        (estimate.scale.value, estimate.bias.value, *estimate.axis)
+        for estimate in known
+        if estimate is not None
+        and estimate.axis is not None
+        and estimate.scale.value
+        and estimate.bias.value is not None
     ]
-    if len(rows) < max(len(own), 3):
+    if len(rows) < max(len(accelerometers), 3):
         return None
     table = np.array(rows)
-    offsets = _offsets(session)[own]
+    offsets = _offsets(session)[accelerometers]
     return table[:, 0], table[:, 1] + offsets / table[:, 0], table[:, 2:]
 
 

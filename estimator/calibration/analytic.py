@@ -58,9 +58,9 @@ def design(beta: Array, flipped: Array) -> Array:
 
     beta : (R,) rad; flipped : (R,) bool.
     """
-    one, x, z = np.ones_like(beta), -np.sin(beta), np.cos(beta)
+    ones, x, z = np.ones_like(beta), -np.sin(beta), np.cos(beta)
     run = np.where(flipped, -1.0, 1.0)
-    return np.stack([one, x, z, x * x - z * z, run, run * x, run * z, run * x * z], axis=-1)
+    return np.stack([ones, x, z, x * x - z * z, run, run * x, run * z, run * x * z], axis=-1)
 
 
 def coefficients(y: Array, beta: Array, flipped: Array) -> Coefficients | None:
@@ -185,6 +185,8 @@ def linear_start(y: Array, n: Array, size: Array, nominal: SensorParameters) -> 
     expected = (direction @ sensitivity[..., None])[..., 0].T
     columns = np.concatenate([np.full((*direction.shape[:2], 1), TO_BIAS), direction], axis=-1)
     change = np.einsum("mfr,...rm->...mf", np.linalg.pinv(columns, rcond=DEPENDENT / TO_BIAS), y - expected)
-    found = sensitivity + change[..., 1:]
-    gain = np.linalg.norm(found, axis=-1)
-    return SensorParameters(gain / size, TO_BIAS * change[..., 0] * size / gain, np.zeros_like(gain), unit(found))
+    sensitivities = sensitivity + change[..., 1:]
+    gain = np.linalg.norm(sensitivities, axis=-1)
+    return SensorParameters(
+        gain / size, TO_BIAS * change[..., 0] * size / gain, np.zeros_like(gain), unit(sensitivities)
+    )

@@ -68,16 +68,16 @@ def calibrate_many(sessions: Sequence[CalibrationSession]) -> Calibrations:
     Two-axis-stand sessions that share a schedule are solved together, `CHUNK_READINGS` at a time, and each result is
     built when it is first read. A session that does not calibrate raises as `calibrate` does.
     """
-    found: dict[int, tuple[Reports | list[Calibration], int]] = {}
+    results: dict[int, tuple[Reports | list[Calibration], int]] = {}
     groups: defaultdict[Hashable, list[int]] = defaultdict(list)
     for k, session in enumerate(sessions):
         if together(session):
             groups[schedule(session)].append(k)
         else:
-            found[k] = [calibrate(session)], 0
+            results[k] = [calibrate(session)], 0
     for members in groups.values():
         size = max(1, CHUNK_READINGS // sessions[members[0]].readings.size)
         for chunk in np.array_split(members, -(-len(members) // size)):
             reports = calibrate_stand([sessions[k] for k in chunk])
-            found.update((int(k), (reports, at)) for at, k in enumerate(chunk))
-    return Calibrations([found[k] for k in range(len(sessions))])
+            results.update((int(k), (reports, at)) for at, k in enumerate(chunk))
+    return Calibrations([results[k] for k in range(len(sessions))])

@@ -89,12 +89,12 @@ def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
 
 
 @dataclass(frozen=True, eq=False)
-class Left:
+class Projection:
     """What the fit leaves of the readings, and how the parameters lean on them. P parameters, k constant errors."""
 
     pulled: Array
     """(S, R, m) residuals weighted by P, 1/(m/s²) or 1/(rad/s)."""
-    kept: Array
+    diagonal: Array
     """(S, R, m) diagonal of P, 1/(m/s²)² or 1/(rad/s)²."""
     lean: Array
     """(S, R, m, P + k) change of each estimate with each reading, dimensionless elements and rad (s) per m/s²
@@ -103,7 +103,7 @@ class Left:
     """(S, P + k, P + k) covariance of the estimates, products of their units."""
 
 
-def left_by_fit(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Left:
+def projection_of(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Projection:
     """Of readings y (S, R, m), reading units, of ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)²."""
     S, R, m = y.shape
     weight = 1.0 / variance
@@ -111,8 +111,8 @@ def left_by_fit(variance: Array, y: Array, p: SensorParameters, geometry: Geomet
     inverse = np.linalg.inv(normal.matrix)
     design, beta = designed(p, geometry)
     columns = np.zeros((S, R, m, len(inverse[0])))
-    one = np.arange(m)
-    columns[..., : 5 * m].reshape(S, R, m, m, 5)[:, :, one, one] = design[..., :5]
+    index = np.arange(m)
+    columns[..., : 5 * m].reshape(S, R, m, m, 5)[:, :, index, index] = design[..., :5]
     columns[..., 5 * m :] = design[..., 5:]
     swing = weight * beta * geometry.beta_sigma
     shared = 1.0 + (swing * beta * geometry.beta_sigma).sum(axis=-1, keepdims=True)
@@ -122,23 +122,23 @@ def left_by_fit(variance: Array, y: Array, p: SensorParameters, geometry: Geomet
         common = (swing[..., None] * values).sum(axis=2, keepdims=True) / shared[..., None]
         return weight[..., None] * values - swing[..., None] * common
 
-    left = residual[..., None] - columns @ (inverse @ normal.rhs[..., None])[:, None]
+    residuals = residual[..., None] - columns @ (inverse @ normal.rhs[..., None])[:, None]
     leaning = weighted(columns)
     lean = leaning @ inverse[:, None]
-    kept = weight - swing**2 / shared - (lean * leaning).sum(axis=-1)
-    return Left(weighted(left)[..., 0], kept, lean, inverse)
+    diagonal = weight - swing**2 / shared - (lean * leaning).sum(axis=-1)
+    return Projection(weighted(residuals)[..., 0], diagonal, lean, inverse)
 
 
 def residual_energy(
-    variance: Array, y: Array, p: SensorParameters, geometry: Geometry, counted: Array
+    variance: Array, y: Array, p: SensorParameters, geometry: Geometry, included: Array
 ) -> tuple[Array, Array]:
     """Energy E of the residuals of each sensor's counted readings, and its degrees of freedom f: (S, m) each.
 
-    ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)², and so is E; ``y`` (S, R, m) reading units; ``counted``
+    ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)², and so is E; ``y`` (S, R, m) reading units; ``included``
     (S, R, m) bool.
     """
-    left, own = left_by_fit(variance, y, p, geometry), np.where(counted, variance, 0.0)
-    return ((own * left.pulled) ** 2).sum(axis=1), (own * left.kept).sum(axis=1)
+    projection, selected = projection_of(variance, y, p, geometry), np.where(included, variance, 0.0)
+    return ((selected * projection.pulled) ** 2).sum(axis=1), (selected * projection.diagonal).sum(axis=1)
 
 
 def freedom_of(variance: Array, y: Array, p: SensorParameters, geometry: Geometry, unstated: Array) -> Array:
@@ -155,25 +155,25 @@ def freedom_of(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
 
 
 def _freedom(variance: Array, y: Array, p: SensorParameters, geometry: Geometry, unstated: Array) -> Array:
-    left, own = left_by_fit(variance, y, p, geometry), np.where(unstated, variance, 0.0)
-    energy, freedom = ((own * left.pulled) ** 2).sum(axis=1), (own * left.kept).sum(axis=1)
+    projection, selected = projection_of(variance, y, p, geometry), np.where(unstated, variance, 0.0)
+    energy, freedom = ((selected * projection.pulled) ** 2).sum(axis=1), (selected * projection.diagonal).sum(axis=1)
     sensors, P = np.asarray(unstated.any(axis=1)), 5 * y.shape[2]
-    value = np.where(sensors, own.max(axis=1), np.nan)
+    value = np.where(sensors, selected.max(axis=1), np.nan)
     borrows = with_the_others(energy, freedom, typical(value, sensors, geometry.norm))[1] > freedom
     information = freedom[..., None] * np.eye(len(sensors[0]))
-    told = np.zeros_like(sensors)
+    known = np.zeros_like(sensors)
     for norm in np.unique(geometry.norm):
         b = np.where(sensors & borrows & (geometry.norm == norm), 1.0, 0.0)
         together = b[:, :, None] * b[:, None, :] / np.maximum(b.sum(axis=1), 1.0)[:, None, None]
         information = information + ALIKE * (b[..., None] * np.eye(len(b[0])) - together)
-        told |= (b > 0) & ((b * freedom).sum(axis=1, keepdims=True) > NO_FREEDOM)
-    told |= sensors & (freedom > NO_FREEDOM)
-    gradient = np.einsum("srm,srmp->spm", own, left.lean[..., :P] ** 2)
+        known |= (b > 0) & ((b * freedom).sum(axis=1, keepdims=True) > NO_FREEDOM)
+    known |= sensors & (freedom > NO_FREEDOM)
+    gradient = np.einsum("srm,srmp->spm", selected, projection.lean[..., :P] ** 2)
     inverse = np.linalg.pinv(information, hermitian=True)
     doubt = ((gradient @ inverse) * gradient).sum(axis=-1)
-    total = np.diagonal(left.inverse, axis1=1, axis2=2)[:, :P]
-    found = np.where(doubt > 0, total**2 / np.where(doubt > 0, doubt, 1.0), np.inf)
-    return np.where(np.repeat(sensors & ~told, 5, axis=1), np.nan, found)
+    total = np.diagonal(projection.inverse, axis1=1, axis2=2)[:, :P]
+    freedoms = np.where(doubt > 0, total**2 / np.where(doubt > 0, doubt, 1.0), np.inf)
+    return np.where(np.repeat(sensors & ~known, 5, axis=1), np.nan, freedoms)
 
 
 def typical(value: Array, sensors: Array, norm: Array) -> Array:
@@ -182,13 +182,13 @@ def typical(value: Array, sensors: Array, norm: Array) -> Array:
     value (S, m), (m/s²)² or (rad/s)², of the ``sensors`` (S, m) bool that state none; NaN for the others. ``norm`` (m,)
     is the length of the applied vector, m/s² (rad/s), by which the kinds are distinguished.
     """
-    asked = np.where(sensors, np.log(value), np.nan)
-    found = np.full(value.shape, np.nan)
-    for own in np.unique(norm):
-        alike = norm == own
+    logarithms = np.where(sensors, np.log(value), np.nan)
+    variances = np.full(value.shape, np.nan)
+    for kind in np.unique(norm):
+        alike = norm == kind
         known = sensors[:, alike].any(axis=1)
-        found[np.ix_(known, alike)] = np.exp(median(asked[np.ix_(known, alike)]))[:, None]
-    return np.where(sensors, found, np.nan)
+        variances[np.ix_(known, alike)] = np.exp(median(logarithms[np.ix_(known, alike)]))[:, None]
+    return np.where(sensors, variances, np.nan)
 
 
 def median(values: Array) -> Array:

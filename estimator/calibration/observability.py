@@ -78,9 +78,9 @@ def known_bias_quadratic(information: Array, bias: float, quadratic: float, norm
         return None
     strong, others = vectors[:, 1], [0, 3, 4]
     cross = information[np.ix_(others, [1, 2])] @ strong
-    left = values[1] - cross @ np.linalg.solve(information[np.ix_(others, others)], cross)
+    information_left = values[1] - cross @ np.linalg.solve(information[np.ix_(others, others)], cross)
     ratio = float(strong[1] / strong[0]) * norm**2
-    sigma = norm / (np.sqrt(left) * abs(float(strong[0])))
+    sigma = norm / (np.sqrt(information_left) * abs(float(strong[0])))
     return KnownCombination({ELEMENTS[1]: 1.0, ELEMENTS[2]: ratio}, bias + ratio * quadratic, float(sigma))
 
 
@@ -99,15 +99,15 @@ def known_linear(
     steep = (slope(p, geometry.n) * K)[:, sensor]
     swing = steep * projected(p.axis, geometry.beta)[:, sensor] * geometry.beta_sigma
     root = 1.0 / np.sqrt(K**2 * variance + swing**2)
-    one, a = np.ones_like(y), n @ p.axis[sensor]
+    ones, a = np.ones_like(y), n @ p.axis[sensor]
     left, size, right = np.linalg.svd(
-        np.column_stack([one, n / norm, (a / norm) ** 2]) * root[:, None], full_matrices=False
+        np.column_stack([ones, n / norm, (a / norm) ** 2]) * root[:, None], full_matrices=False
     )
-    kept = size > DEPENDENT * size[0]
-    sums = left.T[kept] * root / size[kept, None]
+    determined = size > DEPENDENT * size[0]
+    sums = left.T[determined] * root / size[determined, None]
     common = (geometry.constant[:, :, sensor] @ p.axis[sensor]) * steep * geometry.constant_sigma[:, None]
-    sigma = np.sqrt(size[kept] ** -2.0 + ((sums @ common.T) ** 2).sum(axis=1))
-    weights = right[kept] * np.array([1.0, norm, norm, norm, norm**2])
+    sigma = np.sqrt(size[determined] ** -2.0 + ((sums @ common.T) ** 2).sum(axis=1))
+    weights = right[determined] * np.array([1.0, norm, norm, norm, norm**2])
     return tuple(
         KnownCombination(dict(zip(LINEAR, map(float, w), strict=True)), float(v), float(s))
         for w, v, s in zip(weights, sums @ y, sigma, strict=True)

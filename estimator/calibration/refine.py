@@ -86,7 +86,7 @@ class Normal:
     """(S, P + k)"""
     weighted_square: Array
     """(S,) r'W r with the β errors marginalised."""
-    own: Array
+    per_sensor: Array
     """(S, m, 5, 5) information of each sensor alone."""
 
 
@@ -108,8 +108,8 @@ def assemble(design: Array, weight: Array, beta: Array, beta_sigma: float, prior
     white = design.swapaxes(1, 2) * root[..., None]
     gram = white.swapaxes(-1, -2) @ white
     full = np.zeros((S, P + tail, P + tail))
-    one = np.arange(m)
-    full[:, :P, :P].reshape(S, m, 5, m, 5)[:, one, :, one] = gram[..., :5, :5].swapaxes(0, 1)
+    index = np.arange(m)
+    full[:, :P, :P].reshape(S, m, 5, m, 5)[:, index, :, index] = gram[..., :5, :5].swapaxes(0, 1)
     full[:, P:, :P] = gram[..., 5:, :5].swapaxes(1, 2).reshape(S, tail, P)
     full[:, P:, P:] = gram[..., 5:, 5:].sum(axis=1)
     if beta_sigma > 0:
@@ -174,32 +174,32 @@ def eliminated(normal: Normal, P: int, sigma: Array) -> tuple[Array, Array, Arra
     inner = np.linalg.inv(normal.matrix[:, :P, :P])
     lean = inner @ border
     taken = (border + RIDGE * lean).swapaxes(-1, -2) @ lean
-    told = sigma[:, None] * (normal.matrix[:, P:, P:] - prior - taken) * sigma
-    values, vectors = eigh(told)
+    scaled = sigma[:, None] * (normal.matrix[:, P:, P:] - prior - taken) * sigma
+    values, vectors = eigh(scaled)
     values = np.maximum(values, 0.0)[:, None, :]
     root = vectors * np.sqrt(values) / sigma[:, None]
     half = vectors * sigma[:, None] / np.sqrt(1.0 + values)
     spread = half @ half.swapaxes(-1, -2)
     gain = lean @ spread
-    own, seen = normal.rhs[:, :P, None], normal.rhs[:, P:, None]
-    constant = spread @ (seen - lean.swapaxes(-1, -2) @ own)
-    step = np.concatenate([inner @ own - lean @ constant, constant], axis=1)[..., 0]
-    own_part = gain @ root
-    return inner + gain @ lean.swapaxes(-1, -2), inner + own_part @ own_part.swapaxes(-1, -2), step
+    sensor_rhs, constant_rhs = normal.rhs[:, :P, None], normal.rhs[:, P:, None]
+    constant = spread @ (constant_rhs - lean.swapaxes(-1, -2) @ sensor_rhs)
+    step = np.concatenate([inner @ sensor_rhs - lean @ constant, constant], axis=1)[..., 0]
+    stand_part = gain @ root
+    return inner + gain @ lean.swapaxes(-1, -2), inner + stand_part @ stand_part.swapaxes(-1, -2), step
 
 
-def held(normal: Normal) -> Normal:
+def with_open_directions_held(normal: Normal) -> Normal:
     """The normal equations with each sensor's open directions held where they are.
 
     Along them the readings say nothing to first order, but a step would change to second order what they do say.
     """
-    values, vectors = eigh(normal.own)
+    values, vectors = eigh(normal.per_sensor)
     weak = np.where(values < LIMIT**-2, 1.0, 0.0)
     stiff = values.max(axis=-1, keepdims=True) * weak
-    own = (vectors * stiff[..., None, :]) @ vectors.swapaxes(-1, -2)
-    S, m = own.shape[:2]
-    stiffness, one = np.zeros((S, m, 5, m, 5)), np.arange(m)
-    stiffness[:, one, :, one] = own.swapaxes(0, 1)
+    penalty = (vectors * stiff[..., None, :]) @ vectors.swapaxes(-1, -2)
+    S, m = penalty.shape[:2]
+    stiffness, index = np.zeros((S, m, 5, m, 5)), np.arange(m)
+    stiffness[:, index, :, index] = penalty.swapaxes(0, 1)
     matrix = normal.matrix.copy()
     matrix[:, : 5 * m, : 5 * m] += stiffness.reshape(S, 5 * m, 5 * m)
     return replace(normal, matrix=matrix)
@@ -216,7 +216,7 @@ def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParamet
     normal, _ = linearise(y, p, geometry, 1.0 / variance)
     total, repeatability, step = eliminated(normal, P, geometry.constant_sigma)
     if np.diagonal(total, axis1=1, axis2=2).max() > LIMIT**2:
-        *_, step = eliminated(held(normal), P, geometry.constant_sigma)
+        *_, step = eliminated(with_open_directions_held(normal), P, geometry.constant_sigma)
     change = step[:, :P]
     length = (change**2 / np.diagonal(total, axis1=1, axis2=2)).max(axis=-1)
     to_come = length * np.minimum(1.0, 4.0 * (change**2).max(axis=-1))
@@ -225,7 +225,7 @@ def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParamet
         parameters=moved,
         covariance=total,
         repeatability=repeatability,
-        information=normal.own,
+        information=normal.per_sensor,
         residual=y / moved.scale[:, None, :] - input_of(moved, geometry.n),
         variance=variance,
         chi2=normal.weighted_square - (normal.rhs * step).sum(axis=-1),
@@ -247,21 +247,21 @@ def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) 
     start : (S, m) starting values; the closed form where there is one.
     """
     variance = np.maximum(variance, (FINEST * geometry.norm) ** 2)
-    found = gauss_newton(y, variance, geometry, start, 1)
+    fitted = gauss_newton(y, variance, geometry, start, 1)
     for iteration in range(2, MAX_ITERATIONS + 1):
-        waiting = np.flatnonzero(~found.converged)
+        waiting = np.flatnonzero(~fitted.converged)
         if len(waiting) == 0:
             break
-        again = gauss_newton(y[waiting], variance[waiting], geometry, found.parameters.at(waiting), iteration)
-        found = replaced(found, waiting, again)
-    return found
+        again = gauss_newton(y[waiting], variance[waiting], geometry, fitted.parameters.at(waiting), iteration)
+        fitted = with_sessions_replaced(fitted, waiting, again)
+    return fitted
 
 
-def replaced(found: Any, at: Array, again: Any) -> Any:
+def with_sessions_replaced(result: Any, at: Array, again: Any) -> Any:
     """The same result with the sessions ``at`` (k,) of every array (S, …), SI or dimensionless, from another (k, …)."""
-    if isinstance(found, np.ndarray):
-        found = found.copy()
-        found[at] = again
-        return found
-    names = [f.name for f in fields(found)]
-    return type(found)(**{n: replaced(getattr(found, n), at, getattr(again, n)) for n in names})
+    if isinstance(result, np.ndarray):
+        result = result.copy()
+        result[at] = again
+        return result
+    names = [f.name for f in fields(result)]
+    return type(result)(**{n: with_sessions_replaced(getattr(result, n), at, getattr(again, n)) for n in names})

@@ -56,16 +56,16 @@ def freedom(solved: Solved, unstated: Array) -> Array:
 
     unstated : (S, R, m) bool, readings whose noise was estimated.
     """
-    fitted, found = solved.fitted, solved.freedom
+    fitted, known = solved.fitted, solved.freedom
     unstated = unstated & np.isfinite(fitted.variance)
     if unstated.any():
-        found = noise.freedom_of(fitted.variance, solved.y, fitted.parameters, solved.geometry, unstated)
+        known = noise.freedom_of(fitted.variance, solved.y, fitted.parameters, solved.geometry, unstated)
     if not (solved.factor > 1.0).any():
-        return found
+        return known
     grown, dof = solved.factor[:, None], np.maximum(fitted.readings - solved.spectrum.rank, 1)[:, None]
     steady, whole = (np.diagonal(c, axis1=1, axis2=2) for c in (fitted.repeatability, fitted.covariance))
     share = 1.0 + (whole - steady) / (grown * steady)
-    return np.where(grown > 1.0, dof * share**2, found)
+    return np.where(grown > 1.0, dof * share**2, known)
 
 
 def starting_point(y: Array, session: CalibrationSession, geometry: Geometry) -> SensorParameters:
@@ -74,8 +74,8 @@ def starting_point(y: Array, session: CalibrationSession, geometry: Geometry) ->
     y : (S, R, m) readings, offset taken off, reading units.
     """
     base = nominal(session.sensors)
-    found = closed_form(y, session, base, geometry.norm)
-    return linear_start(y, geometry.n, geometry.norm, base) if found is None else found
+    start = closed_form(y, session, base, geometry.norm)
+    return linear_start(y, geometry.n, geometry.norm, base) if start is None else start
 
 
 def noise_variance(

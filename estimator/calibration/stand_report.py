@@ -145,14 +145,14 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
     values = zip(p.scale[k].tolist(), p.bias[k].tolist(), p.quadratic[k].tolist(), strict=True)
     seen, sigma, steady = table.seen[k].tolist(), table.sigma[k].tolist(), table.steady[k].tolist()
     dofs, axis_dof = solved.freedom[k].reshape(-1, 5).tolist(), table.axis_dof[k].tolist()
-    found = []
-    for i, (sensor, own) in enumerate(zip(session.sensors, values, strict=True)):
+    results = []
+    for i, (sensor, row) in enumerate(zip(session.sensors, values, strict=True)):
         angles = slice(5 * i + 3, 5 * i + 5)
         scale, bias, quadratic = (
             estimate(value, sigma[i][e], steady[i][e], dofs[i][e]) if seen[i][e] else Estimate(None, None)
-            for e, value in enumerate(own)
+            for e, value in enumerate(row)
         )
-        found.append(
+        results.append(
             SensorCalibration(
                 name=sensor.name,
                 kind=sensor.kind,
@@ -167,7 +167,7 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
                 axis_dof=finite(axis_dof[i]),
             )
         )
-    return tuple(found)
+    return tuple(results)
 
 
 def estimate(value: float, sigma: float, repeatability: float, dof: float) -> Estimate:
@@ -177,10 +177,10 @@ def estimate(value: float, sigma: float, repeatability: float, dof: float) -> Es
 
 def known(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombination, ...]:
     """The combinations that stand in for what is not observable of sensor i in session k."""
-    found = combinations(k, i, solved, seen)
+    known_combinations = combinations(k, i, solved, seen)
     if np.isnan(solved.freedom[k, 5 * i]):
-        return tuple(replace(combination, sigma=None) for combination in found)
-    return found
+        return tuple(replace(combination, sigma=None) for combination in known_combinations)
+    return known_combinations
 
 
 def combinations(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombination, ...]:
@@ -192,8 +192,8 @@ def combinations(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[Know
     if blind == {"bias", "quadratic"}:
         information = solved.fitted.information[k, i] / factor
         norm = float(solved.geometry.norm[i])
-        found = known_bias_quadratic(information, float(p.bias[k, i]), float(p.quadratic[k, i]), norm)
-        return () if found is None else (found,)
+        known_combination = known_bias_quadratic(information, float(p.bias[k, i]), float(p.quadratic[k, i]), norm)
+        return () if known_combination is None else (known_combination,)
     return known_linear(solved.y[k, :, i], factor * solved.fitted.variance[k, :, i], p.at(k), solved.geometry, i)
 
 
@@ -208,9 +208,9 @@ def qualities(solved: Solved) -> list[tuple[Any, ...]]:
     return list(zip(*(c.tolist() for c in (*columns, *seen.weakest)), strict=True))
 
 
-def quality(k: int, session: CalibrationSession, solved: Solved, found: tuple[Any, ...]) -> Fit:
+def quality(k: int, session: CalibrationSession, solved: Solved, fit: tuple[Any, ...]) -> Fit:
     """Quality of fit of session k, from its line of `qualities`."""
-    chi2, rank, dof, p_value, residual_rms, stated, factor, sensor, lead, sigma = found
+    chi2, rank, dof, p_value, residual_rms, stated, factor, sensor, lead, sigma = fit
     return Fit(
         chi2=chi2,
         dof=dof,

@@ -300,22 +300,22 @@ class SensorCause(Signature):
     def each(self, setting: Setting, grids: Iterable[tuple[int, Grid]]) -> Iterator[tuple[int, Grid, Array]]:
         """Sensors with their grids, and the terms (S, R, q) of each, m/s² (rad/s); alike ones are worked out once."""
         grid, terms = None, np.empty(0)
-        for i, own in grids:
-            if not self.alike or own != grid:
-                grid, terms = own, self.terms(setting, i, own)
-            yield i, own, terms
+        for i, nonlinear in grids:
+            if not self.alike or nonlinear != grid:
+                grid, terms = nonlinear, self.terms(setting, i, nonlinear)
+            yield i, nonlinear, terms
 
     def terms_of(self, setting: Setting, shapes: Sequence[Shape]) -> Iterator[tuple[int, Array]]:
         """Sensors one after another, each with the terms (S, R, q) of its shapes, m/s² (rad/s) per unit amplitude."""
         by_sensor = groupby(shapes, key=lambda shape: shape.sensors[0])
-        grids = ((i, [s.nonlinear for s in own]) for i, own in by_sensor)
+        grids = ((i, [s.nonlinear for s in members]) for i, members in by_sensor)
         yield from ((i, terms) for i, _, terms in self.each(setting, grids))
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         grids = ((i, list(self.grid_of(setting, i))) for i, k in enumerate(setting.kinds) if self.kind in (None, k))
         for i, grid, terms in self.each(setting, ((i, grid) for i, grid in grids if grid)):
             placed = on_sensor(setting, i, terms)
-            yield from (Shape((i,), own, nonlinear) for own, nonlinear in zip(placed, grid, strict=True))
+            yield from (Shape((i,), columns, nonlinear) for columns, nonlinear in zip(placed, grid, strict=True))
 
     def placed(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, m, q) the term on sensor i, m/s² (rad/s) per unit amplitude."""

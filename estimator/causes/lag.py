@@ -29,11 +29,11 @@ def lagging(temperature: Array, time: Array, tau: float) -> Array:
     In no time nothing changes.
     """
     T, passed = temperature.tolist(), np.diff(time).tolist()
-    found = [T[0]]
+    lagged = [T[0]]
     for before, now, step in zip(T, T[1:], passed, strict=False):
         behind = (now - before) / step * tau if step > 0 else 0.0
-        found.append(now - behind + (found[-1] - before + behind) * exp(-step / tau) if step > 0 else found[-1])
-    return np.array(found)
+        lagged.append(now - behind + (lagged[-1] - before + behind) * exp(-step / tau) if step > 0 else lagged[-1])
+    return np.array(lagged)
 
 
 class ThermalLag(SensorCause):

@@ -27,14 +27,14 @@ class LeverArm(Cause):
     )
     """What to do where the turns contradict a stated position."""
 
-    def told(self, sensor: str, distance: str) -> str:
+    def lever_sentence(self, sensor: str, distance: str) -> str:
         """The sentence with the size: ``A2 stands 4.1 ± 0.4 cm from the turn axis and feels the turns.``"""
         return f"{sensor} stands {distance} from the turn axis and feels the turns."
 
-    def contradicted(self, sensor: str, distance: str) -> str:
+    def contradiction_sentence(self, sensor: str, distance: str) -> str:
         """The same where the file states positions, and the turns contradict that of this sensor."""
         return f"{sensor} stands {distance} from where the file says."
 
-    def apart(self, sensors: Sequence[str], distance: str) -> str:
+    def separation_sentence(self, sensors: Sequence[str], distance: str) -> str:
         """The same where the turns cannot tell which of two sensors sits elsewhere."""
         return f"{' and '.join(sensors)} do not stand to one another as the file says: one of them is {distance} off."

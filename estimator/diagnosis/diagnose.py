@@ -10,7 +10,7 @@ from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes.catalogue import CATALOGUE
 from estimator.causes.contract import Cause
 from estimator.diagnosis.explanation.detection_limits import limits
-from estimator.diagnosis.explanation.earlier_sessions import newness
+from estimator.diagnosis.explanation.earlier_sessions import are_new
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration, without_effects
 from estimator.diagnosis.explanation.findings import findings, noise_scales, notes, structures
 from estimator.diagnosis.explanation.gain import gain
@@ -93,13 +93,13 @@ def put_right(
 def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     """What the simulation gets wrong about a session whose record is put right."""
     rows, right, earlier = session.rows, session.right, session.earlier
-    wrong = mixed_up(right, earlier, catalogue)
-    state = unsearched(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
+    wrong = impossible_axes(right, earlier, catalogue)
+    state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
     entry = None if earlier or wrong else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
         state = searched(baseline_of(entry.corrected(right.session)), earlier, catalogue)
     fitted = amplitudes(state)
-    new = newness(state, fitted)
+    new = are_new(state, fitted)
     calibration = extended_calibration(state, fitted)
     warmth = temperatures(right.session.temperature, [b.session.temperature for b in earlier])
     return Diagnosis(
@@ -120,7 +120,7 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     )
 
 
-def mixed_up(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> ImplausibleAxes | None:
+def impossible_axes(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> ImplausibleAxes | None:
     """Axes that no block of this unit can have, whatever entry is corrected; None where there are none."""
     session = right.session
     expected = expected_axes(history, session)
@@ -131,10 +131,10 @@ def mixed_up(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
 
 def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
     """The causes found in a session whose record is right."""
-    return accepted(unsearched(right, history, catalogue))
+    return accepted(initial_state(right, history, catalogue))
 
 
-def unsearched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
+def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
     """The residuals of a session, and nothing sought in them yet."""
     baseline, earlier = baselines(right, history)
     return begin(baseline, earlier, catalogue)

@@ -67,7 +67,7 @@ class OverSessions(Document, forms={"since": MOMENT}):
     """Probability that this session has it too."""
 
 
-def _of_one_shape(document: dict[str, Any]) -> dict[str, Any]:
+def _with_all_shapes(document: dict[str, Any]) -> dict[str, Any]:
     """Earlier versions stated the shape of the first sensor alone."""
     return document | {"nonlinear_each": document.get("nonlinear_each") or [document["nonlinear"]]}
 
@@ -79,7 +79,7 @@ class Finding(
         "cause", "sensors", "amplitude", "sigma", "units", "nonlinear", "nonlinear_each", "p_value", "strength",
         "alternatives", "separations", "ranking", "sentence", "advice", "parity", "new", "over_sessions",
     ),
-    earlier=_of_one_shape,
+    earlier=_with_all_shapes,
 ):  # fmt: skip
     """One named cause with its evidence."""
 

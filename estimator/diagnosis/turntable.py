@@ -8,7 +8,7 @@ import numpy as np
 from estimator.alignment.align import align, prepared
 from estimator.alignment.as_calibration import alignment_calibration, settled
 from estimator.alignment.held_out import Prediction, held_out, prediction
-from estimator.alignment.lever_arms import FEWEST, LEVEL, TOLD_APART, LeverArm, LeverArms, lever_arms
+from estimator.alignment.lever_arms import DECISIVE, FEWEST, LEVEL, LeverArm, LeverArms, lever_arms
 from estimator.alignment.results import AlignmentResult
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes.catalogue import UNEXPLAINED
@@ -24,7 +24,7 @@ CENTIMETRE, MICRO_G = 0.01, STANDARD_GRAVITY * 1e-6
 CAUSE = Cause()
 CALLED = {"vibration": "vibration-rectification", "wobble": "axis-wobble", "delay or rate": UNEXPLAINED}
 """The catalogue's names of rivals; it has none of a delay."""
-TELLS = {
+SEPARATING = {
     "vibration": "measure with a rule where the sensor stands, or mount it so that it stands across its axis",
     "wobble": "turn both ways, and to stops a quarter turn apart",
     "delay or rate": "turn the other way round as well",
@@ -70,26 +70,28 @@ def diagnose_alignment(session: CalibrationSession) -> Diagnosis:
 
 def _findings(arms: LeverArms) -> Iterator[Finding]:
     """One a sensor; where the file states positions and only two show, one of both: either may sit elsewhere."""
-    found = [(arm, _finding(arm, arms)) for arm in arms.named]
-    if not (arms.stated and found and len(arms.found) < FEWEST):
-        yield from (finding for _, finding in found)
+    named = [(arm, _finding(arm, arms)) for arm in arms.named]
+    if not (arms.stated and named and len(arms.estimates) < FEWEST):
+        yield from (finding for _, finding in named)
         return
-    arm, first = max(found, key=lambda pair: pair[1].strength)
-    sensors = tuple(one.sensor.name for one in arms.found)
-    said = CAUSE.apart(sensors, _centimetres(*arm.distance))
-    yield replace(first, sentence=said, sensors=sensors, amplitude=(), sigma=(), units=())
+    arm, first = max(named, key=lambda pair: pair[1].strength)
+    sensors = tuple(estimate.sensor.name for estimate in arms.estimates)
+    sentence = CAUSE.separation_sentence(sensors, _centimetres(*arm.distance))
+    yield replace(first, sentence=sentence, sensors=sensors, amplitude=(), sigma=(), units=())
 
 
 def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
     name, (length, sigma) = arm.sensor.name, arm.distance
-    told = _centimetres(length, sigma)
-    said = CAUSE.contradicted(name, told) if arms.stated else CAUSE.told(name, told)
+    length_text = _centimetres(length, sigma)
+    sentence = (
+        CAUSE.contradiction_sentence(name, length_text) if arms.stated else CAUSE.lever_sentence(name, length_text)
+    )
     return Finding(
         cause=CAUSE.identifier,
-        sentence=said,
+        sentence=sentence,
         advice=CAUSE.correct if arms.stated else CAUSE.advice,
         sensors=(name,),
-        p_value=family_wise(arm.felt.p_value("lever arm"), len(arms.found)),
+        p_value=family_wise(arm.response.p_value("lever arm"), len(arms.estimates)),
         strength=_strength(arm, "lever arm"),
         amplitude=tuple(map(float, arm.place)),
         sigma=tuple(map(float, np.sqrt(np.diag(arm.covariance)))),
@@ -108,18 +110,18 @@ def _centimetres(length: float, sigma: float) -> str:
 
 
 def _strength(arm: LeverArm, model: str) -> float:
-    return float(np.sqrt(max(arm.felt.drop[model][0], 0.0)))
+    return float(np.sqrt(max(arm.response.drop[model][0], 0.0)))
 
 
 def _separation(arm: LeverArm, rival: str) -> Separation:
     now = _strength(arm, f"lever arm beside {rival}")
-    return Separation(CALLED[rival], (arm.sensor.name,), now, TELLS[rival], None)
+    return Separation(CALLED[rival], (arm.sensor.name,), now, SEPARATING[rival], None)
 
 
 def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
     """Shares by BIC."""
     names = {"lever arm": CAUSE.identifier, **CALLED}
-    worth = np.array([arm.felt.worth(model, pieces) for model in names])
+    worth = np.array([arm.response.worth(model, pieces) for model in names])
     share = np.exp(0.5 * (worth - worth.max()))
     lines = zip(names, share / share.sum(), strict=True)
     for model, probability in sorted(lines, key=lambda line: -line[1]):
@@ -127,11 +129,11 @@ def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
 
 
 def _structures(arms: LeverArms) -> Iterator[Structure]:
-    level = LEVEL / max(len(arms.found), 1)
-    for arm in arms.found:
+    level = LEVEL / max(len(arms.estimates), 1)
+    for arm in arms.estimates:
         who = (arm.sensor.name,)
         if arm.other:
-            yield Structure(WHERE[arm.other], who, arm.felt.p_value(arm.other), _strength(arm, arm.other))
+            yield Structure(WHERE[arm.other], who, arm.response.p_value(arm.other), _strength(arm, arm.other))
         elif arm.more < level:
             yield Structure(BEYOND, who, arm.more, _strength(arm, "beyond"))
 
@@ -141,15 +143,15 @@ def _gain(arms: LeverArms) -> Gain:
     return Gain(before, after, held_out(arms), None)
 
 
-def _score(told: Prediction) -> Score:
-    return Score(told.rms, told.chi2, told.log_score, {ACCELEROMETER: told.rms})
+def _score(prediction: Prediction) -> Score:
+    return Score(prediction.rms, prediction.chi2, prediction.log_score, {ACCELEROMETER: prediction.rms})
 
 
 def _limit(arms: LeverArms) -> Limit:
-    if not arms.found:
+    if not arms.estimates:
         return Limit(CAUSE.identifier, None, CAUSE.units, "every accelerometer points along the turn axis")
-    need = required(1, LEVEL / len(arms.found))
-    sigma = np.max([np.sqrt(np.diag(arm.covariance)) for arm in arms.found], axis=0)
+    need = required(1, LEVEL / len(arms.estimates))
+    sigma = np.max([np.sqrt(np.diag(arm.covariance)) for arm in arms.estimates], axis=0)
     return Limit(CAUSE.identifier, tuple(map(float, need * sigma)), CAUSE.units, "")
 
 
@@ -163,15 +165,15 @@ def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -
     if arms.origin is not None:
         place, covariance = arms.origin
         length, sigma = float(np.hypot(*place)), float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
-        if length > TOLD_APART**0.5 * sigma:
-            said = _centimetres(length, sigma)
-            yield f"The origin of the stated positions lies {said} from the turn axis, and that is taken off."
+        if length > DECISIVE**0.5 * sigma:
+            text = _centimetres(length, sigma)
+            yield f"The origin of the stated positions lies {text} from the turn axis, and that is taken off."
     if arms.named:
-        yield f"Lever arms are part of every alignment's model. Without them {_off(without, result)}."
+        yield f"Lever arms are part of every alignment's model. Without them {_error_without(without, result)}."
         yield ALIKE
 
 
-def _off(without: AlignmentResult, result: AlignmentResult) -> str:
+def _error_without(without: AlignmentResult, result: AlignmentResult) -> str:
     """By how much the zeros and mounting errors would be off."""
     moved = {name: _value(without, name) - _value(result, name) for name in ("nabla_x", "nabla_y", "E_xz", "E_yz")}
     zeros = max(abs(moved["nabla_x"]), abs(moved["nabla_y"])) / MICRO_G

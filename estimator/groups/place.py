@@ -195,7 +195,7 @@ def _traced(where: Where, one: Fitted, own: Sequence[tuple[Where, Key]]) -> "Tra
     named = {k: c for k, c in causes_at(one.baseline, where).items() if k[0] != HARMONIC}
     whole = named | terms_at(one.baseline, where)
     white = residuals.whitened(np.concatenate(list(whole.values()), axis=-1))
-    trace = residuals.left_of(white)
+    trace = residuals.remaining_of(white)
     trace = trace - basis @ (basis.T @ trace)
     seen = np.linalg.norm(trace, axis=0) > INVISIBLE * np.maximum(np.linalg.norm(white, axis=0), 1e-300)
     ends = np.cumsum([columns.shape[-1] for columns in whole.values()])

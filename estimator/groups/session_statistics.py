@@ -21,10 +21,10 @@ from estimator.diagnosis.record.silent import refuse_silent
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.flipped_run import about_its_flip
+from estimator.diagnosis.residuals.flipped_run import with_fitted_flip
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.start import as_they_scatter
+from estimator.diagnosis.selection.start import with_residual_scatter
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.scores import beside, eigen_scores, shrinkage, starts_of
@@ -97,7 +97,7 @@ def put_right(session: CalibrationSession) -> tuple[Baseline, tuple[str, ...]]:
     errors, right = undo_record_errors(baseline_of(whole), (), CATALOGUE)
     words = [f"{session.sensors[c.sensor].name} clipped" for c in clips]
     words += [e.undone.cause.identifier for e in errors]
-    return about_its_flip(right), tuple(words)
+    return with_fitted_flip(right), tuple(words)
 
 
 def as_kept(session: CalibrationSession, record: SessionStatistics) -> Baseline:
@@ -118,7 +118,7 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
     energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)
     claims = contradicted(baseline, energy, free)
     if claims:
-        baseline = refitted(as_they_scatter(baseline, claims, plain_columns(seen)))
+        baseline = refitted(with_residual_scatter(baseline, claims, plain_columns(seen)))
         seen = without_outliers(seen_in(baseline))
         left, freedom = left_of(seen)
         energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)
@@ -154,7 +154,7 @@ def seen_in(baseline: Baseline) -> Seen:
     found = list(columns_of(baseline))
     columns = np.concatenate([c for _, c in found], axis=-1)
     white = residuals.whitened(columns)
-    trace = residuals.left_of(white)
+    trace = residuals.remaining_of(white)
     shown = np.linalg.norm(trace, axis=0) > INVISIBLE * np.linalg.norm(white, axis=0)
     reach = (np.abs(columns) / baseline.setting.norm[None, :, None]).max(axis=(0, 1))
     return Seen(residuals, tuple(b for b, _ in found), trace * shown, residuals.z, reach, residuals.row_freedom)

@@ -23,7 +23,7 @@ from estimator.diagnosis.record.silent import silent_channels
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.flipped_run import about_its_flip
+from estimator.diagnosis.residuals.flipped_run import with_fitted_flip
 from estimator.diagnosis.results import Diagnosis, Finding, OverSessions
 from estimator.groups.fixed import added_by, fixed, taken_out
 from estimator.groups.lasting import ENDED, SURE, Lasting, lasting
@@ -68,7 +68,7 @@ def diagnose(
         records = () if len(session.sensors) > MANY else [record_of(h, tuple(catalogue)) for h in history]
     if not records or any(s.of_record for s in own.structures):
         return own
-    now = kept(begun.right.session, about_its_flip(begun.right), ())
+    now = kept(begun.right.session, with_fitted_flip(begun.right), ())
     sessions = (*history, begun.right.session)[-len(records) - 1 :]
     return with_lasting(begun, own, lasting([*records, now], catalogue, sessions), catalogue)
 
@@ -77,7 +77,7 @@ def diagnose(
 def record_of(earlier: CalibrationSession, catalogue: tuple[Cause, ...]) -> SessionStatistics:
     """What is kept of a session of the history, its record put right."""
     _, right = undo_record_errors(earlier_baseline(earlier, catalogue), (), catalogue)
-    return kept(right.session, about_its_flip(right), ())
+    return kept(right.session, with_fitted_flip(right), ())
 
 
 def with_lasting(begun: PutRight, own: Diagnosis, found: Sequence[Lasting], catalogue: Sequence[Cause]) -> Diagnosis:

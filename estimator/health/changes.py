@@ -23,7 +23,7 @@ class Changes:
     names: tuple[str, ...]
     y: Array
     """(m r,) rad or relative."""
-    own: Array
+    current: Array
     """(m r, m r) covariance that the session brings, rad² or relative²."""
     origin: Array
     """(m r, m r) covariance that the reference brings, rad² or relative²."""
@@ -42,19 +42,19 @@ class Changes:
     @cached_property
     def covariance(self) -> Array:
         """(m r, m r) of both sessions, and what sensors do on their own, rad² or relative²."""
-        return self.own + self.origin + self.scatter**2 * np.eye(len(self.y))
+        return self.current + self.origin + self.scatter**2 * np.eye(len(self.y))
 
     @cached_property
     def dof(self) -> float | None:
         """Effective degrees of freedom that the least known sensor's noise is known to; None when all is known."""
-        own, origin = np.diagonal(self.own), np.diagonal(self.origin)
-        found = []
+        current, origin = np.diagonal(self.current), np.diagonal(self.origin)
+        dofs = []
         for i, (now, then) in enumerate(self.dofs):
             if now is None and then is None:
                 continue
             at, known = self.where([i]), (self.rows * self.scatter**2, None)
-            found.append(combined((float(own[at].sum()), now), (float(origin[at].sum()), then), known))
-        return min((dof for dof in found if dof is not None), default=None)
+            dofs.append(combined((float(current[at].sum()), now), (float(origin[at].sum()), then), known))
+        return min((dof for dof in dofs if dof is not None), default=None)
 
     def where(self, sensors: Sequence[int] | Sequence[Sequence[int]]) -> Array:
         """(..., n r) places of the rows of n sensors each, a number without unit."""
@@ -76,7 +76,7 @@ class AxisPairs:
     """(m, 3) of the reference."""
     origin_frames: Array
     """(m, 3, 2)"""
-    own: Array
+    current: Array
     """(2 m, 2 m) rad²."""
     origin: Array
     """(2 m, 2 m) rad²."""
@@ -95,7 +95,7 @@ class AxisPairs:
         y = [axis_offset(*pair) for pair in zip(self.axes, expected, frames, strict=True)]
         design = np.cross(expected[:, None, :], np.swapaxes(frames, -1, -2)).reshape(2 * m, 3)
         return Changes(
-            self.names, np.concatenate(y), carried @ self.own @ carried.T, self.origin, design, dofs=self.dofs
+            self.names, np.concatenate(y), carried @ self.current @ carried.T, self.origin, design, dofs=self.dofs
         )
 
 
@@ -103,8 +103,8 @@ def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisP
     """The axes of one kind of sensor; None where no axis is known in both sessions."""
     known = _known(current, reference, kind, "axis")
     elements = [f"{now.name}.{element}" for now, _, _ in known for element in ("axis_1", "axis_2")]
-    own, origin = _joint(current, elements), _joint(reference, elements)
-    if own is None or origin is None:
+    covariance, origin = _joint(current, elements), _joint(reference, elements)
+    if covariance is None or origin is None:
         return None
     return AxisPairs(
         names=tuple(now.name for now, _, _ in known),
@@ -112,7 +112,7 @@ def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisP
         frames=np.stack([now.axis_tangents for now, _, _ in known]),
         origins=np.array([then.axis for _, then, _ in known]),
         origin_frames=np.stack([then.axis_tangents for _, then, _ in known]),
-        own=own,
+        current=covariance,
         origin=origin,
         dofs=_dofs(known),
     )
@@ -122,15 +122,15 @@ def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Ch
     """Of the scales of one kind of sensor; None where no scale is known in both sessions."""
     known = _known(current, reference, kind, "scale")
     elements = [f"{now.name}.scale" for now, _, _ in known]
-    own, origin = _joint(current, elements), _joint(reference, elements)
-    if own is None or origin is None:
+    covariance, origin = _joint(current, elements), _joint(reference, elements)
+    if covariance is None or origin is None:
         return None
     y = np.array([d.vector[0] for _, _, d in known])
     then = np.array([t.scale.value for _, t, _ in known], dtype=float)
     ratio = (1 + y) / then
     names = tuple(now.name for now, _, _ in known)
-    own, origin = own / np.outer(then, then), origin * np.outer(ratio, ratio)
-    return Changes(names, y, own, origin, np.ones((len(y), 1)), dofs=_dofs(known))
+    covariance, origin = covariance / np.outer(then, then), origin * np.outer(ratio, ratio)
+    return Changes(names, y, covariance, origin, np.ones((len(y), 1)), dofs=_dofs(known))
 
 
 Known = list[tuple[SensorCalibration, SensorCalibration, Deviation]]
@@ -139,7 +139,7 @@ Known = list[tuple[SensorCalibration, SensorCalibration, Deviation]]
 
 def _dofs(known: Known) -> tuple[tuple[float | None, float | None], ...]:
     """Of each sensor's change the degrees of freedom of both sessions."""
-    return tuple((d.own_dof, d.origin_dof) for _, _, d in known)
+    return tuple((d.current_dof, d.origin_dof) for _, _, d in known)
 
 
 def _known(current: Calibration, reference: Calibration, kind: str, parameter: str) -> Known:
@@ -155,5 +155,5 @@ def _joint(calibration: Calibration, names: list[str]) -> Array | None:
     if not names or not all(name in place for name in names):
         return None
     rows = [place[name] for name in names]
-    found = calibration.covariance[np.ix_(rows, rows)]
-    return found if np.isfinite(found).all() else None
+    covariance = calibration.covariance[np.ix_(rows, rows)]
+    return covariance if np.isfinite(covariance).all() else None

@@ -128,14 +128,14 @@ def common_motion(
     """
     allowed = tolerances or {}
     is_framed = NOMINAL_AXES not in (current.gauge, reference.gauge)
-    found = []
+    splits = []
     for kind in dict.fromkeys(sensor.kind for sensor in current.sensors):
         axes, scales = axis_pairs(current, reference, kind), scale_changes(current, reference, kind)
         if axes is not None:
-            found.append(split_axes(kind, axes, allowed.get((kind, "axis"), 0.0), is_seen=is_framed))
+            splits.append(split_axes(kind, axes, allowed.get((kind, "axis"), 0.0), is_seen=is_framed))
         if scales is not None:
-            found.append(_split_scales(kind, scales, allowed.get((kind, "scale"), 0.0)))
-    return tuple(found)
+            splits.append(_split_scales(kind, scales, allowed.get((kind, "scale"), 0.0)))
+    return tuple(splits)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +143,7 @@ class _Agreed:
     """What the sensors that agree say of the common change."""
 
     changes: Changes
-    out: list[int]
+    excluded: list[int]
     """Sensors that take no part."""
     gain: Array
     """(k, m r) x = gain·y, dimensionless."""
@@ -163,7 +163,7 @@ class _Agreed:
 
 def split_axes(kind: str, pairs: AxisPairs, tolerance: float, *, is_seen: bool) -> Split:
     """The common turn and the rest; ``is_seen`` says whether a common turn shows at all."""
-    if not _tells(AXES, pairs.about(np.eye(3))):
+    if not _is_separable(AXES, pairs.about(np.eye(3))):
         return Split(_nothing(kind, AXES, TOO_FEW, pairs.names), {})
     turn = common_turn(pairs.origins, pairs.axes)
     agreed = _agreed(pairs.about(turn), tolerance)
@@ -181,7 +181,7 @@ def split_axes(kind: str, pairs: AxisPairs, tolerance: float, *, is_seen: bool) 
 
 def _split_scales(kind: str, changes: Changes, tolerance: float) -> Split:
     """The common factor and the rest."""
-    if not _tells(SCALES, changes):
+    if not _is_separable(SCALES, changes):
         return Split(_nothing(kind, SCALES, TOO_FEW, changes.names), {})
     agreed = _agreed(changes, tolerance)
     if agreed is None:
@@ -189,7 +189,7 @@ def _split_scales(kind: str, changes: Changes, tolerance: float) -> Split:
     return _separated((kind, SCALES), agreed, agreed.value, agreed.covariance, is_seen=True)
 
 
-def _tells(quantity: str, changes: Changes) -> bool:
+def _is_separable(quantity: str, changes: Changes) -> bool:
     """Whether there are sensors enough, and not all alike."""
     spread = np.linalg.eigvalsh(changes.design.T @ changes.design)[0] / len(changes.names)
     return len(changes.names) >= FEWEST[quantity] and bool(spread >= PARALLEL)
@@ -198,12 +198,12 @@ def _tells(quantity: str, changes: Changes) -> bool:
 def _agreed(changes: Changes, tolerance: float) -> _Agreed | None:
     """Who moved, by the smallest scatter with which a majority agrees; None where that cannot be told."""
     tried = (replace(changes, scatter=share * tolerance) for share in SCATTERS)
-    found = next(((some, out) for some in tried if (out := moved(some)) is not None), None)
-    if found is None:
+    agreement = next(((some, excluded) for some in tried if (excluded := moved(some)) is not None), None)
+    if agreement is None:
         return None
-    own, out = replace(changes, scatter=max(found[0].scatter, NOTHING * tolerance)), found[1]
-    gain = fit(own, [i for i in range(len(own.names)) if i not in out]).gain
-    return _Agreed(own, out, gain, Sets(found[0], own, tolerance))
+    changed, excluded = replace(changes, scatter=max(agreement[0].scatter, NOTHING * tolerance)), agreement[1]
+    gain = fit(changed, [i for i in range(len(changed.names)) if i not in excluded]).gain
+    return _Agreed(changed, excluded, gain, Sets(agreement[0], changed, tolerance))
 
 
 def _separated(of: tuple[str, str], agreed: _Agreed, value: Array, covariance: Array, *, is_seen: bool) -> Split:
@@ -217,10 +217,10 @@ def _separated(of: tuple[str, str], agreed: _Agreed, value: Array, covariance: A
         value=tuple(map(float, value)),
         covariance=tuple(tuple(map(float, row)) for row in covariance),
         p_value=float(p_value(chi2, len(value), known_to(agreed.changes.dof))) if is_seen else None,
-        sensors=tuple(name for i, name in enumerate(names) if i not in agreed.out),
-        left_out=tuple(names[i] for i in agreed.out),
+        sensors=tuple(name for i, name in enumerate(names) if i not in agreed.excluded),
+        left_out=tuple(names[i] for i in agreed.excluded),
     )
-    return Split(motion, residuals(agreed.sets, agreed.out))
+    return Split(motion, residuals(agreed.sets, agreed.excluded))
 
 
 def _nothing(kind: str, quantity: str, state: str, names: tuple[str, ...]) -> CommonMotion:

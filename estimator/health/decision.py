@@ -83,8 +83,8 @@ class _Case:
         if self.origin is None or self.origin.kind != self.sensor.kind:
             return None
         whole = deviation(self.sensor, self.origin, self.parameter)
-        found = whole if self.split is None else self.split.residuals.get(self.sensor.name, whole)
-        return found if found is not None and found.is_finite else None
+        residual = whole if self.split is None else self.split.residuals.get(self.sensor.name, whole)
+        return residual if residual is not None and residual.is_finite else None
 
     @property
     def motion(self) -> CommonMotion | None:
@@ -155,8 +155,8 @@ def _assess_scalar(change: Deviation, tolerance: float, k: float) -> _Assessed:
     """A normal number, or Student's where the noise is known to few degrees of freedom."""
     y, dof = float(change.vector[0]), change.dof
     u = max(float(np.sqrt(change.covariance[0, 0])), FLOOR * tolerance)
-    out = sum(chance((side * y - tolerance) / u, dof) for side in (1, -1))
-    return _Assessed(change, y, u, factor_of(k, dof), out, u, is_vector=False)
+    probability = sum(chance((side * y - tolerance) / u, dof) for side in (1, -1))
+    return _Assessed(change, y, u, factor_of(k, dof), probability, u, is_vector=False)
 
 
 def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
@@ -165,14 +165,16 @@ def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
     length = judge_length(change.vector, covariance, tolerance, k, change.dof)
     mahalanobis = float(np.sqrt(change.vector @ np.linalg.solve(covariance, change.vector)))
     largest = float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
-    scale, own = length.value / mahalanobis if length.value > 0 else largest, factor_of(k, change.dof)
-    return _Assessed(change, length.value, length.expanded / own, own, length.probability_beyond, scale, is_vector=True)
+    scale, factor = length.value / mahalanobis if length.value > 0 else largest, factor_of(k, change.dof)
+    return _Assessed(
+        change, length.value, length.expanded / factor, factor, length.probability_beyond, scale, is_vector=True
+    )
 
 
-def _judgement(case: _Case, found: _Assessed | None, k: float, together: tuple[int, float]) -> Judgement:
+def _judgement(case: _Case, assessed: _Assessed | None, k: float, together: tuple[int, float]) -> Judgement:
     """The case with its verdict; ``together``: how many are judged, and the level of them all."""
     value, reference = _values(case)
-    if found is None:
+    if assessed is None:
         return Judgement(
             sensor=case.sensor.name,
             kind=case.sensor.kind,
@@ -188,8 +190,8 @@ def _judgement(case: _Case, found: _Assessed | None, k: float, together: tuple[i
             verdict=UNDECIDABLE,
             coverage_factor=k,
         )
-    (judged, level), dof, motion = together, found.change.dof, case.motion
-    critical = critical_factors(judged, dof, level)[found.is_vector] * found.critical_scale
+    (judged, level), dof, motion = together, assessed.change.dof, case.motion
+    critical = critical_factors(judged, dof, level)[assessed.is_vector] * assessed.critical_scale
     return Judgement(
         sensor=case.sensor.name,
         kind=case.sensor.kind,
@@ -197,19 +199,19 @@ def _judgement(case: _Case, found: _Assessed | None, k: float, together: tuple[i
         value=value,
         reference=reference,
         tolerance=case.tolerance,
-        deviation=found.y,
-        uncertainty=found.u,
-        expanded=found.k * found.u,
-        probability_out=found.probability_out,
+        deviation=assessed.y,
+        uncertainty=assessed.u,
+        expanded=assessed.k * assessed.u,
+        probability_out=assessed.probability_out,
         critical=critical,
-        verdict=state(abs(found.y), found.k * found.u, case.tolerance, critical),
-        change=tuple(map(float, found.change.vector)),
-        change_own=_sigmas(found.change.own),
-        change_origin=_sigmas(found.change.origin),
+        verdict=state(abs(assessed.y), assessed.k * assessed.u, case.tolerance, critical),
+        change=tuple(map(float, assessed.change.vector)),
+        change_own=_sigmas(assessed.change.current),
+        change_origin=_sigmas(assessed.change.origin),
         common=None if motion is None else motion.size,
         common_sigma=None if motion is None else motion.sigma,
         common_p=None if motion is None else motion.p_value,
-        coverage_factor=found.k,
+        coverage_factor=assessed.k,
         dof=dof,
     )
 

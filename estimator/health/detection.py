@@ -119,17 +119,17 @@ def detect(readings: Readings, walk: float, dof: Array, temperature: Array, leve
     start = warmed(readings, walk, dof, temperature, level)
     if start.likely is None or start.likely.p_value >= level:
         return Detected(1.0 if start.likely is None else start.likely.p_value, (), start.warmth, start.readings)
-    explained, found = start.readings, list[Change]()
-    left: Change | None = start.likely
-    while left is not None and left.p_value < level and len(found) < MOST:
-        found.append(left)
-        explained = _with(explained, left.column)
-        left = most_likely(explained, walk, dof)
+    explained, changes = start.readings, list[Change]()
+    remaining: Change | None = start.likely
+    while remaining is not None and remaining.p_value < level and len(changes) < MOST:
+        changes.append(remaining)
+        explained = _with(explained, remaining.column)
+        remaining = most_likely(explained, walk, dof)
     p = start.likely.p_value
-    is_left = left is not None and left.p_value < level
-    if start.likely.wanders and (is_left or _walks(start.readings, explained, walk)):
+    remains = remaining is not None and remaining.p_value < level
+    if start.likely.wanders and (remains or _walks(start.readings, explained, walk)):
         return Detected(p, (_wandering(start.readings, p),), start.warmth, start.readings)
-    return Detected(p, tuple(found), start.warmth, start.readings)
+    return Detected(p, tuple(changes), start.warmth, start.readings)
 
 
 def _walks(readings: Readings, explained: Readings, walk: float) -> bool:
@@ -144,9 +144,9 @@ def _walks(readings: Readings, explained: Readings, walk: float) -> bool:
 def _likelihood(readings: Readings, walks: Array) -> float:
     """Log of the largest, of all components, at the likeliest of ``walks`` (Q,) T a root year; without unit."""
     none = Shapes(np.zeros((len(readings.time), 0)), *(np.zeros(0, dtype=int) for _ in range(4)))
-    found = fits(readings, none, walks)
-    widths = np.log(np.diagonal(found.root, axis1=-2, axis2=-1)).sum(axis=-1)
-    return -float((widths + (found.z**2).sum(axis=-1) / 2).sum(axis=1).min())
+    fitted = fits(readings, none, walks)
+    widths = np.log(np.diagonal(fitted.root, axis1=-2, axis2=-1)).sum(axis=-1)
+    return -float((widths + (fitted.z**2).sum(axis=-1) / 2).sum(axis=1).min())
 
 
 def warmed(readings: Readings, walk: float, dof: Array, temperature: Array, level: float) -> Warmed:
@@ -167,17 +167,17 @@ def most_likely(readings: Readings, walk: float, dof: Array) -> Change | None:
     null = fits(readings, family, np.array([walk]))
     information, score = null.information[0], null.score[0]
     raw = np.einsum("nh,nh->h", family.columns, family.columns) / (readings.sigma.min() ** 2)
-    tells = (information > FAINT * np.maximum(raw, 1e-300)).all(axis=0)
-    if not tells.any():
+    visible = (information > FAINT * np.maximum(raw, 1e-300)).all(axis=0)
+    if not visible.any():
         return None
-    information = np.where(tells, information, np.inf)
+    information = np.where(visible, information, np.inf)
     squared = (score**2 / information).sum(axis=0)
     best = int(np.argmax(squared >= squared.max() * (1 - 1e-9)))
     shrunk = _shrunk(float(squared[best]), k, float(_freedom(null, readings, dof)[best]))
-    found = odds(mixture(null, readings.time, tells), null.z[0] * shrunk, readings.tails)
-    kind = _kind(found)
+    chances = odds(mixture(null, readings.time, visible), null.z[0] * shrunk, readings.tails)
+    kind = _kind(chances)
     likely = squared / 2 + np.log(np.maximum(family.share, 1e-300))
-    likely = np.where(tells & _alike(family.kind, kind), likely, -np.inf)
+    likely = np.where(visible & _alike(family.kind, kind), likely, -np.inf)
     best = int(np.argmax(likely >= likely.max() - 1e-9))
     return Change(
         kind=Kind(int(family.kind[best])),
@@ -185,16 +185,16 @@ def most_likely(readings: Readings, walk: float, dof: Array) -> Change | None:
         constant=float(family.constant[best]),
         size=score[:, best] / information[:, best],
         sigma=information[:, best] ** -0.5,
-        p_value=found.p_value,
+        p_value=chances.p_value,
         column=family.columns[:, best],
         wanders=kind is Kind.WALK,
     )
 
 
-def _kind(found: Odds) -> Kind:
+def _kind(likely: Odds) -> Kind:
     """The likeliest of a jump, a drift (of any sort) and a walk."""
-    drifts = np.logaddexp.reduce([found.of_kind[kind] for kind in DRIFTS])
-    chances = {Kind.JUMP: found.of_kind[Kind.JUMP], Kind.START: drifts, Kind.WALK: found.of_kind[Kind.WALK]}
+    drifts = np.logaddexp.reduce([likely.of_kind[kind] for kind in DRIFTS])
+    chances = {Kind.JUMP: likely.of_kind[Kind.JUMP], Kind.START: drifts, Kind.WALK: likely.of_kind[Kind.WALK]}
     return max(chances, key=lambda kind: chances[kind])
 
 
@@ -248,7 +248,7 @@ def centred(temperature: Array) -> Array:
     return np.where(known, temperature - temperature[known].mean(), 0.0) if known.any() else np.zeros(len(known))
 
 
-def tells_of_temperature(temperature: Array) -> bool:
+def shows_temperature(temperature: Array) -> bool:
     """Whether sessions at so many °C (n,), NaN where it is not known, can tell of a coefficient."""
     known = np.isfinite(temperature)
     return bool(known.sum() >= ENOUGH and temperature[known].std() >= WARMED)
@@ -256,12 +256,12 @@ def tells_of_temperature(temperature: Array) -> bool:
 
 def _warmth(readings: Readings, temperature: Array, rival: Change | None, level: float) -> Warmth | None:
     """The coefficient of temperature, where these sessions can tell of one."""
-    if not tells_of_temperature(temperature):
+    if not shows_temperature(temperature):
         return None
     column = centred(temperature)
-    found = fits(readings, alone(column))
-    score, information = found.score[..., 0], found.information[..., 0]
-    best = int(np.argmax((found.log_likelihood + score**2 / information / 2).sum(axis=1)))
+    fitted = fits(readings, alone(column))
+    score, information = fitted.score[..., 0], fitted.information[..., 0]
+    best = int(np.argmax((fitted.log_likelihood + score**2 / information / 2).sum(axis=1)))
     size, information = score[best] / information[best], information[best]
     squared = float((size**2 * information).sum())
     p = float(np.exp(-squared / 2)) if len(size) == 2 else 2 * float(ndtr(-np.sqrt(squared)))
@@ -271,8 +271,8 @@ def _warmth(readings: Readings, temperature: Array, rival: Change | None, level:
 
 def _explained(readings: Readings, column: Array) -> float:
     """Twice the log likelihood ratio of a column against noise alone."""
-    found = fits(readings, alone(column), np.zeros(1))
-    return float((found.score**2 / np.maximum(found.information, 1e-300)).sum())
+    fitted = fits(readings, alone(column), np.zeros(1))
+    return float((fitted.score**2 / np.maximum(fitted.information, 1e-300)).sum())
 
 
 def alone(column: Array) -> Shapes:

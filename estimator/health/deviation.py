@@ -20,12 +20,12 @@ class Deviation:
     vector: Array
     """(1,) for scale (relative), bias (m/s²; rad/s), quadratic (s²/m); (2,) for the axis, along the tangents of the
     reference axis, rad."""
-    own: Array
+    current: Array
     """(1, 1) or (2, 2), the share of this session in the covariance, unit of the vector squared."""
     origin: Array
     """(1, 1) or (2, 2), the share of the reference session, which all sessions judged against it have in common, unit
     of the vector squared."""
-    own_dof: float | None = None
+    current_dof: float | None = None
     """Degrees of freedom of ``own``; None when the noise is known."""
     origin_dof: float | None = None
     """The same of ``origin``."""
@@ -33,15 +33,15 @@ class Deviation:
     @property
     def dof(self) -> float | None:
         """Effective degrees of freedom of both together; None when the noise is known."""
-        if self.own_dof is None and self.origin_dof is None:
+        if self.current_dof is None and self.origin_dof is None:
             return None
-        own, origin = float(np.trace(self.own)), float(np.trace(self.origin))
-        return combined((own, self.own_dof), (origin, self.origin_dof))
+        current, origin = float(np.trace(self.current)), float(np.trace(self.origin))
+        return combined((current, self.current_dof), (origin, self.origin_dof))
 
     @property
     def covariance(self) -> Array:
         """(2, 2) for the axis, rad², otherwise (1, 1), SI or relative squared; of both sessions."""
-        return self.own + self.origin
+        return self.current + self.origin
 
     @property
     def is_finite(self) -> bool:
@@ -62,13 +62,13 @@ def deviation(current: SensorCalibration, reference: SensorCalibration, paramete
     if parameter == "scale":
         ratio = now.value / then.value
         sigmas = now.sigma / then.value, ratio * then.sigma / then.value
-        return replace(_scalar(ratio - 1, *sigmas), own_dof=now.dof, origin_dof=then.dof)
-    return replace(_scalar(now.value - then.value, now.sigma, then.sigma), own_dof=now.dof, origin_dof=then.dof)
+        return replace(_scalar(ratio - 1, *sigmas), current_dof=now.dof, origin_dof=then.dof)
+    return replace(_scalar(now.value - then.value, now.sigma, then.sigma), current_dof=now.dof, origin_dof=then.dof)
 
 
-def _scalar(change: float, own: float, origin: float) -> Deviation:
+def _scalar(change: float, current: float, origin: float) -> Deviation:
     """One number with one sigma of each session."""
-    return Deviation(np.array([change]), np.array([[own**2]]), np.array([[origin**2]]))
+    return Deviation(np.array([change]), np.array([[current**2]]), np.array([[origin**2]]))
 
 
 def _axis_deviation(current: SensorCalibration, reference: SensorCalibration) -> Deviation | None:
@@ -79,9 +79,9 @@ def _axis_deviation(current: SensorCalibration, reference: SensorCalibration) ->
     if current.axis is None or reference.axis is None:
         return None
     basis = reference.axis_tangents
-    own = in_frame(current.axis_covariance, current.axis_tangents, basis)
+    covariance = in_frame(current.axis_covariance, current.axis_tangents, basis)
     offset = axis_offset(current.axis, reference.axis, basis)
-    return Deviation(offset, own, reference.axis_covariance, current.axis_dof, reference.axis_dof)
+    return Deviation(offset, covariance, reference.axis_covariance, current.axis_dof, reference.axis_dof)
 
 
 def axis_offset(axis: Array, reference: Array, tangents: Array) -> Array:

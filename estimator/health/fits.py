@@ -93,15 +93,17 @@ class Fits:
         none = self.log_likelihood.sum(axis=1)
         ratios = [np.zeros((1, len(none)))]
         for kind in CHANGES:
-            weighed = self.log_ratios(kind) + np.log(self.family.share[self.of_kind(kind)])
-            ratios.append(np.logaddexp.reduce(weighed, axis=2) if weighed.shape[2] else np.zeros(weighed.shape[:2]))
+            log_weighted = self.log_ratios(kind) + np.log(self.family.share[self.of_kind(kind)])
+            ratios.append(
+                np.logaddexp.reduce(log_weighted, axis=2) if log_weighted.shape[2] else np.zeros(log_weighted.shape[:2])
+            )
         return np.asarray((none + np.concatenate(ratios)).T)
 
     def log_ratios(self, kind: Kind) -> Array:
         """(S, Q, H') log Bayes factor of the shapes of a kind at each of its sizes against no change; no unit."""
-        own, s2 = self.of_kind(kind), PART_SIZES[kind == PART_KINDS][:, None, None, None] ** 2
-        spread = s2 * self.information[..., own]
-        return 0.5 * np.asarray(s2 * self.score[..., own] ** 2 / (1 + spread) - np.log1p(spread)).sum(axis=2)
+        members, s2 = self.of_kind(kind), PART_SIZES[kind == PART_KINDS][:, None, None, None] ** 2
+        spread = s2 * self.information[..., members]
+        return 0.5 * np.asarray(s2 * self.score[..., members] ** 2 / (1 + spread) - np.log1p(spread)).sum(axis=2)
 
     def of_kind(self, kind: Kind) -> Array:
         """(H',) places of the shapes of a kind."""

@@ -79,12 +79,12 @@ def earliest(draws: Draws, stays: Array, *, drifts: bool) -> float:
     with a share below `EARLY` cannot break the claim.
     """
     level = EARLY if drifts else WHICHEVER
-    found = [float(reach(passed(draws.weight, stays)[None], EARLY)[0])]
+    times = [float(reach(passed(draws.weight, stays)[None], EARLY)[0])]
     for kinds in ALIKE:
-        own = draws.weight * np.isin(draws.kind, kinds)
-        if own.sum() >= EARLY:
-            found.append(float(reach(passed(own / own.sum(), stays)[None], level)[0]))
-    return min(found)
+        weight = draws.weight * np.isin(draws.kind, kinds)
+        if weight.sum() >= EARLY:
+            times.append(float(reach(passed(weight / weight.sum(), stays)[None], level)[0]))
+    return min(times)
 
 
 def staying(draws: Draws, prior: Prior, swing: Array | float, rng: np.random.Generator) -> Array:
@@ -103,7 +103,7 @@ def staying(draws: Draws, prior: Prior, swing: Array | float, rng: np.random.Gen
     within[walks, 1:] = -np.expm1(-2 * inside[:, :-1] * inside[:, 1:] / spread)
     within = np.cumprod(within, axis=1)
     k, quiet, near = draws.level.shape[1], np.isin(draws.kind, STILL), np.minimum(length, 1.0)
-    within[quiet] *= np.exp(-_hazard(near[quiet], prior.rate, k) * prior.left(draws.age, AHEAD))
+    within[quiet] *= np.exp(-_hazard(near[quiet], prior.rate, k) * prior.remaining_rate(draws.age, AHEAD))
     within[~quiet] *= np.exp(-_hazard(near[~quiet], prior.again, k))
     return np.asarray(within)
 
@@ -182,14 +182,14 @@ class Future:
     level: Array
     """(N, k, h) T."""
 
-    def quantiles(self, levels: tuple[float, ...], way: Array) -> Array:
-        """(len(levels), h) of the level along a direction ``way`` (k,), T."""
-        found = []
-        for column in np.einsum("nkh,k->hn", self.level, way):
+    def quantiles(self, levels: tuple[float, ...], direction: Array) -> Array:
+        """(len(levels), h) of the level along a ``direction`` (k,), T."""
+        columns = []
+        for column in np.einsum("nkh,k->hn", self.level, direction):
             order = np.argsort(column)
             below = np.cumsum(self.weight[order]) - self.weight[order] / 2
-            found.append(np.interp(levels, below, column[order]))
-        return np.array(found).T
+            columns.append(np.interp(levels, below, column[order]))
+        return np.array(columns).T
 
     def below(self, value: Array, sigma: Array) -> Array:
         """(h,) probability of a reading of the first component below ``value`` (h,) with its own ``sigma`` (h,), T."""
@@ -200,19 +200,19 @@ def future(draws: Draws, prior: Prior, ahead: Array, rng: np.random.Generator) -
     """Levels at increasing years ahead (h,), with jumps and drifts that the type lets expect."""
     level, quiet, again = followed(draws, ahead, rng), np.isin(draws.kind, STILL), prior.again
     last = float(ahead[-1])
-    effective = last * float(prior.left(draws.age, ahead[-1:])[0])
+    effective = last * float(prior.remaining_rate(draws.age, ahead[-1:])[0])
     for part in map(int, np.flatnonzero(prior.rate)):
-        rows, expected = _struck(quiet, prior.rate[part], effective, rng)
+        rows, expected = _next_jumps(quiet, prior.rate[part], effective, rng)
         _move(level, rows, part, (prior.comes(draws.age, expected), ahead), rng)
-        rows, come = _struck(~quiet, again[part], last, rng)
+        rows, come = _next_jumps(~quiet, again[part], last, rng)
         _move(level, rows, part, (come, ahead), rng)
     return Future(draws.weight, level)
 
 
-def _struck(own: Array, rate: float, years: float, rng: np.random.Generator) -> tuple[Array, Array]:
-    """(m,) places among ``own`` (N,) bool in which an event comes within years, and (m,) years until it does."""
+def _next_jumps(per_draw: Array, rate: float, years: float, rng: np.random.Generator) -> tuple[Array, Array]:
+    """(m,) places among ``per_draw`` (N,) bool in which an event comes within years, and (m,) years until it does."""
     chance = -np.expm1(-rate * years)
-    rows = np.flatnonzero(own)
+    rows = np.flatnonzero(per_draw)
     rows = rows[rng.random(len(rows)) < chance]
     return rows, -np.log1p(-chance * rng.random(len(rows))) / rate
 

@@ -60,13 +60,13 @@ def fits(changes: Changes, sets: Sequence[Sequence[int]]) -> Fits:
     """`fit` for each of several sets; those of one size are solved as one stack."""
     chi2, gain = np.zeros(len(sets)), np.zeros((len(sets), changes.design.shape[1], len(changes.y)))
     covariance = changes.covariance
-    for size in {len(one) for one in sets}:
-        own = [i for i, one in enumerate(sets) if len(one) == size]
-        at = changes.where([list(sets[i]) for i in own])
+    for size in {len(members) for members in sets}:
+        places = [i for i, members in enumerate(sets) if len(members) == size]
+        at = changes.where([list(sets[i]) for i in places])
         g, w = _solved(changes.design[at], covariance[at[:, :, None], at[:, None, :]])
         y = changes.y[at]
-        chi2[own] = np.einsum("sp,spq,sq->s", y, w, y)
-        gain[np.array(own)[:, None], :, at] = np.swapaxes(g, -1, -2)
+        chi2[places] = np.einsum("sp,spq,sq->s", y, w, y)
+        gain[np.array(places)[:, None], :, at] = np.swapaxes(g, -1, -2)
     return Fits(gain, chi2)
 
 
@@ -81,16 +81,16 @@ def _solved(a: Array, c: Array) -> tuple[Array, Array]:
 
 def moved(changes: Changes) -> list[int] | None:
     """The sensors that moved on their own; None when that cannot be told."""
-    m, out = len(changes.names), list[int]()
+    m, excluded = len(changes.names), list[int]()
     limit = _limit(changes)
-    while is_majority(changes, out):
-        inside = [i for i in range(m) if i not in out]
-        found = fit(changes, inside)
-        evidence = _evidence(changes, found, inside)
+    while is_majority(changes, excluded):
+        inside = [i for i in range(m) if i not in excluded]
+        fitted = fit(changes, inside)
+        evidence = _evidence(changes, fitted, inside)
         if evidence.max() <= limit:
-            suspects = out + _rivals(changes, out, found.chi2)
+            suspects = excluded + _rivals(changes, excluded, fitted.chi2)
             return suspects if is_majority(changes, suspects) else None
-        out = [*out, inside[int(np.argmax(evidence))]]
+        excluded = [*excluded, inside[int(np.argmax(evidence))]]
     return None
 
 
@@ -105,27 +105,27 @@ def chi2_limit(level: float, rows: int, dof: float | None) -> float:
     return critical_chi2(level, rows, known_to(dof))
 
 
-def is_majority(changes: Changes, out: list[int]) -> bool:
+def is_majority(changes: Changes, excluded: list[int]) -> bool:
     """Whether the sensors that remain say what the block did: more than half, and enough to agree on it."""
     m = len(changes.names)
-    return 2 * (m - len(out)) > m and m - len(out) >= FEWEST_AGREEING[changes.rows]
+    return 2 * (m - len(excluded)) > m and m - len(excluded) >= FEWEST_AGREEING[changes.rows]
 
 
-def _evidence(changes: Changes, found: Fit, inside: list[int]) -> Array:
+def _evidence(changes: Changes, fitted: Fit, inside: list[int]) -> Array:
     """(n,) χ²: twice what the log likelihood gains when each of n sensors is left out, dimensionless."""
     at = changes.where([[i] for i in inside])
-    pull = (found.weight @ changes.y)[at][..., None]
-    gained = np.swapaxes(pull, -1, -2) @ np.linalg.solve(found.weight[at[:, :, None], at[:, None, :]], pull)
+    pull = (fitted.weight @ changes.y)[at][..., None]
+    gained = np.swapaxes(pull, -1, -2) @ np.linalg.solve(fitted.weight[at[:, :, None], at[:, None, :]], pull)
     return np.asarray(gained[:, 0, 0])
 
 
-def _rivals(changes: Changes, out: list[int], chi2: float) -> list[int]:
+def _rivals(changes: Changes, excluded: list[int], chi2: float) -> list[int]:
     """The sensors that could be left out instead of one of these and fit nearly as well."""
-    inside = [i for i in range(len(changes.names)) if i not in out]
+    inside = [i for i in range(len(changes.names)) if i not in excluded]
     near = RIVAL * chi2_limit(LEVEL, changes.rows, changes.dof) / chi2_limit(LEVEL, changes.rows, None)
 
-    def fits(kept: int, gone: int) -> bool:
-        swapped = sorted([*(i for i in inside if i != kept), gone])
+    def fits(suspect: int, gone: int) -> bool:
+        swapped = sorted([*(i for i in inside if i != suspect), gone])
         return fit(changes, swapped).chi2 - chi2 < near
 
-    return [kept for kept in inside if any(fits(kept, gone) for gone in out)]
+    return [suspect for suspect in inside if any(fits(suspect, gone) for gone in excluded)]

@@ -111,20 +111,20 @@ class Mixture:
         return z
 
 
-def mixture(null: Fits, time: Array, tells: Array) -> Mixture:
-    """Of the fits at the one walk of the null; ``tells`` (H,) bool: shapes that leave a trace."""
+def mixture(null: Fits, time: Array, visible: Array) -> Mixture:
+    """Of the fits at the one walk of the null; ``visible`` (H,) bool: shapes that leave a trace."""
     shape, kind, share, size2 = [], [], [], []
     family, information = null.family, null.information[0]
     for place in np.flatnonzero(np.isin(PART_KINDS, list(SHARES))):
-        own_kind = PART_KINDS[place] == PART_KINDS
-        own = np.flatnonzero((family.kind == PART_KINDS[place]) & tells)
-        sizes = int(np.count_nonzero(own_kind))
-        shape.append(own)
-        kind.append(np.full(len(own), PART_KINDS[place]))
-        share.append(SHARES[Kind(int(PART_KINDS[place]))] * family.share[own] / sizes)
-        size2.append(np.full(len(own), PART_SIZES[place] ** 2))
+        same_kind = PART_KINDS[place] == PART_KINDS
+        members = np.flatnonzero((family.kind == PART_KINDS[place]) & visible)
+        sizes = int(np.count_nonzero(same_kind))
+        shape.append(members)
+        kind.append(np.full(len(members), PART_KINDS[place]))
+        share.append(SHARES[Kind(int(PART_KINDS[place]))] * family.share[members] / sizes)
+        size2.append(np.full(len(members), PART_SIZES[place] ** 2))
     places = np.concatenate(shape)
-    length = np.sqrt(np.where(tells, information, np.inf))
+    length = np.sqrt(np.where(visible, information, np.inf))
     values, vectors = _modes(null, time)
     return Mixture(
         unit=null.shapes[0] / length[:, None, :],

@@ -99,8 +99,8 @@ def _verdict(case: _Case, k: float) -> str:
     if sight.size is None or sight.sigma is None or sight.detectable is None:
         return UNDECIDABLE
     if case.is_candidate:
-        own = state(abs(sight.size), k * sight.sigma, tolerance, 0.0)
-        return own if result.isolated or own != PASS else UNDECIDABLE
+        verdict = state(abs(sight.size), k * sight.sigma, tolerance, 0.0)
+        return verdict if result.isolated or verdict != PASS else UNDECIDABLE
     is_settled = not result.detected or result.isolated is not None
     return PASS if is_settled and sight.detectable <= tolerance else UNDECIDABLE
 

@@ -89,7 +89,7 @@ class Prior:
         """(P,) rates per year of the next change of one that has changed; 0 elsewhere."""
         return np.minimum(self.rate, general_prior().rate)
 
-    def left(self, span: float, ahead: Array) -> Array:
+    def remaining_rate(self, span: float, ahead: Array) -> Array:
         """(h,) mean rate within years ahead (h,) of one that was quiet for a span, years; by the rate of a new one."""
         ahead = np.maximum(ahead, 1e-6)
         return np.asarray(self._fall * np.log1p(ahead / (self._fall + span)) / ahead)
@@ -137,29 +137,29 @@ def learn(histories: Sequence[Evidence]) -> Prior:
     span = np.array([h.span for h in histories])
     log = np.stack([h.log_evidence for h in histories])
     likelihood = np.exp(log - log.max(axis=(1, 2), keepdims=True))
-    found = general
+    prior = general
     for _ in range(ROUNDS):
-        found = _improved(found, general, likelihood, span)
-    return replace(found, tails=_weighed(general.tails, np.stack([h.log_tails for h in histories])))
+        prior = _improved(prior, general, likelihood, span)
+    return replace(prior, tails=_posterior_chances(general.tails, np.stack([h.log_tails for h in histories])))
 
 
-def _weighed(usual: Array, logs: Array) -> Array:
+def _posterior_chances(usual: Array, logs: Array) -> Array:
     """(4,) chance of each law of errors, from those of M histories (M, 4)."""
     log = np.log(usual) + logs.sum(axis=0)
     weight = np.exp(log - log.max())
     return np.asarray(weight / weight.sum())
 
 
-def _improved(found: Prior, general: Prior, likelihood: Array, span: Array) -> Prior:
+def _improved(prior: Prior, general: Prior, likelihood: Array, span: Array) -> Prior:
     """One round; likelihood (M, Q, P) and span (M,) years."""
-    joint = likelihood * found.joint(span)
+    joint = likelihood * prior.joint(span)
     joint = joint / joint.sum(axis=(1, 2), keepdims=True)
     parts, m = joint.sum(axis=(0, 1)), len(span)
-    walk, moving = (joint[..., own].sum(axis=(0, 2)) + HISTORIES * general.walk for own in (QUIET, ~QUIET))
+    walk, moving = (joint[..., is_quiet].sum(axis=(0, 2)) + HISTORIES * general.walk for is_quiet in (QUIET, ~QUIET))
     return Prior(
         walk=walk / walk.sum(),
         moving=moving / moving.sum(),
-        rate=np.where(COMES, (parts + YEARS * general.rate) / (_exposed(found, joint, span) + YEARS), 0.0),
+        rate=np.where(COMES, (parts + YEARS * general.rate) / (_exposed(prior, joint, span) + YEARS), 0.0),
         chance=_ends_shared(np.where(STARTS, (parts + HISTORIES * general.chance) / (m + HISTORIES), 0.0), parts),
         histories=m,
     )
@@ -169,18 +169,18 @@ def _ends_shared(chance: Array, parts: Array) -> Array:
     """(P,) chances per history, in which aging that goes on and aging that ends are as common as (P,) counted histories
     and the prior have it."""
     kinds = [PART_KINDS == Kind.AGING, PART_KINDS == Kind.SETTLING]
-    counts = np.array([parts[own].sum() for own in kinds]) + ENDS / 2
-    total = sum(chance[own].sum() for own in kinds)
-    for own, share in zip(kinds, counts / counts.sum(), strict=True):
-        chance[own] *= share * total / chance[own].sum()
+    expected = np.array([parts[members].sum() for members in kinds]) + ENDS / 2
+    total = sum(chance[members].sum() for members in kinds)
+    for members, share in zip(kinds, expected / expected.sum(), strict=True):
+        chance[members] *= share * total / chance[members].sum()
     return chance
 
 
-def _exposed(found: Prior, joint: Array, span: Array) -> float:
+def _exposed(prior: Prior, joint: Array, span: Array) -> float:
     """Years at the rate of a new one: of the quiet by what is left of their frailty, of those to which something came
     until then; those that do something from their start tell nothing of what comes."""
-    came, still = (joint[:, :, own].sum(axis=(1, 2)) for own in (COMES, PART_KINDS == Kind.NONE))
-    total, half = float(found.rate.sum()), span / 2
+    came, still = (joint[:, :, parts].sum(axis=(1, 2)) for parts in (COMES, PART_KINDS == Kind.NONE))
+    total, half = float(prior.rate.sum()), span / 2
     quiet = span * FRAILTY / (FRAILTY + total * span)
     struck = half * (1 + FRAILTY) / (FRAILTY + total * half)
     return float((still * quiet + came * struck).sum())

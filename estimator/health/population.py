@@ -37,7 +37,7 @@ def spread(values: Array, sigmas: Array) -> tuple[float, float]:
     return centre, float(brentq(excess, 0.0, widest * 1.01))
 
 
-def standing_out(z: Sequence[float], level: float = 0.01, among: int = 0) -> tuple[bool, ...]:
+def outliers(z: Sequence[float], level: float = 0.01, among: int = 0) -> tuple[bool, ...]:
     """Which of n members are further out than the furthest of n is with probability ``level`` (Šidák).
 
     ``z`` may be those alone that are furthest out of ``among`` members.
@@ -56,13 +56,13 @@ def group_standing(rates: Sequence[tuple[float, float]], groups: Sequence[str]) 
     """
     values, sigmas = np.array(rates, dtype=float).T
     centre, tau = spread(values, sigmas)
-    found = {}
+    standings = {}
     for name in dict.fromkeys(groups):
-        own = np.array([group == name for group in groups])
-        if name and own.sum() > 1:
-            variance = float((tau**2 + sigmas[own] ** 2).sum()) / float(own.sum()) ** 2
-            found[name] = float((values[own].mean() - centre) / np.sqrt(variance + 1e-300))
-    return found
+        members = np.array([group == name for group in groups])
+        if name and members.sum() > 1:
+            variance = float((tau**2 + sigmas[members] ** 2).sum()) / float(members.sum()) ** 2
+            standings[name] = float((values[members].mean() - centre) / np.sqrt(variance + 1e-300))
+    return standings
 
 
 def standing(rates: Sequence[tuple[float, float]]) -> tuple[float, ...]:

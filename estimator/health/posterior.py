@@ -85,13 +85,13 @@ class Hypotheses:
     """(G,) place of the shape; 0 without a change."""
 
 
-def weighed(found: Fits, prior: Prior) -> Hypotheses:
+def hypotheses_of(fitted: Fits, prior: Prior) -> Hypotheses:
     """All hypotheses, by prior times likelihood."""
-    expected = np.log(np.maximum(prior.joint(found.span), 1e-300)) + found.log_likelihood.sum(axis=1)[:, None]
+    expected = np.log(np.maximum(prior.joint(fitted.span), 1e-300)) + fitted.log_likelihood.sum(axis=1)[:, None]
     logs, parts, places = [expected[:, :1]], [np.zeros(1, dtype=int)], [np.zeros(1, dtype=int)]
     for kind in CHANGES:
-        shape, own = found.of_kind(kind), np.flatnonzero(kind == PART_KINDS)
-        for p, ratios in zip(own, found.log_ratios(kind) + np.log(found.family.share[shape]), strict=True):
+        shape, members = fitted.of_kind(kind), np.flatnonzero(kind == PART_KINDS)
+        for p, ratios in zip(members, fitted.log_ratios(kind) + np.log(fitted.family.share[shape]), strict=True):
             logs.append(expected[:, p, None] + ratios)
             parts.append(np.full(len(shape), p))
             places.append(shape)
@@ -107,39 +107,42 @@ def weighed(found: Fits, prior: Prior) -> Hypotheses:
     )
 
 
-def draw(ways: Sequence[tuple[Readings, float]], family: Shapes, prior: Prior, rng: np.random.Generator) -> Draws:
+def draw(
+    alternatives: Sequence[tuple[Readings, float]], family: Shapes, prior: Prior, rng: np.random.Generator
+) -> Draws:
     """Draws of what the readings leave open.
 
     Parameters
     ----------
-    ways : of taking the same readings, with other columns that act, and the log of what speaks for each before the rest
-        of the history is looked at; at least one.
+    alternatives : ways of taking the same readings, with other columns that act, each with its log prior odds; at least
+        one.
     family : shapes at the readings' dates.
     prior : of the type.
     """
-    fitted = [fits(readings, family) for readings, _ in ways]
-    every = [weighed(found, prior) for found in fitted]
-    logs = np.array([all_of.log_evidence + log for all_of, (_, log) in zip(every, ways, strict=True)])
+    fitted = [fits(readings, family) for readings, _ in alternatives]
+    every = [hypotheses_of(candidate, prior) for candidate in fitted]
+    logs = np.array([all_of.log_evidence + log for all_of, (_, log) in zip(every, alternatives, strict=True)])
     share = np.exp(logs - np.logaddexp.reduce(logs))
-    kept = [int(i) for i in np.flatnonzero(share > FAINT)]
-    drawn = [_drawn(fitted[i], every[i], ways[i][0].value, rng) for i in kept]
+    likely = [int(i) for i in np.flatnonzero(share > FAINT)]
+    drawn = [_drawn(fitted[i], every[i], alternatives[i][0].value, rng) for i in likely]
     if len(drawn) == 1:
         return drawn[0]
     return Draws(
-        weight=np.concatenate([one.weight * share[i] for one, i in zip(drawn, kept, strict=True)]) / share[kept].sum(),
+        weight=np.concatenate([sample.weight * share[i] for sample, i in zip(drawn, likely, strict=True)])
+        / share[likely].sum(),
         age=drawn[0].age,
-        **{name: np.concatenate([getattr(one, name) for one in drawn]) for name in EACH},
+        **{name: np.concatenate([getattr(sample, name) for sample in drawn]) for name in EACH},
     )
 
 
-def _drawn(found: Fits, all_of: Hypotheses, value: Array, rng: np.random.Generator) -> Draws:
+def _drawn(fitted: Fits, all_of: Hypotheses, value: Array, rng: np.random.Generator) -> Draws:
     """Of readings (n, k) taken in one way."""
-    family = found.family
+    family = fitted.family
     last = np.where(family.kind == Kind.WARMTH, 0.0, family.columns[-1])
     picked = _picked(all_of.weight, rng)
     weight = np.sqrt(all_of.weight[picked])
     q, part, shape = all_of.walk[picked], all_of.part[picked], all_of.shape[picked]
-    size, level = _sizes_and_levels(found, value, last, (q, part, shape), rng)
+    size, level = _sizes_and_levels(fitted, value, last, (q, part, shape), rng)
     kind = PART_KINDS[part][:, None]
     return Draws(
         weight=weight / weight.sum(),
@@ -149,7 +152,7 @@ def _drawn(found: Fits, all_of: Hypotheses, value: Array, rng: np.random.Generat
         constant=family.constant[shape],
         walk=WALKS[q],
         kind=PART_KINDS[part],
-        age=found.span,
+        age=fitted.span,
         slope=np.where(kind == Kind.WARMTH, size, 0.0),
     )
 
@@ -162,17 +165,17 @@ def _picked(weight: Array, rng: np.random.Generator) -> Array:
 
 
 def _sizes_and_levels(
-    found: Fits, value: Array, last: Array, of: tuple[Array, Array, Array], rng: np.random.Generator
+    fitted: Fits, value: Array, last: Array, of: tuple[Array, Array, Array], rng: np.random.Generator
 ) -> tuple[Array, Array]:
     """(N, k) sizes and (N, k) levels of the drawn hypotheses ``of``: walk, part and shape, each (N,)."""
     q, part, shape = of
     k = value.shape[1]
-    known = np.einsum("qkn,nk->qk", found.gain, value)
-    moved = last - found.gain @ found.family.columns
+    known = np.einsum("qkn,nk->qk", fitted.gain, value)
+    moved = last - fitted.gain @ fitted.family.columns
     has = (part > 0)[:, None]
     s2 = np.where(has, PART_SIZES[part][:, None] ** 2, 0.0)
-    information, score = found.information[q, :, shape], found.score[q, :, shape]
+    information, score = fitted.information[q, :, shape], fitted.score[q, :, shape]
     spread = s2 / (1 + s2 * information)
     size = spread * score + np.sqrt(spread) * rng.standard_normal((len(q), k))
     level = known[q] + size * moved[q, :, shape]
-    return size, level + np.sqrt(found.variance[q]) * rng.standard_normal((len(q), k))
+    return size, level + np.sqrt(fitted.variance[q]) * rng.standard_normal((len(q), k))

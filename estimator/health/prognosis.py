@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.health.detection import LEVEL, Change, Detected, Warmth, centred, detect, tells_of_temperature, warmed
+from estimator.health.detection import LEVEL, Change, Detected, Warmth, centred, detect, shows_temperature, warmed
 from estimator.health.fits import PART_KINDS, PART_SIZES, Readings, fits
 from estimator.health.forecast import AHEAD, MEDIAN, Future, earliest, future, passed, reach, staying, together
 from estimator.health.pooled import Evidence, Prior
@@ -22,7 +22,7 @@ UNLIKELY = 30.0
 """Log odds against what is ruled out."""
 
 
-def ways(detected: Detected, prior: Prior) -> list[tuple[Readings, float]]:
+def alternatives(detected: Detected, prior: Prior) -> list[tuple[Readings, float]]:
     """The readings as they are, and with the jumps that are over acting, each with the log of what speaks for it.
 
     A walk shows jumps too, and what is left between them would be taken for a drift. Jumps act with any size a in the
@@ -30,11 +30,11 @@ def ways(detected: Detected, prior: Prior) -> list[tuple[Readings, float]]:
     """
     if not detected.over:
         return [(detected.readings, 0.0)]
-    time, own, log = detected.readings.time, PART_KINDS == Kind.JUMP, 0.0
-    size = PART_SIZES[own]
+    time, is_jump, log = detected.readings.time, PART_KINDS == Kind.JUMP, 0.0
+    size = PART_SIZES[is_jump]
     for change in detected.over:
         likely = -(change.size**2).sum() / (2 * size**2) - len(change.size) * np.log(size)
-        expected = prior.rate[own] * (time[change.gap] - time[change.gap - 1])
+        expected = prior.rate[is_jump] * (time[change.gap] - time[change.gap - 1])
         log += float(np.logaddexp.reduce(np.log(np.maximum(expected, 1e-300)) + likely))
     return [(detected.readings, 0.0), (detected.without_jumps(), log)]
 
@@ -52,15 +52,15 @@ def swing(warmth: Warmth | None, draws: Draws, temperature: Array) -> Array:
     return np.asarray(np.linalg.norm(draws.slope, axis=1, keepdims=True) * away)
 
 
-def where_found(logs: Array, warmth: Warmth | None) -> Array:
+def given_temperature(logs: Array, warmth: Warmth | None) -> Array:
     """(Q, P) log evidence of a history in which the temperature, if it was found, acts whatever else does: nothing else
     is then temperature alone, of each size by how likely the coefficient is under its law."""
     if warmth is None or not warmth.is_found:
         return logs
-    own, logs = PART_KINDS == Kind.WARMTH, logs.copy()
-    spread = PART_SIZES[own, None] ** 2 + warmth.sigma**2
+    is_warmth, logs = PART_KINDS == Kind.WARMTH, logs.copy()
+    spread = PART_SIZES[is_warmth, None] ** 2 + warmth.sigma**2
     alike = -0.5 * (np.log(spread) + warmth.coefficient**2 / spread).sum(axis=1)
-    logs[:, own] = logs[:, :1] + alike - alike.max()
+    logs[:, is_warmth] = logs[:, :1] + alike - alike.max()
     logs[:, 0] -= UNLIKELY
     return logs
 
@@ -142,20 +142,20 @@ class Prognosis:
 
     def chances(self, tracks: Sequence[Track]) -> Array:
         """(B, h) of every one of the tracks that it was made of, 0 where its level is not known well enough."""
-        found = _chances(tracks, self.outlooks)
-        return np.where([[outlook.is_known] for outlook in self.outlooks], found, 0.0)
+        chances = _chances(tracks, self.outlooks)
+        return np.where([[outlook.is_known] for outlook in self.outlooks], chances, 0.0)
 
 
 def evidence(track: Track) -> Evidence:
     """What a track tells of its type, whatever else is known of the type."""
     readings, (dof, temperature) = _readings(track), _conditions(track)
     warmth = None
-    if tells_of_temperature(temperature):
+    if shows_temperature(temperature):
         start = warmed(readings, 0.0, dof, temperature, LEVEL)
         readings, warmth = start.readings, start.warmth
-    found = fits(readings, courses(readings.time, felt(warmth, temperature)))
-    logs = found.log_evidence()
-    return Evidence(found.span, where_found(logs, warmth), log_tails(readings, found.family, logs))
+    fitted = fits(readings, courses(readings.time, felt(warmth, temperature)))
+    logs = fitted.log_evidence()
+    return Evidence(fitted.span, given_temperature(logs, warmth), log_tails(readings, fitted.family, logs))
 
 
 def prognosis(tracks: Sequence[Track], priors: Sequence[Prior], ahead: Array) -> Prognosis:
@@ -207,12 +207,12 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
     dof, temperature = _conditions(track)
     detected = detect(readings, prior.usual_walk, dof, temperature, level)
     family = courses(readings.time, felt(detected.warmth, temperature))
-    draws = draw(ways(detected, prior), family, prior, rng)
+    draws = draw(alternatives(detected, prior), family, prior, rng)
     stays = staying(draws, prior, swing(detected.warmth, draws, temperature), rng)
     chance = passed(draws.weight, stays)
-    way = direction(track)
-    middle, sigma = _moments(draws, way)
-    rate, rate_sigma = _rate(draws, way)
+    along = direction(track)
+    middle, sigma = _moments(draws, along)
+    rate, rate_sigma = _rate(draws, along)
     skipped = max(len(track.time) - RECENT, 0)
     return Outlook(
         level=middle * track.tolerance,
@@ -226,7 +226,7 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
         reach_50=_median(chance),
         reach_90=earliest(draws, stays, drifts=any(change.kind in DRIFTS for change in detected.changes)),
         is_known=sigma < KNOWN,
-        direction=way,
+        direction=along,
         fan=future(draws, prior, ahead, rng),
     )
 
@@ -238,17 +238,17 @@ def _median(chance: Array) -> float:
     return float(reach(chance[None], now + MEDIAN * (1 - now))[0]) if now < MEDIAN else 0.0
 
 
-def _moments(draws: Draws, way: Array) -> tuple[float, float]:
+def _moments(draws: Draws, unit: Array) -> tuple[float, float]:
     """Mean and one sigma of the level along a direction, T."""
-    along = draws.level @ way
+    along = draws.level @ unit
     middle = float(draws.mean(along))
     return middle, float(np.sqrt(draws.mean((along - middle) ** 2)))
 
 
-def _rate(draws: Draws, way: Array) -> tuple[float, float]:
+def _rate(draws: Draws, along: Array) -> tuple[float, float]:
     """Drift in force along a direction with one sigma, T a year, over all that the history may be: few sessions after a
     break leave it to what the type does."""
-    rates = (draws.rate + draws.aging * draws.slowed()[:, None]) @ way
+    rates = (draws.rate + draws.aging * draws.slowed()[:, None]) @ along
     middle = float(draws.mean(rates))
     return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
 

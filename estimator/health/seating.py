@@ -146,16 +146,16 @@ def _settled(groups: Sequence[Units], columns: Sequence[Array], stand_of: Array,
     return _at(groups, columns, stand_of, scatter)
 
 
-def _alikeness(found: Seating) -> float:
+def _alikeness(seating: Seating) -> float:
     """ν, from units that are all taken to be seated alike on a stand."""
-    sums = _sums(found)[0]
-    dof = freedoms(found)
+    sums = _sums(seating)[0]
+    dof = freedoms(seating)
     some = (dof >= 1) & (sums.square > 0) & (sums.trace > 0)
     if some.sum() < FEWEST_CELLS:
         return LEAST_ALIKE
     half = dof[some] / 2
     spread = np.log(sums.square[some] / sums.trace[some]) - digamma(half) + np.log(half)
-    stand = found.stand_of[some]
+    stand = seating.stand_of[some]
     count = np.maximum(np.bincount(stand), 1)
     rest = spread - (np.bincount(stand, weights=spread) / count)[stand]
     free = max(len(rest) - len(np.unique(stand)), 1)
@@ -166,15 +166,15 @@ def _alikeness(found: Seating) -> float:
     return float(brentq(lambda nu: float(polygamma(1, nu / 2)) - excess, LEAST_ALIKE, MOST_ALIKE))
 
 
-def freedoms(found: Seating) -> Array:
+def freedoms(seating: Seating) -> Array:
     """(c,) degrees of freedom that the sessions of each unit on each stand give its τ²."""
-    cells = len(found.stand_of)
+    cells = len(seating.stand_of)
     known = np.zeros(cells)
-    for part in found.parts:
+    for part in seating.parts:
         there = part.units.there
-        own = ((part.precision**2).sum(axis=(2, 4)) * part.units.same).sum(axis=2)
-        known += np.bincount(part.units.cell[there], own[there], cells)
-    return found.scatter.cell**2 * known
+        energy = ((part.precision**2).sum(axis=(2, 4)) * part.units.same).sum(axis=2)
+        known += np.bincount(part.units.cell[there], energy[there], cells)
+    return seating.scatter.cell**2 * known
 
 
 def _flat(scatter: Scatter) -> tuple[Array, Array]:
@@ -184,8 +184,8 @@ def _flat(scatter: Scatter) -> tuple[Array, Array]:
 
 def _typical(groups: Sequence[Units]) -> float:
     """The sessions' own variance, per component."""
-    own = [np.diagonal(g.noise[g.there], axis1=1, axis2=2) for g in groups]
-    return float(np.median(np.concatenate(own)))
+    diagonals = [np.diagonal(g.noise[g.there], axis1=1, axis2=2) for g in groups]
+    return float(np.median(np.concatenate(diagonals)))
 
 
 def _start(groups: Sequence[Units], stand_of: Array) -> Scatter:
@@ -221,10 +221,10 @@ def _at(groups: Sequence[Units], columns: Sequence[Array], stand_of: Array, scat
 def _precision(g: Units, scatter: Scatter) -> Array:
     """(u, n, k, n, k) P, the inverse of a covariance."""
     u, n, k = g.value.shape
-    one = np.eye(k)
-    own = g.noise + np.where(g.there, scatter.cell[g.cell], 0.0)[..., None, None] * one
-    v = (g.same * scatter.fixed[g.stand][:, :, None])[:, :, None, :, None] * one[:, None, :]
-    v[:, np.arange(n), :, np.arange(n), :] += np.swapaxes(own, 0, 1)
+    identity = np.eye(k)
+    noise = g.noise + np.where(g.there, scatter.cell[g.cell], 0.0)[..., None, None] * identity
+    v = (g.same * scatter.fixed[g.stand][:, :, None])[:, :, None, :, None] * identity[:, None, :]
+    v[:, np.arange(n), :, np.arange(n), :] += np.swapaxes(noise, 0, 1)
     w = np.linalg.inv(v.reshape(u, n * k, n * k)).reshape(u, n, k, n, k)
     wx = np.einsum("uiajb,uj->uiab", w, g.there.astype(float))
     mean = np.linalg.inv(np.einsum("uiab,ui->uab", wx, g.there.astype(float)))
@@ -240,15 +240,15 @@ class _Sums:
     square: Array
 
 
-def _step(found: Seating, least: float) -> Scatter:
+def _step(seating: Seating, least: float) -> Scatter:
     """One step of all variances."""
-    cell, fixed = _sums(found)
-    old = found.scatter
-    typical = old.stand[found.stand_of]
+    cell, fixed = _sums(seating)
+    old = seating.scatter
+    typical = old.stand[seating.stand_of]
     tau = _longer(old.cell, _root(old.cell, cell, old.alike, typical), least)
     pool = float(np.exp(np.mean(np.log(old.fixed))))
     omega = _longer(old.fixed, _root(old.fixed, fixed, STAND_PRIOR, np.full_like(old.fixed, pool)), least)
-    return Scatter(tau, _stands(tau, found.stand_of, old), omega, old.alike)
+    return Scatter(tau, _stands(tau, seating.stand_of, old), omega, old.alike)
 
 
 def _root(theta: Array, sums: _Sums, prior: float, typical: Array) -> Array:
@@ -271,26 +271,26 @@ def _stands(tau: Array, stand_of: Array, old: Scatter) -> Array:
     return np.asarray((half + np.sqrt(half**2 + inverse * STAND_PRIOR * pool)) / inverse)
 
 
-def _sums(found: Seating) -> tuple[_Sums, _Sums]:
+def _sums(seating: Seating) -> tuple[_Sums, _Sums]:
     """A and B/θ² of every pair of unit and stand, and of every stand."""
-    cells, stands = len(found.stand_of), len(found.scatter.fixed)
-    own, fixed = np.zeros((2, cells)), np.zeros((2, stands))
-    for part in found.parts:
+    cells, stands = len(seating.stand_of), len(seating.scatter.fixed)
+    by_cell, fixed = np.zeros((2, cells)), np.zeros((2, stands))
+    for part in seating.parts:
         there, same = part.units.there, part.units.same
         blocks = np.einsum("uiaja->uij", part.precision)
-        taken = _taken(part.seen, part.seen, found.covariance)
+        taken = _taken(part.seen, part.seen, seating.covariance)
         together = np.einsum("uij,ujaeb->uiaeb", same, part.seen)
-        fixed_trace = (blocks * same).sum(axis=2) - _taken(part.seen, together, found.covariance)
+        fixed_trace = (blocks * same).sum(axis=2) - _taken(part.seen, together, seating.covariance)
         fixed_square = np.einsum("uia,uij,uja->ui", part.rest, same, part.rest, optimize=True)
-        own_trace, own_square = np.einsum("uii->ui", blocks) - taken, (part.rest**2).sum(axis=2)
-        own += _binned(part.units.cell[there], (own_trace[there], own_square[there]), cells)
+        trace, square = np.einsum("uii->ui", blocks) - taken, (part.rest**2).sum(axis=2)
+        by_cell += _binned(part.units.cell[there], (trace[there], square[there]), cells)
         fixed += _binned(part.units.stand[there], (fixed_trace[there], fixed_square[there]), stands)
-    return _Sums(*own), _Sums(*fixed)
+    return _Sums(*by_cell), _Sums(*fixed)
 
 
-def _taken(left: Array, right: Array, covariance: Array) -> Array:
+def _taken(first: Array, second: Array, covariance: Array) -> Array:
     """(u, n) what the events take from the traces of P, unit of P; both (u, n, k, e, k)."""
-    return np.asarray(np.einsum("uiaeb,ebfc,uiafc->ui", left, covariance, right, optimize=True))
+    return np.asarray(np.einsum("uiaeb,ebfc,uiafc->ui", first, covariance, second, optimize=True))
 
 
 def _binned(place: Array, weights: tuple[Array, Array], size: int) -> Array:

@@ -89,18 +89,18 @@ def shapes(time: Array) -> Shapes:
 
 @lru_cache(maxsize=8)
 def _with_ends(moments: bytes, warmth: bytes) -> Shapes:
-    found, time = _shapes(moments), np.frombuffer(moments)
+    family, time = _shapes(moments), np.frombuffer(moments)
     b = len(SETTLES)
     more = [course(time, SLOW), *(settled(time, age) for age in SETTLES), np.frombuffer(warmth)]
-    kind = np.append(found.kind, [Kind.AGING, *[Kind.SETTLING] * b, Kind.WARMTH])
-    share = np.append(found.share, [1.0, *[1 / b] * b, 1.0])
+    kind = np.append(family.kind, [Kind.AGING, *[Kind.SETTLING] * b, Kind.WARMTH])
+    share = np.append(family.share, [1.0, *[1 / b] * b, 1.0])
     share[kind == Kind.AGING] = 1 / (len(AGES) + 1)
     return Shapes(
-        columns=np.concatenate([found.columns, np.stack(more, axis=1)], axis=1),
+        columns=np.concatenate([family.columns, np.stack(more, axis=1)], axis=1),
         kind=kind,
-        gap=np.append(found.gap, np.zeros(len(more), dtype=int)),
+        gap=np.append(family.gap, np.zeros(len(more), dtype=int)),
         share=share,
-        constant=np.append(found.constant, [SLOW, *SETTLES, 1.0]),
+        constant=np.append(family.constant, [SLOW, *SETTLES, 1.0]),
     )
 
 

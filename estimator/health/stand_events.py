@@ -65,7 +65,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Weighed:
+class EventTest:
     """An event in the model."""
 
     chi2: float
@@ -102,16 +102,16 @@ def chi_squares(pull: Array, free: Array, whole: Array) -> tuple[Array, Array]:
     """(p,) χ² and (p,) bool whether it shows beside the model; pull (p, k), both informations (p, k, k)."""
     traces = np.einsum("pkk->p", free), np.einsum("pkk->p", whole)
     seen = traces[0] > SEEN * np.maximum(traces[1], 1e-300)
-    one = np.eye(pull.shape[1])
-    safe = np.where(seen[:, None, None], free + 1e-9 * traces[1][:, None, None] * one, one)
+    identity = np.eye(pull.shape[1])
+    safe = np.where(seen[:, None, None], free + 1e-9 * traces[1][:, None, None] * identity, identity)
     return np.where(seen, np.einsum("pk,pk->p", pull, np.linalg.solve(safe, pull[..., None])[..., 0]), 0.0), seen
 
 
-def of_units(found: Seating) -> Candidate | None:
+def of_units(seating: Seating) -> Candidate | None:
     """The most evident move of a single unit."""
     best: tuple[float, Event] | None = None
     looked = 0
-    for part in found.parts:
+    for part in seating.parts:
         back = np.flip(np.flip(part.precision, (1, 3)).cumsum(axis=1).cumsum(axis=3), (1, 3))
         whole = np.einsum("uiaib->uiab", back)
         pull = np.flip(np.flip(part.rest, 1).cumsum(axis=1), 1)
@@ -126,42 +126,42 @@ def of_units(found: Seating) -> Candidate | None:
     return None if best is None else Candidate(best[1], best[0], looked)
 
 
-def weighed(found: Seating, e: int, looked: float) -> Weighed:
+def event_test(seating: Seating, e: int, looked: float) -> EventTest:
     """The e-th event of the model."""
-    value, covariance = found.value[e], found.covariance[e, :, e]
+    value, covariance = seating.value[e], seating.covariance[e, :, e]
     chi2 = float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)
-    return Weighed(chi2, _freedom(found, e), len(value), looked)
+    return EventTest(chi2, _freedom(seating, e), len(value), looked)
 
 
-def _freedom(found: Seating, e: int) -> float:
+def _freedom(seating: Seating, e: int) -> float:
     """Satterthwaite's degrees of freedom of the e-th event's variance."""
-    cells, stands = len(found.stand_of), len(found.scatter.fixed)
-    own, fixed = np.zeros(cells), np.zeros((2, stands))
-    for part in found.parts:
+    cells, stands = len(seating.stand_of), len(seating.scatter.fixed)
+    by_cell, fixed = np.zeros(cells), np.zeros((2, stands))
+    for part in seating.parts:
         there, same = part.units.there, part.units.same
-        weight = np.einsum("uiaeb,ebc->uiac", part.seen, found.covariance[:, :, e], optimize=True)
+        weight = np.einsum("uiaeb,ebc->uiac", part.seen, seating.covariance[:, :, e], optimize=True)
         gathered = np.einsum("uij,ujac->uiac", same, weight)
         parts = (weight**2).sum(axis=(2, 3)), (weight * gathered).sum(axis=(2, 3))
-        own += np.bincount(part.units.cell[there], parts[0][there], cells)
+        by_cell += np.bincount(part.units.cell[there], parts[0][there], cells)
         fixed[0] += np.bincount(part.units.stand[there], parts[1][there], stands)
         fixed[1] += np.bincount(part.units.stand[there], _known(part)[there], stands)
-    doubt = _of_cells(found, found.scatter.cell * own) + _of_fixed(found, fixed)
-    return float(np.trace(found.covariance[e, :, e]) ** 2 / max(doubt, 1e-300))
+    doubt = _of_cells(seating, seating.scatter.cell * by_cell) + _of_fixed(seating, fixed)
+    return float(np.trace(seating.covariance[e, :, e]) ** 2 / max(doubt, 1e-300))
 
 
-def _of_cells(found: Seating, v: Array) -> float:
+def _of_cells(seating: Seating, v: Array) -> float:
     """Half the variance that the τ² give a variance: of each unit by itself, and of what is typical of its stand, which
     all of its units share; v (c,) what each adds."""
-    nu, stand = found.scatter.alike, found.stand_of
-    d = freedoms(found)
+    nu, stand = seating.scatter.alike, seating.stand_of
+    d = freedoms(seating)
     typical = np.bincount(stand, d * nu / (d + nu)) + STAND_PRIOR
     shared = np.bincount(stand, v * nu / (d + nu))
     return float((v**2 / (d + nu)).sum() + (shared**2 / typical).sum())
 
 
-def _of_fixed(found: Seating, sums: Array) -> float:
+def _of_fixed(seating: Seating, sums: Array) -> float:
     """The same of the ω²; sums (2, s) what each adds and is known by, per variance and per variance squared."""
-    theta = found.scatter.fixed
+    theta = seating.scatter.fixed
     return float(((theta * sums[0]) ** 2 / (theta**2 * sums[1] + STAND_PRIOR)).sum())
 
 

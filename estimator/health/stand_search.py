@@ -34,12 +34,12 @@ ROW = 40
 seen whole, and one of more leaves its middle in the spread dates of stands with a thousand sessions."""
 
 
-def of_stands(found: Seating) -> list[Candidate]:
+def of_stands(seating: Seating) -> list[Candidate]:
     """Each stand's most evident change, steps and excursions; of stands that three units tell of."""
-    lives = [_life(found, stand) for stand in range(len(found.scatter.stand))]
-    spread = [_weighed(_from_each(found, life, life.spread), found) for life in lives]
-    price = _Price(sum(one.steps for one in spread), sum(life.lengths for life in lives))
-    best = (_best(found, *pair, price) for pair in zip(lives, spread, strict=True))
+    lives = [_life(seating, stand) for stand in range(len(seating.scatter.stand))]
+    spread = [_tested_pairs(_from_each(seating, life, life.spread), seating) for life in lives]
+    price = _Price(sum(pairs.steps for pairs in spread), sum(life.lengths for life in lives))
+    best = (_best(seating, *pair, price) for pair in zip(lives, spread, strict=True))
     return [candidate for candidate in best if candidate is not None]
 
 
@@ -132,10 +132,10 @@ class _Pairs:
         return np.isinf(self.end)
 
 
-def _life(found: Seating, stand: int) -> _Life:
+def _life(seating: Seating, stand: int) -> _Life:
     """The sessions on a stand."""
     rows = []
-    for number, part in enumerate(found.parts):
+    for number, part in enumerate(seating.parts):
         row, place = np.nonzero(part.units.stand == stand)
         rows.append(np.stack([np.full(len(row), number), row, place, part.units.time[row, place]]))
     every = np.concatenate(rows, axis=1)
@@ -144,13 +144,15 @@ def _life(found: Seating, stand: int) -> _Life:
     return _Life(stand, part, row, place, every[3], np.unique(every[3]))
 
 
-def _best(found: Seating, life: _Life, spread: _Pairs, price: _Price) -> Candidate | None:
+def _best(seating: Seating, life: _Life, spread: _Pairs, price: _Price) -> Candidate | None:
     """The pair with the largest gain."""
-    rows = [_weighed(sums, found) for sums in _in_rows(found, life)] if len(life.spread) < len(life.dates) else []
+    rows = (
+        [_tested_pairs(sums, seating) for sums in _in_rows(seating, life)] if len(life.spread) < len(life.dates) else []
+    )
     best = _largest(life, [spread, *rows], price)
     if best is None or not rows or np.isinf(best.event.end):
         return best
-    return _largest(life, [_weighed(_from_each(found, life, life.around(best.event)), found)], price, best)
+    return _largest(life, [_tested_pairs(_from_each(seating, life, life.around(best.event)), seating)], price, best)
 
 
 def _largest(life: _Life, looked: Sequence[_Pairs], price: _Price, than: Candidate | None = None) -> Candidate | None:
@@ -162,30 +164,30 @@ def _largest(life: _Life, looked: Sequence[_Pairs], price: _Price, than: Candida
         prices = price.of(life, pairs)
         i = int(np.argmax(pairs.chi2 / 2 - np.log(prices)))
         event = Event(life.stand, -1, float(pairs.start[i]), float(pairs.end[i]))
-        one = Candidate(event, float(pairs.chi2[i]), float(prices[i]))
-        best = one if best is None or one.gain > best.gain else best
+        candidate = Candidate(event, float(pairs.chi2[i]), float(prices[i]))
+        best = candidate if best is None or candidate.gain > best.gain else best
     return best
 
 
-def _weighed(sums: _Sums, found: Seating) -> _Pairs:
+def _tested_pairs(sums: _Sums, seating: Seating) -> _Pairs:
     """χ² of every pair of dates."""
-    free = sums.whole - np.einsum("caex,exfy,dbfy->cadb", sums.shared, found.covariance, sums.shared, optimize=True)
+    free = sums.whole - np.einsum("caex,exfy,dbfy->cadb", sums.shared, seating.covariance, sums.shared, optimize=True)
     i, j = np.triu_indices(len(sums.dates), 1)
     chi2, seen = chi_squares(sums.pull[i] - sums.pull[j], _between(free, i, j), _between(sums.whole, i, j))
     valid = seen & (sums.telling[i, j] >= FEWEST_UNITS)
     i, j, chi2 = i[valid], j[valid], chi2[valid]
-    lasting = i[np.isinf(sums.dates[j])]
-    steps = looks(_alike(free, lasting), sums.pull.shape[1], LEVEL / 2) if len(lasting) else 0.0
+    permanent = i[np.isinf(sums.dates[j])]
+    steps = looks(_alike(free, permanent), sums.pull.shape[1], LEVEL / 2) if len(permanent) else 0.0
     return _Pairs(sums.dates[i], sums.dates[j], chi2, steps)
 
 
-def _from_each(found: Seating, life: _Life, dates: Array) -> _Sums:
+def _from_each(seating: Seating, life: _Life, dates: Array) -> _Sums:
     """From given dates on, (c,) years."""
     dates = np.append(dates, np.inf)
-    c, k, e = len(dates), *found.value.T.shape
+    c, k, e = len(dates), *seating.value.T.shape
     whole, pull, shared = np.zeros((c, k, c, k)), np.zeros((c, k)), np.zeros((c, k, e, k))
     telling = np.zeros((c, c), dtype=int)
-    for part in found.parts:
+    for part in seating.parts:
         some = (part.units.stand == life.stand).any(axis=1)
         if not some.any():
             continue
@@ -199,27 +201,27 @@ def _from_each(found: Seating, life: _Life, dates: Array) -> _Sums:
     return _Sums(dates, whole, pull, shared, telling)
 
 
-def _in_rows(found: Seating, life: _Life) -> Iterator[_Sums]:
+def _in_rows(seating: Seating, life: _Life) -> Iterator[_Sums]:
     """From every date of some in a row on; none of these pairs lasts."""
     starts = range(0, max(len(life.dates) - ROW // 2, 1), ROW // 2)
-    return (_row(found, life, life.dates[start : start + ROW]) for start in starts)
+    return (_row(seating, life, life.dates[start : start + ROW]) for start in starts)
 
 
-def _row(found: Seating, life: _Life, dates: Array) -> _Sums:
+def _row(seating: Seating, life: _Life, dates: Array) -> _Sums:
     """Between the dates (c,), years; the session at the last counts for nothing."""
     first, last = np.searchsorted(life.time, dates[[0, -1]])
-    own, (k, e) = slice(first, last), found.value.T.shape
+    inside, (k, e) = slice(first, last), seating.value.T.shape
     w = last - first
     whole, pull, shared = np.zeros((w, k, w, k)), np.zeros((w, k)), np.zeros((w, k, e, k))
     unit, sessions = np.zeros(w, dtype=int), np.zeros(w, dtype=int)
-    for number, part in enumerate(found.parts):
-        at = np.flatnonzero(life.part[own] == number)
-        row, place = life.row[own][at], life.place[own][at]
+    for number, part in enumerate(seating.parts):
+        at = np.flatnonzero(life.part[inside] == number)
+        row, place = life.row[inside][at], life.place[inside][at]
         same = (row[:, None] == row)[..., None, None]
         whole[at[:, None], :, at] = part.precision[row[:, None], place[:, None], :, place] * same
         pull[at], shared[at] = part.rest[row, place], part.seen[row, place]
         unit[at], sessions[at] = part.units.unit[row], part.units.there[row].sum(axis=1)
-    begins = np.searchsorted(life.time[own], dates)
+    begins = np.searchsorted(life.time[inside], dates)
     units, which = np.unique(unit, return_index=True)
     after = _from_on((unit[:, None] == units).astype(float))[begins]
     return _Sums(

@@ -19,14 +19,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.health.seating import Seating, Units, seated
-from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, chi_squares, columns, of_units, weighed
+from estimator.health.stand_events import (
+    FEWEST_UNITS,
+    LEVEL,
+    Event,
+    EventTest,
+    chi_squares,
+    columns,
+    event_test,
+    of_units,
+)
 from estimator.health.stand_search import of_stands
 from estimator.session import Array
 from estimator.significance import critical_chi2
 
 AGREEING = 0.8
 """Share of the units that must show the shift; one in five may differ, and one of any number."""
-TELLS = 5.0
+VOTING = 5.0
 """Sigmas of its own that a shift must have for a unit to have a vote: half of them is then far from either answer."""
 SAME = 1e-6
 """Part of the information of events beside one another below which they are one."""
@@ -102,8 +111,8 @@ def stand_states(motions: Sequence[Motion]) -> tuple[StandState, ...]:
         return ()
     stands = sorted({motion.stand for motion in motions})
     groups, stand_of = _grouped(motions, stands)
-    found = _explained(groups, stand_of)
-    return tuple(_state(i, name, found) for i, name in enumerate(stands))
+    explained = _explained(groups, stand_of)
+    return tuple(_state(i, name, explained) for i, name in enumerate(stands))
 
 
 @dataclass(frozen=True)
@@ -127,46 +136,46 @@ class _Explained:
 def _explained(groups: Sequence[Units], stand_of: Array) -> _Explained:
     """Events one after another, while one is evident; then without those that others explain."""
     taken = list[_Taken]()
-    found = seated(groups, columns(groups, ()), stand_of)
+    seating = seated(groups, columns(groups, ()), stand_of)
     while True:
-        tried = [(one, _with(found, groups, [*taken, one])) for one in _candidates(found)]
-        evident = [(one, new) for one, new in tried if _is_evident(new, len(taken), one)]
+        tried = [(candidate, _with(seating, groups, [*taken, candidate])) for candidate in _candidates(seating)]
+        evident = [(candidate, new) for candidate, new in tried if _is_evident(new, len(taken), candidate)]
         if not evident or len(taken) == MOST_EVENTS:
             break
-        one, _ = max(evident, key=lambda pair: weighed(pair[1], len(taken), pair[0].looked).evidence)
-        taken.append(one)
-        found = seated(groups, columns(groups, [each.event for each in taken]), stand_of)
-    return _Explained(*_pruned(found, groups, taken), tuple(tried))
+        candidate, _ = max(evident, key=lambda pair: event_test(pair[1], len(taken), pair[0].looked).evidence)
+        taken.append(candidate)
+        seating = seated(groups, columns(groups, [each.event for each in taken]), stand_of)
+    return _Explained(*_pruned(seating, groups, taken), tuple(tried))
 
 
-def _candidates(found: Seating) -> list[_Taken]:
+def _candidates(seating: Seating) -> list[_Taken]:
     """What is worth a fit of its own."""
-    stands = sorted(of_stands(found), key=lambda one: -one.gain)[:TRIED]
-    unit = of_units(found)
-    return [_Taken(one.event, one.looked) for one in (*stands, *([] if unit is None else [unit]))]
+    stands = sorted(of_stands(seating), key=lambda candidate: -candidate.gain)[:TRIED]
+    unit = of_units(seating)
+    return [_Taken(candidate.event, candidate.looked) for candidate in (*stands, *([] if unit is None else [unit]))]
 
 
-def _with(found: Seating, groups: Sequence[Units], taken: Sequence[_Taken]) -> Seating:
+def _with(seating: Seating, groups: Sequence[Units], taken: Sequence[_Taken]) -> Seating:
     """The model with these events, its variances made anew."""
-    return seated(groups, columns(groups, [one.event for one in taken]), found.stand_of, found.scatter)
+    return seated(groups, columns(groups, [entry.event for entry in taken]), seating.stand_of, seating.scatter)
 
 
-def _pruned(found: Seating, groups: Sequence[Units], taken: list[_Taken]) -> tuple[Seating, tuple[_Taken, ...]]:
+def _pruned(seating: Seating, groups: Sequence[Units], taken: list[_Taken]) -> tuple[Seating, tuple[_Taken, ...]]:
     """Without events that are no longer evident, the least evident first."""
     while taken:
-        failing = [i for i, one in enumerate(taken) if not _is_evident(found, i, one)]
+        failing = [i for i, entry in enumerate(taken) if not _is_evident(seating, i, entry)]
         if not failing:
             break
-        least = min(failing, key=lambda i: weighed(found, i, taken[i].looked).evidence)
-        taken = [one for i, one in enumerate(taken) if i != least]
-        found = _with(found, groups, taken)
-    return found, tuple(taken)
+        least = min(failing, key=lambda i: event_test(seating, i, taken[i].looked).evidence)
+        taken = [entry for i, entry in enumerate(taken) if i != least]
+        seating = _with(seating, groups, taken)
+    return seating, tuple(taken)
 
 
-def _is_evident(found: Seating, e: int, one: _Taken) -> bool:
+def _is_evident(seating: Seating, e: int, candidate: _Taken) -> bool:
     """Whether the e-th event of the model is beyond chance and, of a stand, the units' common testimony."""
-    own = weighed(found, e, one.looked)
-    return own.exceeds(LEVEL) and (one.event.stand < 0 or _witnesses(found, e).bear(own))
+    test = event_test(seating, e, candidate.looked)
+    return test.exceeds(LEVEL) and (candidate.event.stand < 0 or _witnesses(seating, e).confirm(test))
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +192,7 @@ class _Witnesses:
     """(u, k, k) 1/rad² or 1/relative²."""
     pull: Array
     """(u, k) 1/rad or 1/relative."""
-    beside: Array
+    joint_information: Array
     """(u, m, m) information on it, first, and on the events that act on some of the same sessions."""
     pulled: Array
     """(u, m) pull of them all, none of them being in the model."""
@@ -191,74 +200,83 @@ class _Witnesses:
     @property
     def agreeing(self) -> Array:
         """(u,) bool; at least half of δ, as the unit sees it."""
-        return np.asarray(self.pull @ self.value > self._own / 2)
+        return np.asarray(self.pull @ self.value > self._squared_size / 2)
 
     @property
-    def _own(self) -> Array:
+    def _squared_size(self) -> Array:
         """(u,) δᵀJδ, the square of δ in the unit's own sigmas."""
         return np.asarray(np.einsum("a,uab,b->u", self.value, self.information, self.value))
 
-    def bear(self, own: Weighed) -> bool:
+    def confirm(self, test: EventTest) -> bool:
         """Whether they are enough, of one mind, and none is the only one."""
         if self.agreeing.sum() < FEWEST_UNITS:
             return False
-        votes = self.agreeing[self._own > TELLS**2]
-        by_chance = critical_chi2(min(LEVEL, 1 / own.looked), own.size, own.freedom)
-        return bool(votes.sum() >= AGREEING * (len(votes) - 1)) and self._without_one() > by_chance
+        votes = self.agreeing[self._squared_size > VOTING**2]
+        by_chance = critical_chi2(min(LEVEL, 1 / test.looked), test.size, test.freedom)
+        return bool(votes.sum() >= AGREEING * (len(votes) - 1)) and self._least_leave_one_out() > by_chance
 
-    def _without_one(self) -> float:
+    def _least_leave_one_out(self) -> float:
         """χ² without the unit that it rests on most, whatever the events beside it are then."""
         k = len(self.value)
-        pull, whole = self.pulled.sum(axis=0) - self.pulled, self.beside.sum(axis=0) - self.beside
+        pull, whole = self.pulled.sum(axis=0) - self.pulled, self.joint_information.sum(axis=0) - self.joint_information
         shared = whole[:, :k, k:] @ np.linalg.pinv(whole[:, k:, k:], rcond=SAME, hermitian=True)
         free = whole[:, :k, :k] - shared @ whole[:, k:, :k]
         chi2, _ = chi_squares(pull[:, :k] - (shared @ pull[:, k:, None])[..., 0], free, whole[:, :k, :k])
         return float(chi2.min())
 
 
-def _witnesses(found: Seating, e: int) -> _Witnesses:
+def _witnesses(seating: Seating, e: int) -> _Witnesses:
     """The units that have sessions with the e-th event and without."""
-    k, told = found.value.shape[1], list[tuple[Array, ...]]()
-    these = [e, *_overlapping(found, e)]
-    for part in found.parts:
+    k, rows = seating.value.shape[1], list[tuple[Array, ...]]()
+    these = [e, *_overlapping(seating, e)]
+    for part in seating.parts:
         column = part.column[:, :, e]
         some = (column.sum(axis=1) > 0) & (column.sum(axis=1) < part.units.there.sum(axis=1))
         acting = part.column[some][:, :, these]
         whole = np.einsum("uid,uiaeb->udaeb", acting, part.seen[some][:, :, :, these], optimize=True)
         rest = np.einsum("uid,uia->uda", acting, part.rest[some], optimize=True)
-        pulled = rest + np.einsum("udaeb,eb->uda", whole, found.value[these])
-        own = whole[:, 0, :, 0]
+        pulled = rest + np.einsum("udaeb,eb->uda", whole, seating.value[these])
+        information = whole[:, 0, :, 0]
         size = len(these) * k
-        told.append((own, rest[:, 0] + own @ found.value[e], whole.reshape(-1, size, size), pulled.reshape(-1, size)))
-    return _Witnesses(found.value[e], *(np.concatenate(each) for each in zip(*told, strict=True)))
+        rows.append(
+            (
+                information,
+                rest[:, 0] + information @ seating.value[e],
+                whole.reshape(-1, size, size),
+                pulled.reshape(-1, size),
+            )
+        )
+    return _Witnesses(seating.value[e], *(np.concatenate(each) for each in zip(*rows, strict=True)))
 
 
-def _overlapping(found: Seating, e: int) -> list[int]:
+def _overlapping(seating: Seating, e: int) -> list[int]:
     """The other events that act on some of the sessions that the e-th acts on."""
-    shared = sum(np.einsum("ui,uif->f", part.column[:, :, e], part.column) for part in found.parts)
+    shared = sum(np.einsum("ui,uif->f", part.column[:, :, e], part.column) for part in seating.parts)
     return [int(f) for f in np.flatnonzero(shared) if f != e]
 
 
-def _state(number: int, name: str, found: _Explained) -> StandState:
+def _state(number: int, name: str, explained: _Explained) -> StandState:
     """One stand."""
-    shifts = [_shift(found.seating, e, one) for e, one in enumerate(found.taken) if one.event.stand == number]
-    others = [_shift(new, len(new.value) - 1, one) for one, new in found.tried if one.event.stand == number]
-    seating = float(np.sqrt(found.seating.scatter.cell[found.seating.stand_of == number].mean()))
+    shifts = [
+        _shift(explained.seating, e, entry) for e, entry in enumerate(explained.taken) if entry.event.stand == number
+    ]
+    others = [_shift(new, len(new.value) - 1, entry) for entry, new in explained.tried if entry.event.stand == number]
+    seating = float(np.sqrt(explained.seating.scatter.cell[explained.seating.stand_of == number].mean()))
     in_time = tuple(sorted(shifts, key=lambda shift: shift.since))
     return StandState(name, seating, in_time, None if shifts or not others else others[0])
 
 
-def _shift(found: Seating, e: int, one: _Taken) -> StandShift:
-    own, units = weighed(found, e, one.looked), _witnesses(found, e)
+def _shift(seating: Seating, e: int, candidate: _Taken) -> StandShift:
+    test, units = event_test(seating, e, candidate.looked), _witnesses(seating, e)
     return StandShift(
-        since=one.event.start,
-        until=None if np.isinf(one.event.end) else one.event.end,
-        value=tuple(map(float, found.value[e])),
-        covariance=tuple(tuple(map(float, row)) for row in found.covariance[e, :, e]),
+        since=candidate.event.start,
+        until=None if np.isinf(candidate.event.end) else candidate.event.end,
+        value=tuple(map(float, seating.value[e])),
+        covariance=tuple(tuple(map(float, row)) for row in seating.covariance[e, :, e]),
         units=len(units.pull),
         agreeing=int(units.agreeing.sum()),
-        chi2=own.chi2,
-        p_value=own.p_value,
+        chi2=test.chi2,
+        p_value=test.p_value,
     )
 
 
@@ -270,27 +288,27 @@ def _grouped(motions: Sequence[Motion], stands: Sequence[str]) -> tuple[list[Uni
     cells = {pair: i for i, pair in enumerate(sorted({(m.unit, m.stand) for m in motions}))}
     place = {stand: i for i, stand in enumerate(stands)}
     buckets: dict[int, list[tuple[int, list[Motion]]]] = {}
-    for number, own in enumerate(by_unit.values()):
-        buckets.setdefault(int(np.ceil(np.log(len(own)) / np.log(BUCKETS))), []).append((number, own))
-    groups = [_units(own, cells, place) for _, own in sorted(buckets.items())]
+    for number, members in enumerate(by_unit.values()):
+        buckets.setdefault(int(np.ceil(np.log(len(members)) / np.log(BUCKETS))), []).append((number, members))
+    groups = [_units(members, cells, place) for _, members in sorted(buckets.items())]
     return groups, np.array([place[stand] for _, stand in cells])
 
 
 def _units(
-    own: Sequence[tuple[int, list[Motion]]], cells: Mapping[tuple[str, str], int], place: Mapping[str, int]
+    members: Sequence[tuple[int, list[Motion]]], cells: Mapping[tuple[str, str], int], place: Mapping[str, int]
 ) -> Units:
     """Arrays of units, filled up to the longest."""
-    u, n, k = len(own), max(len(motions) for _, motions in own), len(own[0][1][0].value)
+    u, n, k = len(members), max(len(motions) for _, motions in members), len(members[0][1][0].value)
     value, noise, time = np.zeros((u, n, k)), np.tile(np.eye(k), (u, n, 1, 1)), np.zeros((u, n))
     stand, cell = np.full((u, n), -1), np.full((u, n), -1)
-    for row, (_, motions) in enumerate(own):
+    for row, (_, motions) in enumerate(members):
         m = len(motions)
         value[row, :m] = [motion.value for motion in motions]
         noise[row, :m] = _alone(np.stack([motion.covariance for motion in motions]))
         time[row, :m] = [motion.time for motion in motions]
         stand[row, :m] = [place[motion.stand] for motion in motions]
         cell[row, :m] = [cells[motion.unit, motion.stand] for motion in motions]
-    return Units(value, noise, time, np.array([number for number, _ in own]), stand, cell)
+    return Units(value, noise, time, np.array([number for number, _ in members]), stand, cell)
 
 
 def _alone(covariance: Array) -> Array:
@@ -305,5 +323,5 @@ def _alone(covariance: Array) -> Array:
         return covariance + 1e-24 * np.eye(covariance.shape[1])
     best = int(np.argmin(np.where(others, traces, np.inf)))
     share = 1 - 0.5 * traces[best] / np.where(others, traces, traces[best])
-    own = np.where(others[:, None, None], covariance * share[:, None, None], covariance[best] / 2)
-    return np.asarray(own)
+    alone = np.where(others[:, None, None], covariance * share[:, None, None], covariance[best] / 2)
+    return np.asarray(alone)

@@ -79,23 +79,23 @@ class Tried:
     """Whom x rests on."""
 
 
-def residuals(sets: Sets, out: Iterable[int]) -> dict[str, Deviation]:
-    """By sensor; ``out`` the sensors that tests found to have moved."""
-    tried, changes = _tried(sets, frozenset(out)), sets.changes
+def residuals(sets: Sets, excluded: Iterable[int]) -> dict[str, Deviation]:
+    """By sensor; ``excluded`` the sensors that tests found to have moved."""
+    tried, changes = _tried(sets, frozenset(excluded)), sets.changes
     likely = _weights(sets, tried)
-    vectors, own, origin = _beside(sets, tried)
+    vectors, current, origin = _residuals_of(sets, tried)
     mean = likely @ vectors
     away = vectors - mean[tried.judged]
-    own = np.tensordot(likely, own + away[:, :, None] * away[:, None, :], axes=1)
+    current = np.tensordot(likely, current + away[:, :, None] * away[:, None, :], axes=1)
     origin = np.tensordot(likely, origin, axes=1)
     dofs = changes.dofs or ((None, None),) * len(changes.names)
-    return {name: Deviation(mean[j], own[j], origin[j], *dofs[j]) for j, name in enumerate(changes.names)}
+    return {name: Deviation(mean[j], current[j], origin[j], *dofs[j]) for j, name in enumerate(changes.names)}
 
 
-def _tried(sets: Sets, out: Sensors) -> Tried:
+def _tried(sets: Sets, excluded: Sensors) -> Tried:
     """All pairs; a sensor's own sets are others for each."""
     numbers = range(len(sets.changes.names))
-    pairs = [(j, moved) for j in numbers for moved in dict.fromkeys(_near(sets, j, out - {j}))]
+    pairs = [(j, moved) for j in numbers for moved in dict.fromkeys(_near(sets, j, excluded - {j}))]
     return Tried([j for j, _ in pairs], [moved for _, moved in pairs], [_inside(sets, *pair) for pair in pairs])
 
 
@@ -103,7 +103,7 @@ def _weights(sets: Sets, tried: Tried) -> Array:
     """(m, n) w_M of every sensor's sets, each row of sum 1, dimensionless; 0 for other sensors' and negligible ones."""
     rests = [sets.everyone() - moved for moved in tried.moved]
     every = list({*tried.inside, *rests})
-    chi2 = dict(zip(every, fits(sets.changes, [sorted(one) for one in every]).chi2, strict=True))
+    chi2 = dict(zip(every, fits(sets.changes, [sorted(members) for members in every]).chi2, strict=True))
     costs = [sets.cost(i) for i in range(len(sets.changes.names))]
     stays = np.array([-chi2[rest] / 2 for rest in rests])
     goes = np.array([costs[j] - chi2[inside] / 2 for j, inside in zip(tried.judged, tried.inside, strict=True)])
@@ -117,14 +117,14 @@ def _weights(sets: Sets, tried: Tried) -> Array:
     return weights / weights.sum(axis=1, keepdims=True)
 
 
-def _near(sets: Sets, j: int, out: Sensors) -> Iterator[Sensors]:
+def _near(sets: Sets, j: int, excluded: Sensors) -> Iterator[Sensors]:
     """The set that was found, and those that differ by one sensor more, less or exchanged; a majority remains."""
-    others = sets.everyone() - out - {j}
-    for less, more in product([None, *sorted(out)], [None, *sorted(others)]):
-        moved = (out - {less}) | ({more} - {None})
-        found = frozenset(i for i in moved if i is not None)
-        if is_majority(sets.changes, list(found)):
-            yield found
+    others = sets.everyone() - excluded - {j}
+    for less, more in product([None, *sorted(excluded)], [None, *sorted(others)]):
+        moved = (excluded - {less}) | ({more} - {None})
+        candidate = frozenset(i for i in moved if i is not None)
+        if is_majority(sets.changes, list(candidate)):
+            yield candidate
 
 
 def _inside(sets: Sets, j: int, moved: Sensors) -> Sensors:
@@ -133,18 +133,18 @@ def _inside(sets: Sets, j: int, moved: Sensors) -> Sensors:
     return others if len(others) >= FEWEST_AGREEING[sets.changes.rows] else others | {j}
 
 
-def _beside(sets: Sets, tried: Tried) -> tuple[Array, Array, Array]:
+def _residuals_of(sets: Sets, tried: Tried) -> tuple[Array, Array, Array]:
     """What x leaves of the sensor of every pair: (n, r), and the covariances (n, r, r) of both sessions; rad or
     relative. What the others do on their own is a part of its uncertainty, what it does itself is not."""
     changes, every = sets.changes, list(dict.fromkeys(tried.inside))
-    found = fits(sets.weighing, [sorted(one) for one in every])
+    fitted = fits(sets.weighing, [sorted(members) for members in every])
     numbers, rows = np.arange(len(tried.judged)), changes.rows
     at = np.array(tried.judged)[:, None] * rows + np.arange(rows)
-    drag = changes.design[at] @ found.gain[[every.index(one) for one in tried.inside]]
+    drag = changes.design[at] @ fitted.gain[[every.index(members) for members in tried.inside]]
     rest = -drag
     rest[numbers[:, None], np.arange(rows), at] += 1.0
     drag[numbers[:, None], :, at] = 0.0
     across = np.swapaxes(rest, -1, -2)
     others = drag @ np.swapaxes(drag, -1, -2)
-    own = rest @ changes.own @ across + changes.scatter**2 * others
-    return rest @ changes.y, own, rest @ changes.origin @ across
+    current = rest @ changes.current @ across + changes.scatter**2 * others
+    return rest @ changes.y, current, rest @ changes.origin @ across

@@ -37,8 +37,8 @@ class Range:
     def input(self) -> Array:
         """(R,) what the sensor reads, m/s² (rad/s) at the input, its bias included."""
         baseline = self.seen.baseline
-        own = measured(baseline.session)[0][:, self.sensor] / baseline.parameters.scale[self.sensor]
-        return np.asarray(own)
+        reading = measured(baseline.session)[0][:, self.sensor] / baseline.parameters.scale[self.sensor]
+        return np.asarray(reading)
 
     @cached_property
     def sign(self) -> Array:
@@ -60,7 +60,7 @@ class Range:
         """The highest limit that `FEWEST_CUT` readings reach at every end, m/s² (rad/s), not by their noise alone."""
         fitted = self.input - self.seen.baseline.residual[:, self.sensor]
         sides = (self.side,) if self.side else (1.0, -1.0)
-        return min(float(np.sort(np.minimum(one * self.input, one * fitted))[-FEWEST_CUT]) for one in sides)
+        return min(float(np.sort(np.minimum(end * self.input, end * fitted))[-FEWEST_CUT]) for end in sides)
 
     @cached_property
     def least(self) -> float:
@@ -86,10 +86,10 @@ class Range:
         unit = float(baseline.parameters.scale[i]) * ((session.count_time or 1.0) if pulses else 1.0)
         end = float(np.round(unit * limit)) if pulses else unit * limit
         clipped = self.sign * end + (session.sensors[i].nominal_offset or 0.0)
-        own = np.where(self.size >= limit, clipped, session.readings[:, i])
-        strength = self.strength((own - session.readings[:, i]) / unit)
+        limited = np.where(self.size >= limit, clipped, session.readings[:, i])
+        strength = self.strength((limited - session.readings[:, i]) / unit)
         readings = session.readings.copy()
-        readings[:, i] = own
+        readings[:, i] = limited
         hidden = Hidden(cause.identifier, (i,), (), (end / unit,), (end / unit, self.side), strength)
         return replace(session, readings=readings), hidden
 
@@ -110,15 +110,15 @@ def clipped(
     """
     seen = WhitenedResiduals.of(baseline_of(session))
     sensors = rng.permutation(session.readings.shape[1]) if sensor is None else [sensor]
-    every = [Range(seen, int(i), float(side)) for i in sensors for side in rng.permutation((0.0, 1.0, -1.0))]
-    able = [one for one in every if one.reached(one.deepest) >= max(strength, one.least)]
+    ranges = [Range(seen, int(i), float(side)) for i in sensors for side in rng.permutation((0.0, 1.0, -1.0))]
+    able = [candidate for candidate in ranges if candidate.reached(candidate.deepest) >= max(strength, candidate.least)]
     if not able:
         raise UnhideableError(
             f"{cause.identifier} would not reach {strength:g} standard errors with {DEEPEST:.0%} cut off"
         )
-    weak = [one for one in able if one.least <= strength]
+    weak = [candidate for candidate in able if candidate.least <= strength]
     if not weak and exact:
-        raise too_strong(cause, min(one.least for one in able))
+        raise too_strong(cause, min(candidate.least for candidate in able))
     chosen = (weak or able)[0]
     depth = amplitude_reaching(chosen.reached, max(strength, chosen.least), chosen.deepest, cause)
     return chosen.ended(depth, cause)

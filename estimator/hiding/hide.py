@@ -22,7 +22,7 @@ import numpy as np
 from estimator.causes.catalogue import CATALOGUE
 from estimator.causes.contract import Cause, Correction, Setting, Shape, Signature
 from estimator.causes.noise import ExcessNoise
-from estimator.diagnosis.diagnose import unsearched
+from estimator.diagnosis.diagnose import initial_state
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
@@ -81,8 +81,8 @@ def hide(
     setting = baseline_of(whole).setting
     refuse_lacking(cause, setting, alone=not earlier)
     shape, amplitude = drawn_effect([*earlier, whole] if cause.between else [whole], cause, rng, strength, sensor)
-    told, _ = cause.reported(setting, shape, amplitude, np.zeros_like(amplitude))
-    hidden = Hidden(cause.identifier, shape.sensors, (), tuple(told.tolist()), shape.nonlinear, strength)
+    reported, _ = cause.reported(setting, shape, amplitude, np.zeros_like(amplitude))
+    hidden = Hidden(cause.identifier, shape.sensors, (), tuple(reported.tolist()), shape.nonlinear, strength)
     return with_input(session, setting, shape.columns @ amplitude), hidden
 
 
@@ -141,8 +141,8 @@ def with_input(session: CalibrationSession, setting: Setting, added: Array) -> C
     ValueError where they are counted already.
     """
     pulses = counts_pulses(session)
-    counts = session.readings[:, pulses]
-    if counts.size and np.array_equal(counts, np.round(counts)):
+    pulse_counts = session.readings[:, pulses]
+    if pulse_counts.size and np.array_equal(pulse_counts, np.round(pulse_counts)):
         raise ValueError("pulses are counted already: an effect of part of one would be lost or made whole")
     period = np.where(pulses, session.count_time or 1.0, 1.0)
     return whole_pulses(replace(session, readings=session.readings + setting.parameters.scale * added * period))
@@ -167,7 +167,7 @@ def drawn_effect(
 ) -> tuple[Shape, Array]:
     """A shape of the cause and its amplitudes (q,), per column of the shape, of a strength in standard errors."""
     *earlier, now = (baseline_of(session) for session in sessions)
-    traces = next(iter(unsearched(now, earlier, [cause]).traces), None)
+    traces = next(iter(initial_state(now, earlier, [cause]).traces), None)
     if traces is None:
         raise UnhideableError(f"{cause.identifier} has nothing here to act on")
     if sensor is not None and traces.common:
@@ -194,12 +194,12 @@ def in_record(
 ) -> tuple[CalibrationSession, Hidden]:
     """The session with an error of the record: what undoes one makes it, since done twice it is as before."""
     refuse_lacking(cause, baseline_of(session).setting, alone=False)
-    chosen, found = None, 0
+    chosen, count = None, 0
     for places, wrong in cause.corrected(session):
         if sensor is not None and (cause.of_rows or sensor not in places):
             continue
-        found += 1
-        if rng.integers(found) == 0:
+        count += 1
+        if rng.integers(count) == 0:
             chosen = places, wrong
     if chosen is None:
         raise UnhideableError(f"{cause.identifier} is of no such sensor; name none")

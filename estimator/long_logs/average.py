@@ -19,12 +19,12 @@ from estimator.static import (
     Quietness,
     block_length,
     moments,
-    none_found,
+    no_rests_message,
     quietness_of,
+    require_still,
     smallest_steps,
     still,
     trimmed,
-    unless_moving,
     watched_for_rest,
 )
 
@@ -81,20 +81,20 @@ def average_long(log: LongLog, residual: Callable[[CalibrationSession], float]) 
     ScheduleError
         The log holds no position, too many, or too few that stand still.
     """
-    found = _labelled(log) if log.labels is not None else _chosen(log, residual)
+    session = _labelled(log) if log.labels is not None else _chosen(log, residual)
     problems = Problems(None)
-    kinds = {sensor.kind for sensor in found.sensors}
-    check_schedule(found.programme, found, kinds, raw=True, problems=problems)
+    kinds = {sensor.kind for sensor in session.sensors}
+    check_schedule(session.programme, session, kinds, raw=True, problems=problems)
     problems.raise_if_any()
-    return found
+    return session
 
 
 def _labelled(log: LongLog) -> CalibrationSession:
     head = next(log.parts())
-    found = labelled_rests(log, positions=head.position is not None)
-    (tally,) = _tallied(log, [found])
+    rests = labelled_rests(log, positions=head.position is not None)
+    (tally,) = _tallied(log, [rests])
     (moves,) = _moving(log, [tally])
-    unless_moving(found, moves)
+    require_still(rests, moves)
     return tally.session()
 
 
@@ -113,10 +113,10 @@ def _rows(log: LongLog) -> Iterator[tuple[int, CalibrationSession]]:
         at += len(part.readings)
 
 
-def _tallied(log: LongLog, found: Sequence[Intervals]) -> list[Tally]:
+def _tallied(log: LongLog, choices: Sequence[Intervals]) -> list[Tally]:
     """The sums over several choices of rests, in one pass."""
     head = next(log.parts())
-    tallies = [Tally(head, own) for own in found]
+    tallies = [Tally(head, rests) for rests in choices]
     for at, part in _rows(log):
         for tally in tallies:
             tally.add(part, at)
@@ -125,55 +125,55 @@ def _tallied(log: LongLog, found: Sequence[Intervals]) -> list[Tally]:
 
 def _moving(log: LongLog, tallies: Sequence[Tally]) -> list[Mask]:
     """Of every choice: in which rests the block moves; another pass, only where one may."""
-    moves = [np.zeros(len(tally.found), dtype=bool) for tally in tallies]
+    moves = [np.zeros(len(tally.rests), dtype=bool) for tally in tallies]
     doubtful = [k for k, tally in enumerate(tallies) if tally.may_move()]
     if doubtful:
-        for k, jitter in zip(doubtful, _jitters(log, [tallies[k].found for k in doubtful]), strict=True):
+        for k, jitter in zip(doubtful, _jitters(log, [tallies[k].rests for k in doubtful]), strict=True):
             moves[k] = tallies[k].moving(jitter)
     return moves
 
 
-def _jitters(log: LongLog, found: Sequence[Intervals]) -> list[Array]:
+def _jitters(log: LongLog, choices: Sequence[Intervals]) -> list[Array]:
     """(n, m) sums of the squared changes from every sample of a rest to the next, reading units squared."""
     m = len(next(log.parts()).sensors)
-    sums = [np.zeros((len(own), m)) for own in found]
+    sums = [np.zeros((len(rests), m)) for rests in choices]
     before = np.empty((0, m))
     for at, part in _rows(log):
         readings = np.concatenate([before, part.readings])
         squares, begin = np.diff(readings, axis=0) ** 2, at - len(before)
-        for total, own in zip(sums, found, strict=True):
-            low, high = np.searchsorted(own.stop, begin, "right"), np.searchsorted(own.start, begin + len(squares))
+        for total, rests in zip(sums, choices, strict=True):
+            low, high = np.searchsorted(rests.stop, begin, "right"), np.searchsorted(rests.start, begin + len(squares))
             for i in range(int(low), int(high)):
-                total[i] += squares[max(own.start[i] - begin, 0) : max(own.stop[i] - begin, 0)].sum(axis=0)
+                total[i] += squares[max(rests.start[i] - begin, 0) : max(rests.stop[i] - begin, 0)].sum(axis=0)
         before = part.readings[-1:]
     return sums
 
 
 def _chosen(log: LongLog, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
-    """Under the threshold that calibrates best, as `estimator.static.chosen`."""
+    """Under the threshold that calibrates best, as `estimator.static.average_best`."""
     seen = _quietness(log)
     tried: dict[tuple[int, ...], tuple[float, CalibrationSession]] = {}
     for tally in _calm(log, [still(seen.quiet, threshold, seen.rate) for threshold in THRESHOLDS]):
-        key = (*tally.found.start.tolist(), *tally.found.stop.tolist())
+        key = (*tally.rests.start.tolist(), *tally.rests.stop.tolist())
         if key not in tried:
             candidate = tally.session()
             tried[key] = (residual(candidate), candidate)
     if not tried:
-        raise ScheduleError([Problem("table", none_found(seen.samples))])
+        raise ScheduleError([Problem("table", no_rests_message(seen.samples))])
     return min(tried.values(), key=lambda pair: pair[0])[1]
 
 
-def _calm(log: LongLog, found: Sequence[Intervals]) -> list[Tally]:
+def _calm(log: LongLog, choices: Sequence[Intervals]) -> list[Tally]:
     """The sums over the rests of every choice in which the block does not move, where they are enough."""
-    usable = [own for own in found if FEWEST <= len(own) <= MOST_RESTS]
+    usable = [rests for rests in choices if FEWEST <= len(rests) <= MOST_RESTS]
     tallies = _tallied(log, usable) if usable else []
     calm: list[Tally | Intervals] = []
     for tally, moves in zip(tallies, _moving(log, tallies), strict=True):
-        own = tally.found.at(~moves)
-        if len(own) >= FEWEST:
-            calm.append(tally.at(~moves) if (block_count(own.samples) or 1) == tally.blocks else own)
-    again = iter(_tallied(log, [own for own in calm if isinstance(own, Intervals)]))
-    return [next(again) if isinstance(own, Intervals) else own for own in calm]
+        rests = tally.rests.at(~moves)
+        if len(rests) >= FEWEST:
+            calm.append(tally.at(~moves) if (block_count(rests.samples) or 1) == tally.blocks else rests)
+    again = iter(_tallied(log, [rests for rests in calm if isinstance(rests, Intervals)]))
+    return [next(again) if isinstance(rests, Intervals) else rests for rests in calm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,15 +191,15 @@ def _quietness(log: LongLog) -> _Seen:
     assert head.sample_rate is not None
     block, watched = block_length(head.sample_rate), watched_for_rest(head)
     means, withins, steps = [], [], np.full(np.count_nonzero(watched), np.inf)
-    left, before, samples = np.empty((0, np.count_nonzero(watched))), None, 0
+    remainder, before, samples = np.empty((0, np.count_nonzero(watched))), None, 0
     for at, part in _rows(log):
         readings = part.readings[:, watched]
         new = readings if before is None else np.concatenate([before, readings])
         steps = np.minimum(steps, smallest_steps(new))
-        readings = np.concatenate([left, readings])
+        readings = np.concatenate([remainder, readings])
         mean, within = moments(readings, block)
         means.append(mean)
         withins.append(within)
-        left, before, samples = readings[len(mean) * block :], readings[-1:], at + len(part.readings)
+        remainder, before, samples = readings[len(mean) * block :], readings[-1:], at + len(part.readings)
     quiet = quietness_of(block, np.concatenate(means), np.concatenate(withins), steps)
     return _Seen(quiet, head.sample_rate, samples)

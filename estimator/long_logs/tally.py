@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from estimator.errors import FormatError, Problem
 from estimator.rest_noise import block_count, energies_of, mean_variance
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
-from estimator.static import PIECES, Intervals, by_kind, contiguous, far_turn, long_enough_to_move, turned
+from estimator.static import PIECES, Intervals, contiguous, errors_of_kinds, far_turn, long_enough_to_move, turned
 
 SET = ("flipped", "beta", "directions", "position")
 """What is set rather than read: taken from the first sample of a rest."""
@@ -26,14 +26,14 @@ class Tally:
     Columns come first while they are summed: (c, r) of the r rows of a part, because each then lies in one piece.
     """
 
-    def __init__(self, head: CalibrationSession, found: Intervals) -> None:
-        self.head, self.found = head, found
-        self.blocks = block_count(found.samples) or 1
-        n, m = len(found), len(head.sensors)
-        self._beside = [name for name in AVERAGED if getattr(head, name) is not None]
-        self._edges, self._rank = edges(found, self.blocks)
-        self._first = np.zeros((n, m + len(self._beside)))
-        self._sums = np.zeros((n, self._edges.shape[1] - 1, m + len(self._beside)))
+    def __init__(self, head: CalibrationSession, rests: Intervals) -> None:
+        self.head, self.rests = head, rests
+        self.blocks = block_count(rests.samples) or 1
+        n, m = len(rests), len(head.sensors)
+        self._averaged = [name for name in AVERAGED if getattr(head, name) is not None]
+        self._edges, self._rank = edges(rests, self.blocks)
+        self._first = np.zeros((n, m + len(self._averaged)))
+        self._sums = np.zeros((n, self._edges.shape[1] - 1, m + len(self._averaged)))
         self._squares = np.zeros((n, m))
         self._ends = np.zeros((n, m, 2))
         self._range = np.array([[-np.inf, np.inf]]).repeat(m, axis=0)
@@ -45,13 +45,13 @@ class Tally:
 
     def add(self, part: CalibrationSession, at: int) -> None:
         """The rows from ``at`` on."""
-        values = np.vstack([part.readings.T, *(getattr(part, name) for name in self._beside)])
+        values = np.vstack([part.readings.T, *(getattr(part, name) for name in self._averaged)])
         self._note_range(values[: len(self._range)])
-        begin = int(np.searchsorted(self.found.stop, at, "right"))
-        end = int(np.searchsorted(self.found.start, at + values.shape[1], "left"))
+        begin = int(np.searchsorted(self.rests.stop, at, "right"))
+        end = int(np.searchsorted(self.rests.start, at + values.shape[1], "left"))
         for i in range(begin, end):
-            if self.found.start[i] >= at:
-                self._begin(i, part, int(self.found.start[i]) - at, values)
+            if self.rests.start[i] >= at:
+                self._begin(i, part, int(self.rests.start[i]) - at, values)
             self._add(i, values, at)
 
     def _note_range(self, readings: Array) -> None:
@@ -64,28 +64,28 @@ class Tally:
 
     def _begin(self, i: int, part: CalibrationSession, row: int, values: Array) -> None:
         self._first[i] = values[:, row]
-        for name, kept in self._set.items():
-            kept[i] = getattr(part, name)[row]
+        for name, stored in self._set.items():
+            stored[i] = getattr(part, name)[row]
 
     def _add(self, i: int, values: Array, at: int) -> None:
         """The rows of rest i that are in this part."""
         inside = np.clip(self._edges[i] - at, 0, values.shape[1])
-        own = values[:, inside[0] : inside[-1]]
+        samples = values[:, inside[0] : inside[-1]]
         starts = np.flatnonzero(np.diff(inside))
-        away = own - self._first[i, :, None]
+        away = samples - self._first[i, :, None]
         self._sums[i, starts] += np.add.reduceat(away, inside[starts] - inside[0], axis=1).T
         m = len(self._range)
         self._squares[i] += np.einsum("jr,jr->j", away[:m], away[:m])
         for channel, side in self._reached:
-            self._ends[i, channel, side] += np.count_nonzero(own[channel] == self._range[channel, side])
+            self._ends[i, channel, side] += np.count_nonzero(samples[channel] == self._range[channel, side])
 
     def at(self, chosen: NDArray[np.bool_]) -> "Tally":
         """Of those of the rests that are ``chosen`` (n,)."""
-        other = Tally(self.head, self.found.at(chosen))
+        other = Tally(self.head, self.rests.at(chosen))
         for name in ("_first", "_sums", "_squares", "_ends"):
             setattr(other, name, getattr(self, name)[chosen])
         other._range = self._range
-        other._set = {name: kept[chosen] for name, kept in self._set.items()}
+        other._set = {name: stored[chosen] for name, stored in self._set.items()}
         return other
 
     def _between(self) -> Array:
@@ -97,19 +97,19 @@ class Tally:
         """(n, m) range of the means of the quarters, reading units."""
         m = self._squares.shape[1]
         quarters = np.diff(self._between()[:, self.blocks + 1 : -1, :m], axis=1)
-        return np.asarray(np.ptp(quarters / (self.found.samples // PIECES)[:, None, None], axis=1))
+        return np.asarray(np.ptp(quarters / (self.rests.samples // PIECES)[:, None, None], axis=1))
 
     def may_move(self) -> bool:
         """Whether a quarter differs so far that the noise from sample to sample must be known."""
-        if not long_enough_to_move(self.found):
+        if not long_enough_to_move(self.rests):
             return False
         drift = self.drift()
         return any((drift[:, i] > far_turn(sensor)).any() for i, sensor in self._accelerometers())
 
     def moving(self, jitter: Array) -> NDArray[np.bool_]:
         """(n,) as `estimator.static.moving`; ``jitter`` (n, m) sums of the squared changes, reading units squared."""
-        moves = np.zeros(len(self.found), dtype=bool)
-        noise = jitter / (2 * self.found.samples * (self.found.samples // PIECES))[:, None]
+        moves = np.zeros(len(self.rests), dtype=bool)
+        noise = jitter / (2 * self.rests.samples * (self.rests.samples // PIECES))[:, None]
         drift = self.drift()
         for i, sensor in self._accelerometers():
             moves |= turned(sensor, drift[:, i], noise[:, i])
@@ -120,22 +120,22 @@ class Tally:
 
     def session(self) -> CalibrationSession:
         """One row a rest, as `estimator.static.averaged`."""
-        head, samples, m = self.head, self.found.samples, len(self.head.sensors)
+        head, samples, m = self.head, self.rests.samples, len(self.head.sensors)
         assert head.sample_rate is not None
         sums = self._sums.sum(axis=1)
         means = self._first + sums / samples[:, None]
         scale = np.array([sensor.nominal_scale for sensor in head.sensors])
         spread = np.maximum(self._squares - sums[:, :m] ** 2 / samples[:, None], 0.0)
-        beside = dict(zip(self._beside, means[:, m:].T, strict=True))
-        middle = (self.found.start + self.found.stop - 1) / 2 / head.sample_rate
+        averages = dict(zip(self._averaged, means[:, m:].T, strict=True))
+        middle = (self.rests.start + self.rests.stop - 1) / 2 / head.sample_rate
         return replace(
             head,
             readings=means[:, :m],
-            standard_errors=by_kind(head, lambda own: self._errors(own, spread[:, own])),
+            standard_errors=errors_of_kinds(head, lambda channels: self._errors(channels, spread[:, channels])),
             at_ends=self._ends / samples[:, None, None],
             vibration=spread / samples[:, None] / scale**2,
-            time=beside.get("time", middle),
-            temperature=beside.get("temperature"),
+            time=averages.get("time", middle),
+            temperature=averages.get("temperature"),
             flipped=self._set.get("flipped"),
             beta=self._set.get("beta"),
             directions=self._set.get("directions"),
@@ -146,25 +146,25 @@ class Tally:
             counts_averaged=samples.astype(float) if contiguous(head) else None,
         )
 
-    def _errors(self, own: list[int], spread: Array) -> Array:
+    def _errors(self, channels: list[int], spread: Array) -> Array:
         """(n, own) standard errors of the means of some channels, from their sums of squares about the mean."""
-        samples = self.found.samples
+        samples = self.rests.samples
         if samples.max() < 2:
-            return np.full((len(samples), len(own)), np.nan)
+            return np.full((len(samples), len(channels)), np.nan)
         single = samples < 2
         length = np.maximum(samples // self.blocks, 1)
-        means = np.diff(self._between()[:, : self.blocks + 1, own], axis=1) / length[:, None, None]
+        means = np.diff(self._between()[:, : self.blocks + 1, channels], axis=1) / length[:, None, None]
         variance = spread / np.maximum(samples - 1, 1)[:, None]
         means[single], variance[single] = np.nan, np.nan
         return np.sqrt(mean_variance(energies_of(means, variance, samples)))
 
 
-def edges(found: Intervals, blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def edges(rests: Intervals, blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """(n, e) ends of the blocks, of the quarters, and of the rest, sorted; and the place of each among them."""
-    samples, start = found.samples[:, None], found.start[:, None]
+    samples, start = rests.samples[:, None], rests.start[:, None]
     cut = start + np.arange(blocks + 1) * (samples // blocks)
     quarters = start + np.arange(PIECES + 1) * (samples // PIECES)
-    all_edges = np.column_stack([cut, quarters, found.stop])
+    all_edges = np.column_stack([cut, quarters, rests.stop])
     order = np.argsort(all_edges, axis=1, kind="stable")
     return np.take_along_axis(all_edges, order, axis=1), np.argsort(order, axis=1, kind="stable")
 

@@ -50,7 +50,7 @@ def resting(blocks: Blocks, quiet: Mask, reference: Reference, norm: float | Non
         return quiet
     level = np.abs(np.linalg.norm(reference.vector(blocks.mean), axis=1) - norm) < LEVEL * norm
     shake = blocks.shake[:, :3].sum(axis=1)
-    noise = NOISY * blocks.own * np.trace(np.linalg.inv(reference.axes.T @ reference.axes))
+    noise = NOISY * blocks.parity_variance * np.trace(np.linalg.inv(reference.axes.T @ reference.axes))
     calm = shake <= np.maximum(CALM**2, noise)
     return np.asarray(quiet & level & calm & (turning(blocks, reference, rate) < SLOW))
 
@@ -59,9 +59,9 @@ def turning(blocks: Blocks, reference: Reference, rate: float | None) -> Array:
     """(B,) rate at which the specific force turns from block to block, rad/s; 0 for rows that are averages."""
     turns = np.zeros(len(blocks) + 1)
     if rate is not None:
-        apart = np.linalg.norm(np.diff(unit(reference.vector(blocks.mean)), axis=0), axis=1)
+        steps = np.linalg.norm(np.diff(unit(reference.vector(blocks.mean)), axis=0), axis=1)
         middles = 0.5 * (blocks.samples[1:] + blocks.samples[:-1]) / rate
-        turns[1:-1] = np.where(np.diff(blocks.first) == 1, apart / middles, 0.0)
+        turns[1:-1] = np.where(np.diff(blocks.first) == 1, steps / middles, 0.0)
     return np.maximum(turns[1:], turns[:-1])
 
 

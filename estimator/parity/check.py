@@ -98,10 +98,10 @@ class ParityAccumulator:
         """All that is said of a recording."""
         detected = evidence.detected(false_alarm)
         moving = not detected and still.detected(false_alarm)
-        found = evidence.candidates() if detected else []
-        named = {h.sensor for h in found}
-        explained = not detected or evidence.explained(found[0])
-        isolated = found if explained and len(named) == 1 else []
+        candidates = evidence.candidates() if detected else []
+        named = {h.sensor for h in candidates}
+        explained = not detected or evidence.explained(candidates[0])
+        isolated = candidates if explained and len(named) == 1 else []
         m = len(self.reference.names)
         fitted = change.excited @ change.theta
         spread = np.kron(change.excited, np.eye(change.theta.shape[1]))
@@ -114,7 +114,7 @@ class ParityAccumulator:
             p_value=evidence.p_value(evidence.chi2, len(evidence.seen)),
             detected=detected,
             false_alarm=false_alarm,
-            candidates=tuple(map(evidence.candidate, found)),
+            candidates=tuple(map(evidence.candidate, candidates)),
             isolated=self.reference.names[isolated[0].sensor] if isolated else None,
             explained=explained,
             complete=change.complete,

@@ -82,7 +82,7 @@ def profile(manoeuvres: Sequence[Manoeuvre], seconds: float, rate: float, g: flo
     count = int(seconds * rate)
     columns: list[Array] = []
     while sum(map(len, columns)) < count:
-        columns.extend(of_one(m, rate) for m in manoeuvres)
+        columns.extend(course_of(m, rate) for m in manoeuvres)
     phi, theta, load, side, slow = np.concatenate(columns)[:count].T
     theta, load, side, slow = (
         uniform_filter1d(x, max(int(SMOOTH * rate), 1), mode="nearest") for x in (theta, load, side, slow)
@@ -92,7 +92,7 @@ def profile(manoeuvres: Sequence[Manoeuvre], seconds: float, rate: float, g: flo
     return g * np.column_stack([np.sin(theta), y, z])
 
 
-def of_one(m: Manoeuvre, rate: float) -> Array:
+def course_of(m: Manoeuvre, rate: float) -> Array:
     """(R, 5) roll and pitch, rad, load and side load, g, and whether it is a slow roll (1 or 0), of one manoeuvre."""
     count = int(m.seconds * rate)
     roll = m.roll * np.arange(count) / count if m.slow_roll else np.full(count, m.roll)
@@ -133,7 +133,7 @@ def fly(
     force = profile(manoeuvres, seconds, rate, gravity(place))
     shape = (len(force), len(sensors))
     force = force + vibration(w.vibration, len(force), rate, rng)
-    own = w.noise * rng.standard_normal(shape) + wander(w, shape, rate, rng)
+    noise = w.noise * rng.standard_normal(shape) + wander(w, shape, rate, rng)
     clean = response(truth, np.repeat(force[:, None], len(sensors), axis=1))
     offset = np.array([s.nominal_offset or 0.0 for s in sensors])
     return CalibrationSession(
@@ -141,7 +141,7 @@ def fly(
         block=sensors[0].kind,
         programme=IN_SERVICE,
         sensors=tuple(replace(s, position=np.zeros(3)) for s in sensors),
-        readings=clean + truth.scale * own + offset,
+        readings=clean + truth.scale * noise + offset,
         standard_errors=np.full(shape, np.nan),
         site=place,
         sample_rate=rate,

@@ -50,13 +50,13 @@ def _fitted(
     zw = w[:, None] * z
     G = zw.T @ z
     pull = np.linalg.solve(G, zw.T @ nuisance.signals)
-    left = nuisance.signals - z @ pull
+    remainder = nuisance.signals - z @ pull
     p = mean @ V
     residual = p - z @ np.linalg.solve(G, zw.T @ p)
     variance = _variance(change, G)
     alike = V[who] @ V[who].T
-    information = (c @ (left.T @ (w[:, None] * left)) @ c.T) * alike / variance
-    right = np.einsum("kK,Kd,kd->k", c, left.T @ (w[:, None] * residual), V[who]) / variance
+    information = (c @ (remainder.T @ (w[:, None] * remainder)) @ c.T) * alike / variance
+    right = np.einsum("kK,Kd,kd->k", c, remainder.T @ (w[:, None] * residual), V[who]) / variance
     S = np.linalg.inv(np.eye(len(who)) + information)
     J = np.einsum("sK,kK,kd->sdk", pull, c, V[who]).reshape(-1, len(who))
     return S @ right, J @ S @ J.T, float(len(who) - np.trace(S))
@@ -66,5 +66,5 @@ def _variance(change: Change, G: Array) -> float:
     """σ² of an element of p in a block of weight one, (m/s²)² ((rad/s)²), as the noise of Θ has it."""
     s, d = change.theta.shape
     noise = change.noise.reshape(s, d, s, d)
-    found = float(np.einsum("sdtd,st->", noise, G)) / (s * d)
-    return max(found, np.finfo(float).tiny)
+    variance = float(np.einsum("sdtd,st->", noise, G)) / (s * d)
+    return max(variance, np.finfo(float).tiny)

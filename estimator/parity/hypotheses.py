@@ -64,8 +64,10 @@ class Evidence:
         self.chi2 = float(self.seen @ self.seen)
         shown = change.reference.signatures(change.norm)
         columns = np.stack([change.signature(i, rows) for i, rows in enumerate(shown)])
-        whitened = [solve_triangular(root, own, lower=True) for own in columns]
-        self.all = [self._tried(i, kind, own[:, ELEMENTS[kind]]) for i, own in enumerate(whitened) for kind in KINDS]
+        whitened = [solve_triangular(root, signature, lower=True) for signature in columns]
+        self.all = [
+            self._tried(i, kind, signature[:, ELEMENTS[kind]]) for i, signature in enumerate(whitened) for kind in KINDS
+        ]
         self._single = [h for h in self.all if h.kind != SEVERAL]
 
     def share(self, part: Array) -> float:
@@ -86,10 +88,10 @@ class Evidence:
         p, score = tail(ratio, k, self.dof)
         return Hypothesis(sensor, kind, whitened, basis, ratio, score, p)
 
-    def p_value(self, left: float, dof: int) -> float:
+    def p_value(self, chi2: float, dof: int) -> float:
         """Probability of χ² this large over ``dof`` numbers, the noise's own uncertainty included."""
         scale, effective = self.moments(dof)
-        return float(p_value(left / scale, effective))
+        return float(p_value(chi2 / scale, effective))
 
     def moments(self, q: int) -> tuple[float, float]:
         """χ² of q numbers as scale·χ²(dof): s numbers a sensor, with a covariance from few groups (Hotelling).
@@ -99,9 +101,9 @@ class Evidence:
         s = self.change.excited.shape[1]
         nu = max(self.dof, s + 4.0)
         second = nu - s + 1
-        one = s * nu / second
+        factor = s * nu / second
         parts = q / s
-        mean, variance = parts * (one * second / (second - 2)), parts * (one**2 * f.var(s, second))
+        mean, variance = parts * (factor * second / (second - 2)), parts * (factor**2 * f.var(s, second))
         return variance / (2 * mean), 2 * mean**2 / variance
 
     def detected(self, false_alarm: float) -> bool:
@@ -124,8 +126,8 @@ class Evidence:
 
     def explained(self, best: Hypothesis) -> bool:
         """Whether the best hypothesis leaves noise only."""
-        left = len(self.seen) - best.basis.shape[1]
-        return left < 1 or self.p_value(self.chi2 - best.ratio, left) > WRONG_SENSOR
+        remaining = len(self.seen) - best.basis.shape[1]
+        return remaining < 1 or self.p_value(self.chi2 - best.ratio, remaining) > WRONG_SENSOR
 
     def candidate(self, h: Hypothesis) -> Candidate:
         """A hypothesis with its amplitude."""
@@ -142,14 +144,14 @@ class Evidence:
     def sensor(self, index: int, false_alarm: float, isolated: list[Hypothesis]) -> SensorParity:
         """What the recording shows of one sensor, and could have shown."""
         reference = self.change.reference
-        own = {h.kind: h for h in self.all if h.sensor == index}
-        bias, scale, axis = (self.sight(own[kind], false_alarm, isolated) for kind in (BIAS, SCALE, AXIS))
+        hypotheses = {h.kind: h for h in self.all if h.sensor == index}
+        bias, scale, axis = (self.sight(hypotheses[kind], false_alarm, isolated) for kind in (BIAS, SCALE, AXIS))
         return SensorParity(reference.names[index], float(reference.visible[index]), bias, scale, axis)
 
     def sight(self, h: Hypothesis, false_alarm: float, isolated: list[Hypothesis]) -> Sight:
         """Estimate and limits of one kind of change of one sensor, beside the change of an isolated one."""
-        beside = self.beside(h, isolated)
-        whitened = h.whitened - beside @ (beside.T @ h.whitened)
+        nuisance = self.nuisance_basis(h, isolated)
+        whitened = h.whitened - nuisance @ (nuisance.T @ h.whitened)
         sizes = np.linalg.svd(whitened, compute_uv=False)
         if sizes[-1] <= UNSEEN * self.plain(h):
             return Sight(None, None, None, None)
@@ -165,9 +167,9 @@ class Evidence:
             isolable=None if isolable is None else max(isolable, float(detectable)),
         )
 
-    def beside(self, h: Hypothesis, isolated: list[Hypothesis]) -> Array:
+    def nuisance_basis(self, h: Hypothesis, isolated: list[Hypothesis]) -> Array:
         """(q, r) orthonormal, dimensionless: the isolated sensor's change beside a hypothesis, less its own."""
-        if not isolated or any(h is found for found in isolated):
+        if not isolated or any(h is hypothesis for hypothesis in isolated):
             return np.empty((len(self.seen), 0))
         best = isolated[0]
         if (h.sensor, best.kind) != (best.sensor, SEVERAL):
@@ -178,8 +180,8 @@ class Evidence:
 
     def plain(self, h: Hypothesis) -> float:
         """Size of the sensor's largest signature, any kind scaled to the size of the applied vector."""
-        own = [o for o in self.all if o.sensor == h.sensor and o.kind == SEVERAL]
-        return float(np.linalg.svd(own[0].whitened, compute_uv=False)[0])
+        combined = [o for o in self.all if o.sensor == h.sensor and o.kind == SEVERAL]
+        return float(np.linalg.svd(combined[0].whitened, compute_uv=False)[0])
 
     def rivals(self, h: Hypothesis, false_alarm: float) -> Rivals:
         """What a change of the kind of ``h`` must be told from."""

@@ -71,8 +71,8 @@ class Rivals:
     def _lost(self, sizes: Array, shared: Array, sensor: int, k: int) -> Array:
         """(s,) chance to lose a change of ``sizes`` (s,), standard errors; shared (n,) ρ² with each hypothesis."""
         square, shared = sizes**2, shared[:, None]
-        own = score(square + k, np.array([k]))
-        lead = own - score(shared * square + self.count[:, None], self.count)
+        threshold = score(square + k, np.array([k]))
+        lead = threshold - score(shared * square + self.count[:, None], self.count)
         spread = np.sqrt(4.0 * square * (1.0 - shared) + 2.0 * self.count[:, None])
         passed = stdtr(self.dof, (self.margin - lead) / spread)
         lost = ndtr((self.threshold - sizes) / shortfall(self.threshold, self.dof))

@@ -46,7 +46,7 @@ class Blocks:
     """(B, m) smallest reading, reading units."""
     highest: Array
     """(B, m) largest reading, reading units."""
-    own: Array
+    parity_variance: Array
     """(B,) variance within the block of the parity vector's elements: noise alone, (m/s²)² ((rad/s)²)."""
     gain: Array
     """(B, 3) change of the vector from the sample before the block to its last, m/s² (rad/s)."""
@@ -74,8 +74,8 @@ class Blocks:
 
         def mean(name: str) -> Array:
             """Of both halves, by their samples."""
-            one = share.reshape(-1, *[1] * (left[name].ndim - 1))
-            return np.asarray((1.0 - one) * left[name] + one * right[name])
+            weight = share.reshape(-1, *[1] * (left[name].ndim - 1))
+            return np.asarray((1.0 - weight) * left[name] + weight * right[name])
 
         return Blocks(
             first=left["first"] // 2,
@@ -85,7 +85,7 @@ class Blocks:
             jitter=np.maximum(left["jitter"], right["jitter"]),
             lowest=np.minimum(left["lowest"], right["lowest"]),
             highest=np.maximum(left["highest"], right["highest"]),
-            own=mean("own"),
+            parity_variance=mean("parity_variance"),
             gain=left["gain"] + right["gain"],
             shake=mean("shake"),
             spin=mean("spin"),
@@ -124,9 +124,9 @@ class Rails:
             self.count[place] += np.where(same, count, 0)
             value = np.where(same, -np.inf, value)
             larger = value > self.value[place]
-            kept, times = self.value[place].copy(), self.count[place].copy()
-            self.value[place], self.count[place] = np.where(larger, value, kept), np.where(larger, count, times)
-            value, count = np.where(larger, kept, value), np.where(larger, times, count)
+            stored, times = self.value[place].copy(), self.count[place].copy()
+            self.value[place], self.count[place] = np.where(larger, value, stored), np.where(larger, count, times)
+            value, count = np.where(larger, stored, value), np.where(larger, times, count)
 
     @property
     def limit(self) -> Array:
@@ -182,7 +182,7 @@ class Ledger:
         rate = np.empty((len(readings), 0)) if self.gyros is None else self.gyros.rates(readings)
         rate = rate.reshape(len(chunks), length, -1)
         gain, spin_gain = self._gains(n, rate)
-        own = u.reshape(len(chunks), length, -1)
+        chunked = u.reshape(len(chunks), length, -1)
         self._kept.append(
             Blocks(
                 first=self._count + np.arange(len(chunks)),
@@ -190,9 +190,9 @@ class Ledger:
                 mean=a.mean(axis=1),
                 motion=a.var(axis=1).mean(axis=1),
                 jitter=0.5 * (np.diff(a, axis=1) ** 2).sum(axis=(1, 2)) / (max(length - 1, 1) * a.shape[2]),
-                lowest=own.min(axis=1),
-                highest=own.max(axis=1),
-                own=p.var(axis=1).mean(axis=1),
+                lowest=chunked.min(axis=1),
+                highest=chunked.max(axis=1),
+                parity_variance=p.var(axis=1).mean(axis=1),
                 gain=gain,
                 shake=pairs(n - n.mean(axis=1, keepdims=True)).mean(axis=1),
                 spin=rate.mean(axis=1),
@@ -220,16 +220,16 @@ class Ledger:
         """Join neighbours, so that the blocks are twice as long."""
         blocks = self.blocks()
         even = len(blocks) // 2 * 2
-        left = blocks.at(np.arange(even, len(blocks)))
+        remainder = blocks.at(np.arange(even, len(blocks)))
         self._kept = [blocks.at(np.arange(even)).joined()]
         self.length *= 2
         self._count = even // 2
-        if len(left):
-            self._odd(left)
+        if len(remainder):
+            self._odd(remainder)
 
-    def _odd(self, left: Blocks) -> None:
+    def _odd(self, remainder: Blocks) -> None:
         """A block without a neighbour is kept as it is: half as long as the others, and weighted so."""
-        self._kept.append(replace(left, first=np.array([self._count])))
+        self._kept.append(replace(remainder, first=np.array([self._count])))
         self._count += 1
 
     def blocks(self) -> Blocks:

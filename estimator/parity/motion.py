@@ -35,13 +35,13 @@ class Gyros:
 
 def gyros_of(sensors: Sequence[Sensor], calibration: Calibration) -> Gyros | None:
     """The gyros of a recording; None where they do not show a rate in every direction."""
-    own = [(k, s) for k, s in enumerate(sensors) if s.kind == GYROSCOPE]
-    if len(own) < FEWEST:
+    gyros = [(k, s) for k, s in enumerate(sensors) if s.kind == GYROSCOPE]
+    if len(gyros) < FEWEST:
         return None
-    described = [_described(s, calibration) for _, s in own]
+    described = [_described(s, calibration) for _, s in gyros]
     slope = np.array([scale * axis for scale, _, axis in described])
     return Gyros(
-        column=np.array([k for k, _ in own]),
+        column=np.array([k for k, _ in gyros]),
         zero=np.array([zero for _, zero, _ in described]),
         inverse=np.linalg.pinv(slope),
     )

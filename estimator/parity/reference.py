@@ -85,18 +85,18 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
     ------
     ScheduleError : a sensor that the reference does not have, or three usable ones or fewer.
     """
-    own = [(k, s) for k, s in enumerate(sensors) if s.kind == kind]
+    members = [(k, s) for k, s in enumerate(sensors) if s.kind == kind]
     known = {s.name: s for s in calibration.sensors if s.kind == kind}
     unknown = [
         Problem(f"sensors[{k + 1}].name", f"{s.name} is not in the reference calibration; name sensors as there")
-        for k, s in own
+        for k, s in members
         if s.name not in known
     ]
     if unknown:
         raise ScheduleError(unknown)
-    used = [(k, s, known[s.name]) for k, s in own if all(known[s.name].observable[part] for part in NEEDED)]
+    used = [(k, s, known[s.name]) for k, s in members if all(known[s.name].observable[part] for part in NEEDED)]
     if len(used) < FEWEST:
-        raise ScheduleError([Problem("sensors", too_few(len(used), len(own), kind))])
+        raise ScheduleError([Problem("sensors", too_few(len(used), len(members), kind))])
     return assembled(used, calibration, kind)
 
 

@@ -27,7 +27,7 @@ from estimator.session import Array
 EXCITED = 0.02
 """g (of the largest vector); a direction of n that changes less than this, root mean square, is not regressed on."""
 
-LEAST_LEFT = 0.05
+LEAST_FREEDOM = 0.05
 """Share of a direction that must lie outside a group; below it the group's residuals say nothing of it."""
 
 SLOWEST = 0.9
@@ -149,15 +149,15 @@ def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
     x (B, 4) and the weights w (B,) of the blocks are dimensionless.
     """
     mean = (w[:, None] * x).sum(axis=0) / w.sum()
-    apart = x[:, 1:] - mean[1:]
+    deviations = x[:, 1:] - mean[1:]
     scatter = np.zeros((groups, 3, 3))
-    np.add.at(scatter, selection.group, w[:, None, None] * apart[:, :, None] * apart[:, None, :])
+    np.add.at(scatter, selection.group, w[:, None, None] * deviations[:, :, None] * deviations[:, None, :])
     moments = scatter.sum(axis=0)
     vectors = eigh(moments)[1]
     along = np.einsum("ik,gij,jk->gk", vectors, scatter, vectors)
-    left = (along.sum(axis=0) - along.max(axis=0)) / w.sum()
-    seen = np.zeros((4, int((left > EXCITED**2).sum())))
-    seen[1:] = vectors[:, left > EXCITED**2]
+    spread = (along.sum(axis=0) - along.max(axis=0)) / w.sum()
+    seen = np.zeros((4, int((spread > EXCITED**2).sum())))
+    seen[1:] = vectors[:, spread > EXCITED**2]
     return np.linalg.qr(np.column_stack([mean, seen]))[0]
 
 
@@ -174,12 +174,12 @@ def scores(z: Array, w: Array, residual: Array, selection: Selection, G: Array) 
     groups, s = selection.groups, z.shape[1]
     root = np.linalg.cholesky(G)
     white = np.linalg.solve(root, z.T).T
-    own = np.zeros((groups, s, s))
+    leverage = np.zeros((groups, s, s))
     score = np.zeros((groups, s, residual.shape[1]))
-    np.add.at(own, selection.group, w[:, None, None] * white[:, :, None] * white[:, None, :])
+    np.add.at(leverage, selection.group, w[:, None, None] * white[:, :, None] * white[:, None, :])
     np.add.at(score, selection.group, w[:, None, None] * white[:, :, None] * residual[:, None, :])
-    values, vectors = eigh(np.eye(s) - own)
-    freed = (vectors / np.sqrt(np.maximum(values, LEAST_LEFT))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
+    values, vectors = eigh(np.eye(s) - leverage)
+    freed = (vectors / np.sqrt(np.maximum(values, LEAST_FREEDOM))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
     return np.linalg.solve(root.T, freed @ score)
 
 
@@ -201,8 +201,8 @@ def neighbours(z: Array, w: Array, residual: Array, selection: Selection, G: Arr
     fitted = group_means(w, z, selection) * size
     hat = fitted @ np.linalg.solve(G, fitted.T)
     pull = -float(np.trace(hat, offset=1)) / (len(hat) - float(np.trace(hat)))
-    found = float((mean[1:] * mean[:-1]).sum() / max((mean**2).sum(), np.finfo(float).tiny))
-    return float(np.clip(found - pull + 2 * max(found - pull, 0.0) / selection.groups, 0.0, SLOWEST))
+    correlation = float((mean[1:] * mean[:-1]).sum() / max((mean**2).sum(), np.finfo(float).tiny))
+    return float(np.clip(correlation - pull + 2 * max(correlation - pull, 0.0) / selection.groups, 0.0, SLOWEST))
 
 
 def sensor_noise(moved: Array, V: Array, groups: int) -> Array:

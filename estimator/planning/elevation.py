@@ -46,7 +46,7 @@ def conditioning(schedule: CalibrationSession) -> float:
     Infinite where the schedule leaves a direction without a trace.
     """
     geometry = stand_geometry(schedule)
-    own = jacobian(nominal(schedule.sensors), geometry.n, geometry.norm) / geometry.norm[:, None]
-    values = np.linalg.eigvalsh(np.einsum("rmi,rmj->mij", own, own))
+    relative = jacobian(nominal(schedule.sensors), geometry.n, geometry.norm) / geometry.norm[:, None]
+    values = np.linalg.eigvalsh(np.einsum("rmi,rmj->mij", relative, relative))
     ratio = values[:, 0] / values[:, -1]
     return float(1 / ratio.min()) if ratio.min() > ROUNDING else float("inf")

@@ -73,8 +73,8 @@ def read_perfectly(schedule: CalibrationSession, sigma: Array) -> CalibrationSes
     sensors, p = schedule.sensors, nominal(schedule.sensors)
     pulses = np.array([schedule.count_time is not None and s.kind != ACCELEROMETER for s in sensors])
     period = np.where(pulses, schedule.count_time or 1.0, 1.0)
-    own = sigma**2 - np.array([s.bias_repeatability for s in sensors]) ** 2
-    error = np.sqrt(np.maximum(own * (p.scale * period) ** 2 - np.where(pulses, schedule.quantisation, 0.0), 0.0))
+    variance = sigma**2 - np.array([s.bias_repeatability for s in sensors]) ** 2
+    error = np.sqrt(np.maximum(variance * (p.scale * period) ** 2 - np.where(pulses, schedule.quantisation, 0.0), 0.0))
     readings = response(p, stand_geometry(schedule).n) * period + np.array([s.nominal_offset or 0.0 for s in sensors])
     return replace(schedule, readings=readings, standard_errors=np.broadcast_to(error, readings.shape).copy())
 
@@ -84,9 +84,11 @@ def expected_sigmas(session: CalibrationSession) -> tuple[Array, Array]:
     table = tables(solved([session]))
     scale = np.array([s.nominal_scale for s in session.sensors])
 
-    def four(own: Array) -> Array:
+    def four(columns: Array) -> Array:
         """(m, 4) of the five elements (m, 5), SI, with relative scale and both turns as one."""
-        return np.stack([own[:, 0] / scale, own[:, 1], own[:, 2], np.hypot(own[:, 3], own[:, 4])], axis=-1)
+        return np.stack(
+            [columns[:, 0] / scale, columns[:, 1], columns[:, 2], np.hypot(columns[:, 3], columns[:, 4])], axis=-1
+        )
 
     return four(table.sigma[0]), four(table.steady[0])
 

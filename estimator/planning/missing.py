@@ -26,7 +26,7 @@ MOST = 360
 RUNS = ("direct", "flipped")
 SETTINGS = Form(
     lambda settings: [{"run": run, "beta_deg": round(float(np.degrees(beta)), 9)} for run, beta in settings],
-    lambda listed: tuple((one["run"], float(np.radians(one["beta_deg"]))) for one in listed),
+    lambda listed: tuple((setting["run"], float(np.radians(setting["beta_deg"]))) for setting in listed),
 )
 
 
@@ -82,13 +82,15 @@ def missing(session: CalibrationSession, positions: int | None = None, *, both_r
     """
     rows = averaged(session)
     if rows.programme != TWO_AXIS_STAND:
-        found = rank_of_orientations(rows.sensors, pointing(rows))
-        return Missing(len(rows.readings), None, (), found.add, found.unseen)
+        rank = rank_of_orientations(rows.sensors, pointing(rows))
+        return Missing(len(rows.readings), None, (), rank.add, rank.unseen)
     assert rows.beta is not None
     assert rows.flipped is not None
     steps = positions or steps_of(rows.beta, rows.flipped)
     runs = np.array([False, True]) if both_runs else np.unique(rows.flipped)
-    settings = tuple(one for run in runs for one in _unset(rows.beta[rows.flipped == run], rows.beta, steps, bool(run)))
+    settings = tuple(
+        setting for run in runs for setting in _unset(rows.beta[rows.flipped == run], rows.beta, steps, bool(run))
+    )
     so_far = expected_sigmas(rows)[0]
     expected = _expected(rows, so_far, _complete(rows, steps, tuple(map(bool, runs))) if settings else so_far)
     return Missing(len(rows.readings), steps, settings, np.zeros((0, 3)), _open(expected), expected)
@@ -107,8 +109,8 @@ def _complete(rows: CalibrationSession, steps: int, runs: tuple[bool, ...]) -> A
 def steps_of(beta: Array, flipped: Array) -> int:
     """Equal steps in a whole turn that the smallest step between angles (R,), rad, of one run makes."""
     gaps = [np.diff(np.unique(np.round(np.mod(beta[flipped == run], 2 * np.pi), 9))) for run in np.unique(flipped)]
-    found = np.concatenate(gaps)
-    count = 2 * np.pi / float(found.min()) if len(found) else np.inf
+    counts = np.concatenate(gaps)
+    count = 2 * np.pi / float(counts.min()) if len(counts) else np.inf
     if not count <= MOST or abs(count - round(count)) > SAME:
         text = "the steps so far are no equal parts of a turn; say how many positions a run is to have"
         raise ScheduleError([Problem("beta_deg", text)])
@@ -128,14 +130,14 @@ def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple
     """Sensor by sensor; both (m, 4) SI, relative for scale."""
     return tuple(
         Expected(sensor.name, sensor.kind, parameter, finite(now), finite(then))
-        for sensor, own, whole in zip(rows.sensors, so_far, complete, strict=True)
-        for parameter, now, then in zip(PARAMETERS, own, whole, strict=True)
+        for sensor, current, whole in zip(rows.sensors, so_far, complete, strict=True)
+        for parameter, now, then in zip(PARAMETERS, current, whole, strict=True)
     )
 
 
 def _open(expected: tuple[Expected, ...]) -> tuple[str, ...]:
     """``A1 scale``: what is not observed yet."""
-    return tuple(f"{one.sensor} {one.parameter}" for one in expected if one.so_far is None)
+    return tuple(f"{estimate.sensor} {estimate.parameter}" for estimate in expected if estimate.so_far is None)
 
 
 def pointing(rows: CalibrationSession) -> Array:
@@ -147,5 +149,5 @@ def pointing(rows: CalibrationSession) -> Array:
     offset = np.array([sensor.nominal_offset or 0.0 for sensor in rows.sensors])[felt]
     axes = np.stack([sensor.nominal_axis for sensor in rows.sensors])[felt]
     force = np.linalg.lstsq(axes, ((rows.readings[:, felt] - offset) / scale).T, rcond=None)[0].T
-    found: Array = force / np.linalg.norm(force, axis=1, keepdims=True)
-    return found
+    directions: Array = force / np.linalg.norm(force, axis=1, keepdims=True)
+    return directions

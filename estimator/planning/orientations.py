@@ -94,18 +94,18 @@ def rank_of_orientations(
     """
     felt, directions = usable(sensors, directions)
     rows, unknowns = planned_rows(axes_of(felt), directions, noise, direction_sigma)
-    told = information(rows, unknowns, quadratic)
-    free = np.linalg.norm(told.basis, axis=1) > 0
-    seen = observed(told.covariance, told.unseen, free)
+    known = information(rows, unknowns, quadratic)
+    free = np.linalg.norm(known.basis, axis=1) > 0
+    seen = observed(known.covariance, known.unseen, free)
     labels = names(felt)
     return OrientationRank(
         directions=directions,
-        rank=told.rank,
-        parameters=told.parameters,
-        weakest=(labels[told.weakest[0]], told.weakest[1]),
-        unseen=tuple(in_words(vector, labels) for vector in told.unseen.T),
+        rank=known.rank,
+        parameters=known.parameters,
+        weakest=(labels[known.weakest[0]], known.weakest[1]),
+        unseen=tuple(in_words(vector, labels) for vector in known.unseen.T),
         names=labels,
-        sigma=np.where(seen, np.sqrt(np.diagonal(told.covariance)), np.nan),
+        sigma=np.where(seen, np.sqrt(np.diagonal(known.covariance)), np.nan),
         add=completion(axes_of(felt), directions, noise=noise, quadratic=quadratic, direction_sigma=direction_sigma),
     )
 

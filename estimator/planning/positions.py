@@ -76,9 +76,9 @@ def exchanged(rows: NDArray[np.intp], candidates: Array) -> NDArray[np.intp]:
         gained = 0.0
         for place, old in enumerate(rows):
             spread = np.einsum("kmi,mij->kmj", candidates, np.linalg.inv(M))
-            own = (spread * candidates).sum(axis=-1)
+            leverage = (spread * candidates).sum(axis=-1)
             across = (spread * candidates[old]).sum(axis=-1)
-            factor = np.log(np.maximum((1 + own) * (1 - own[old]) + across**2, 1e-12)).sum(axis=-1)
+            factor = np.log(np.maximum((1 + leverage) * (1 - leverage[old]) + across**2, 1e-12)).sum(axis=-1)
             best = int(np.argmax(factor))
             if factor[best] > SLIGHT:
                 x, y = candidates[best], candidates[old]
@@ -104,13 +104,13 @@ def optimal_positions(schedule: CalibrationSession, sigma: Array) -> OptimalPosi
     beta = np.concatenate([schedule.beta, np.tile(grid, len(runs))])
     flipped = np.concatenate([schedule.flipped, np.repeat(runs, GRID)])
     candidates = whitened(schedule, beta, flipped, sigma)
-    own = np.arange(len(schedule.beta))
-    scattered = len(own) + np.floor((GOLDEN * np.arange(1, len(own) + 1) % 1.0) * len(runs) * GRID).astype(np.intp)
-    found = max(
-        (exchanged(start, candidates) for start in (own, scattered)), key=lambda r: log_information(candidates[r])
+    given = np.arange(len(schedule.beta))
+    scattered = len(given) + np.floor((GOLDEN * np.arange(1, len(given) + 1) % 1.0) * len(runs) * GRID).astype(np.intp)
+    best = max(
+        (exchanged(start, candidates) for start in (given, scattered)), key=lambda r: log_information(candidates[r])
     )
-    gain = log_information(candidates[found]) - log_information(candidates[own])
-    order = found[np.lexsort((beta[found], flipped[found]))]
+    gain = log_information(candidates[best]) - log_information(candidates[given])
+    order = best[np.lexsort((beta[best], flipped[best]))]
     places = {(round(float(beta[k]), 9), bool(flipped[k])) for k in order}
     efficiency = float(np.exp(-gain / (5 * len(schedule.sensors))))
     return OptimalPositions(beta[order], flipped[order], efficiency, len(places))

@@ -99,9 +99,11 @@ def tightness(session: CalibrationSession, request: Request) -> float:
     """Largest U/T; without tolerances the mean square of relative scale and axis error. Infinite where not observed."""
     total = expected_sigmas(session)[0]
     T = tolerances(session, request)
-    asked = np.isfinite(T)
-    used = request.coverage * total[asked] / T[asked] if asked.any() else (total[:, [0, 3]] ** 2).sum(axis=1)
-    figure = used.max() if asked.any() else used.mean()
+    requested = np.isfinite(T)
+    used = (
+        request.coverage * total[requested] / T[requested] if requested.any() else (total[:, [0, 3]] ** 2).sum(axis=1)
+    )
+    figure = used.max() if requested.any() else used.mean()
     return float(figure) if np.isfinite(figure) else float("inf")
 
 
@@ -125,8 +127,8 @@ def least(figure: Callable[[float], float], grid: Array) -> float:
         return float(np.median(grid))
     k = int(np.argmin(values))
     low, high = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-    found = minimize_scalar(figure, bounds=(low, high), method="bounded", options={"xatol": np.radians(0.05)})
-    return float(found.x) if found.fun <= values[k] else float(grid[k])
+    minimum = minimize_scalar(figure, bounds=(low, high), method="bounded", options={"xatol": np.radians(0.05)})
+    return float(minimum.x) if minimum.fun <= values[k] else float(grid[k])
 
 
 def fewest_positions(like: CalibrationSession, angle: float, request: Request, sigma: Array) -> int:

@@ -79,10 +79,10 @@ def descend(
             here = x[p]
             for side in (1.0, -1.0):
                 x[p] = here + side * steps[p]
-                found = problem.functional(x)
+                value = problem.functional(x)
                 evaluations += 1
-                if found < best:
-                    best = found
+                if value < best:
+                    best = value
                     break
             else:
                 x[p] = here
@@ -97,13 +97,13 @@ def descend(
 def levenberg_marquardt(problem: Triples, start: Array | None = None) -> Search:
     """The same functional by MINPACK's Levenberg–Marquardt with the exact Jacobian; start (P,) dimensionless."""
     x = np.zeros(len(problem.free)) if start is None else start
-    found = least_squares(problem.misses, x, jac=problem.jacobian, method="lm", xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    solution = least_squares(problem.misses, x, jac=problem.jacobian, method="lm", xtol=1e-14, ftol=1e-14, gtol=1e-14)
     return Search(
-        x=found.x,
-        parameters=problem.parameters(found.x),
-        functional=float(2 * found.cost),
-        iterations=int(found.njev or found.nfev),
-        evaluations=int(found.nfev),
-        converged=bool(found.success),
-        path=found.x[None],
+        x=solution.x,
+        parameters=problem.parameters(solution.x),
+        functional=float(2 * solution.cost),
+        iterations=int(solution.njev or solution.nfev),
+        evaluations=int(solution.nfev),
+        converged=bool(solution.success),
+        path=solution.x[None],
     )

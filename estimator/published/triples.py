@@ -131,8 +131,8 @@ def triples_of(session: CalibrationSession) -> Triples:
     fixed = {2, 3, 4 * second + 3}
     free = np.array([k for k in range(4 * m) if k not in fixed])
     if (m - 2) * R < len(free):
-        said = f"{few(R, 'orientation')}: fewer equations than {len(free)} parameters"
-        raise ScheduleError([Problem("table", said)])
+        problem = f"{few(R, 'orientation')}: fewer equations than {len(free)} parameters"
+        raise ScheduleError([Problem("table", problem)])
     return Triples(measured(session)[0] / scale, gravity(session.site), scale, axes, frames, members, free)
 
 

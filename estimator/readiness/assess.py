@@ -43,7 +43,7 @@ def readiness(session: CalibrationSession, question: Question, rng: np.random.Ge
     allowed, limits = allowances(session, series, question)
     faults = content_faults(session, series, allowed)
     if any(fault.blocks for fault in faults):
-        return _told(_unread(session, question, faults), session, series)
+        return _with_record(_unread(session, question, faults), session, series)
     return _judged(session, question, (series, allowed, limits), faults, rng)
 
 
@@ -53,10 +53,10 @@ def allowances(session: CalibrationSession, series: Series, question: Question) 
     felt = np.abs(np.median(series.value[series.place == series.place[-1]], axis=0))
     most, limits = [], []
     for sensor, f in zip(session.sensors, felt, strict=True):
-        kept = question.tolerances.get(sensor.kind)
-        bias = np.inf if kept is None or kept.bias is None else kept.bias
+        tolerance = question.tolerances.get(sensor.kind)
+        bias = np.inf if tolerance is None or tolerance.bias is None else tolerance.bias
         seen = sensor.kind == ACCELEROMETER and f >= FELT * force
-        scale = np.inf if kept is None or kept.scale is None or not seen else kept.scale * f
+        scale = np.inf if tolerance is None or tolerance.scale is None or not seen else tolerance.scale * f
         most.append(question.share * min(bias, scale))
         limits.append("scale" if scale < bias else "bias")
     return np.array(most), limits
@@ -65,18 +65,18 @@ def allowances(session: CalibrationSession, series: Series, question: Question) 
 def _judged(
     session: CalibrationSession,
     question: Question,
-    found: tuple[Series, Array, list[str]],
+    limited: tuple[Series, Array, list[str]],
     faults: tuple[Fault, ...],
     rng: np.random.Generator,
 ) -> Readiness:
-    series, allowed, limits = found
+    series, allowed, limits = limited
     names = tuple(sensor.name for sensor in session.sensors)
     marks = first_and_last(series, names, allowed)
     first = max((mark for mark, _ in marks), default=0)
     calm = len(series.time) - first >= CALM
     rest = series.since(first) if calm else series
-    lasting = _lasting(session, series, rest, question, allowed)
-    disturbances = (*(replace(one, passed=calm) for _, one in marks), *lasting)
+    persisting = _persisting(session, series, rest, question, allowed)
+    disturbances = (*(replace(outlook, passed=calm) for _, outlook in marks), *persisting)
     held = courses(rest.time, rest.value, rest.place, rest.count, _wide(rest, allowed))
     drawings = [drawn(course, rng) for course in held]
     outlooks = tuple(
@@ -84,7 +84,7 @@ def _judged(
         for i in range(len(names))
         if np.isfinite(allowed[i])
     )
-    outlooks = tuple(_shares(one, session, rest, question) for one in outlooks)
+    outlooks = tuple(_shares(outlook, session, rest, question) for outlook in outlooks)
     thermal = _thermal(session, rest, question, rng)
     base = Readiness(
         unit=session.unit,
@@ -104,15 +104,17 @@ def _judged(
     return _stated(base, _creep(session, rest, question, drawings, allowed))
 
 
-def _lasting(
+def _persisting(
     session: CalibrationSession, series: Series, rest: Series, question: Question, allowed: Array
 ) -> list[Disturbance]:
     """What does not pass by itself."""
     names = tuple(sensor.name for sensor in session.sensors)
-    kept = [question.tolerances.get(sensor.kind) for sensor in session.sensors]
-    quadratic = np.array([0.0 if own is None or own.quadratic is None else own.quadratic for own in kept])
-    found = shaking(rest, names, quadratic, allowed)
-    return found + (clipped(session.readings, names, float(series.edges[-1, 1])) if session.is_raw else [])
+    tolerances = [question.tolerances.get(sensor.kind) for sensor in session.sensors]
+    quadratic = np.array(
+        [0.0 if tolerance is None or tolerance.quadratic is None else tolerance.quadratic for tolerance in tolerances]
+    )
+    disturbances = shaking(rest, names, quadratic, allowed)
+    return disturbances + (clipped(session.readings, names, float(series.edges[-1, 1])) if session.is_raw else [])
 
 
 def _wide(series: Series, allowed: Array) -> Array:
@@ -124,10 +126,10 @@ def _outlook(
     i: int,
     session: CalibrationSession,
     question: Question,
-    own: tuple[Course, Drawn, int, float, str],
+    drift: tuple[Course, Drawn, int, float, str],
     rng: np.random.Generator,
 ) -> Outlook:
-    course, drawing, means, allowed, limit = own
+    course, drawing, means, allowed, limit = drift
     far = departures(drawing, question.duration, rng)
     chance = float(np.mean(far > allowed))
     is_warm, short = chance <= 1 - LIKELY, question.duration / REACH - course.span
@@ -146,15 +148,17 @@ def _outlook(
     )
 
 
-def _shares(one: Outlook, session: CalibrationSession, series: Series, question: Question) -> Outlook:
+def _shares(outlook: Outlook, session: CalibrationSession, series: Series, question: Question) -> Outlook:
     """With the bound as shares of the tolerances."""
-    i = [sensor.name for sensor in session.sensors].index(one.name)
-    kept = question.tolerances[one.kind]
+    i = [sensor.name for sensor in session.sensors].index(outlook.name)
+    tolerance = question.tolerances[outlook.kind]
     felt = float(np.abs(np.median(series.value[:, i])))
     return replace(
-        one,
-        bias_share=one.bound / kept.bias if kept.bias else None,
-        scale_share=one.bound / (kept.scale * felt) if kept.scale and felt and one.kind == ACCELEROMETER else None,
+        outlook,
+        bias_share=outlook.bound / tolerance.bias if tolerance.bias else None,
+        scale_share=outlook.bound / (tolerance.scale * felt)
+        if tolerance.scale and felt and outlook.kind == ACCELEROMETER
+        else None,
     )
 
 
@@ -163,17 +167,17 @@ def _thermal(
 ) -> Outlook | None:
     """What the thermometer says of the zeros, by the coefficient that is stated."""
     kind = ACCELEROMETER if any(s.kind == ACCELEROMETER for s in session.sensors) else session.sensors[0].kind
-    coefficient, kept = (question.coefficient or {}).get(kind), question.tolerances.get(kind)
+    coefficient, tolerance = (question.coefficient or {}).get(kind), question.tolerances.get(kind)
     warmth = series.temperature
-    if warmth is None or coefficient is None or kept is None or kept.bias is None or np.ptp(warmth) == 0:
+    if warmth is None or coefficient is None or tolerance is None or tolerance.bias is None or np.ptp(warmth) == 0:
         return None
-    value, allowed = coefficient * warmth[:, None], question.share * kept.bias
+    value, allowed = coefficient * warmth[:, None], question.share * tolerance.bias
     same = np.zeros_like(series.place)
     wide = np.array([WIDE * max(allowed, float(np.ptp(value)))])
     course = courses(series.time, value, same, series.count, wide)[0]
-    own = (course, drawn(course, rng), len(series.time), allowed, "bias")
+    drift = (course, drawn(course, rng), len(series.time), allowed, "bias")
     named = replace(session, sensors=(replace(session.sensors[0], name="temperature", kind=kind),))
-    return replace(_outlook(0, named, question, own, rng), needed=None)
+    return replace(_outlook(0, named, question, drift, rng), needed=None)
 
 
 def _creep(
@@ -196,14 +200,14 @@ def _stated(base: Readiness, creep: Disturbance | None) -> Readiness:
     """The answer: what is to be done first comes first."""
     judged = base.outlooks if base.temperature is None else (*base.outlooks, base.temperature)
     late = 1 - (1 - LIKELY) / max(len(judged), 1)
-    if any(not one.passed for one in base.disturbances):
+    if any(not item.passed for item in base.disturbances):
         return replace(base, state=State.NOT_STILL)
-    if any(one.chance >= late for one in judged):
+    if any(item.chance >= late for item in judged):
         if creep is None:
             return replace(base, state=State.NOT_WARM)
         return replace(base, state=State.NOT_STILL, disturbances=(*base.disturbances, creep))
     long_enough = base.recorded - base.judged_from >= base.duration / REACH
-    is_warm = all(one.chance <= 1 - LIKELY for one in judged)
+    is_warm = all(item.chance <= 1 - LIKELY for item in judged)
     return replace(base, state=State.READY if is_warm and long_enough else State.TOO_EARLY)
 
 
@@ -211,10 +215,10 @@ def _unread(session: CalibrationSession, question: Question, faults: tuple[Fault
     """Nothing can be told."""
     names = tuple(sensor.name for sensor in session.sensors)
     none = np.zeros((0, len(names)))
-    own = (session.unit, State.CANNOT_TELL, (), (), faults, question.duration, 0.0, 0.0, np.zeros(0), none, names)
-    return Readiness(*own)
+    fields = (session.unit, State.CANNOT_TELL, (), (), faults, question.duration, 0.0, 0.0, np.zeros(0), none, names)
+    return Readiness(*fields)
 
 
-def _told(base: Readiness, session: CalibrationSession, series: Series) -> Readiness:
+def _with_record(base: Readiness, session: CalibrationSession, series: Series) -> Readiness:
     """With what was recorded."""
     return replace(base, recorded=float(series.edges[-1, 1]), time=series.time, change=series.change)

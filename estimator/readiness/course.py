@@ -68,8 +68,8 @@ def courses(time: Array, value: Array, place: Array, count: Array, wide: Array) 
     ``count`` (n,) samples; ``wide`` (m,) one sigma of the priors of d and a, m/s² or rad/s."""
     t = time - time[0]
     span = float(t[-1])
-    numbers, own = np.unique(place, return_inverse=True)
-    Z = (own[:, None] == np.arange(len(numbers))).astype(float)
+    numbers, members = np.unique(place, return_inverse=True)
+    Z = (members[:, None] == np.arange(len(numbers))).astype(float)
     noise = np.maximum(first_scatter(value, place), 1e-6 * wide)  # a prior 10⁶ σ wide is flat
     shrink = (noise / wide) ** 2
     X = np.column_stack([t / span, 1 - np.exp(-t[:, None] / TAUS)])
@@ -162,8 +162,8 @@ def needed(course: Course, means: int, duration: float, allowed: float) -> float
     lengths = np.array([_enough(course, int(cell), means, duration, allowed) for cell in cells])
     order = np.argsort(lengths)
     share = np.cumsum(course.weight[cells][order])
-    found = float(lengths[order][np.searchsorted(share, share[-1] / 2)])
-    return found if np.isfinite(found) else None
+    length = float(lengths[order][np.searchsorted(share, share[-1] / 2)])
+    return length if np.isfinite(length) else None
 
 
 def _enough(course: Course, cell: int, means: int, duration: float, allowed: float) -> float:

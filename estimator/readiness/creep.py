@@ -28,7 +28,7 @@ def turn(axes: Array, force: Array, drift: Array, error: Array) -> float | None:
         return None
     pattern = np.cross(axes, force)  # e·(f × ω) = ω·(e × f)
     omega = np.linalg.lstsq(pattern, drift, rcond=1e-6)[0]
-    left = drift - pattern @ omega
-    by_chance = ((left**2).sum() / (drift**2).sum()) ** (len(axes) / 2 - 1)
-    is_turn = by_chance < CHANCE and p_value(((left / error) ** 2).sum(), len(axes) - 2) > LEAVES
+    residual = drift - pattern @ omega
+    by_chance = ((residual**2).sum() / (drift**2).sum()) ** (len(axes) / 2 - 1)
+    is_turn = by_chance < CHANCE and p_value(((residual / error) ** 2).sum(), len(axes) - 2) > LEAVES
     return float(np.linalg.norm(omega)) if is_turn else None

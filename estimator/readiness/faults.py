@@ -80,51 +80,51 @@ def content_faults(session: CalibrationSession, series: Series, allowed: Array) 
     """Whether its readings can be those of a resting block; ``allowed`` (m,) drift, m/s² or rad/s."""
     names = tuple(sensor.name for sensor in session.sensors)
     codes = [np.unique(channel) for channel in at_input(session).T]
-    stuck = tuple(name for name, own in zip(names, codes, strict=True) if len(own) == 1)
+    stuck = tuple(name for name, levels in zip(names, codes, strict=True) if len(levels) == 1)
     coarse = tuple(
         name
-        for name, own, most in zip(names, codes, allowed, strict=True)
-        if 1 < len(own) <= CODES and np.diff(own).max() > most
+        for name, levels, most in zip(names, codes, allowed, strict=True)
+        if 1 < len(levels) <= CODES and np.diff(levels).max() > most
     )
-    found = [Fault(kind, own) for kind, own in ((FaultKind.STUCK, stuck), (FaultKind.COARSE, coarse)) if own]
+    faults = [Fault(kind, levels) for kind, levels in ((FaultKind.STUCK, stuck), (FaultKind.COARSE, coarse)) if levels]
     if not np.isfinite(allowed).any():
-        found.append(Fault(FaultKind.NOT_JUDGED))
-    found += _rest_faults(session, series)
+        faults.append(Fault(FaultKind.NOT_JUDGED))
+    faults += _rest_faults(session, series)
     informed = len(series.time) - len(np.unique(series.place))
     if informed < FEWEST - 1:
         kind = FaultKind.POSITIONS if len(np.unique(series.place)) > 1 else FaultKind.FEW
-        found.append(
+        faults.append(
             Fault(kind, amount=len(np.unique(series.place)) if kind is FaultKind.POSITIONS else len(series.time))
         )
-    return (*found, *_notes(session, series))
+    return (*faults, *_notes(session, series))
 
 
 def _rest_faults(session: CalibrationSession, series: Series) -> list[Fault]:
     felt = np.array([sensor.kind == ACCELEROMETER for sensor in session.sensors])
-    found = []
+    faults = []
     if felt.any():
         force = np.abs(force_of(session, series))
         magnitude = float(np.linalg.norm(force) if np.ndim(force) == 1 and len(force) == 3 else force.max())
         least = RESTING[0] if is_spatial(session) else 0.0
         if not least <= magnitude / STANDARD_GRAVITY <= RESTING[1]:
-            found.append(Fault(FaultKind.UNITS, _named(session, felt), magnitude / STANDARD_GRAVITY))
+            faults.append(Fault(FaultKind.UNITS, _named(session, felt), magnitude / STANDARD_GRAVITY))
     rates = np.abs(np.median(series.value[:, ~felt], axis=0))
     if (rates > TURNING).any():
-        found.append(Fault(FaultKind.TURNING, _named(session, ~felt), float(rates.max())))
-    return found
+        faults.append(Fault(FaultKind.TURNING, _named(session, ~felt), float(rates.max())))
+    return faults
 
 
 def _notes(session: CalibrationSession, series: Series) -> list[Fault]:
-    found = [Fault(FaultKind.ALONE, (session.sensors[0].name,))] if len(session.sensors) == 1 else []
+    faults = [Fault(FaultKind.ALONE, (session.sensors[0].name,))] if len(session.sensors) == 1 else []
     pauses = series.edges[1:, 0] - series.edges[:-1, 1]
     usual = np.median(np.diff(series.time))
     if len(pauses) and pauses.max() > GAP * usual:
-        found.append(Fault(FaultKind.GAP, amount=float(pauses.max())))
-    return found
+        faults.append(Fault(FaultKind.GAP, amount=float(pauses.max())))
+    return faults
 
 
 def _named(session: CalibrationSession, chosen: Array) -> tuple[str, ...]:
-    return tuple(sensor.name for sensor, own in zip(session.sensors, chosen, strict=True) if own)
+    return tuple(sensor.name for sensor, is_chosen in zip(session.sensors, chosen, strict=True) if is_chosen)
 
 
 def is_spatial(session: CalibrationSession) -> bool:

@@ -35,8 +35,8 @@ class Drawn:
     def to_come(self, after: float, duration: float) -> Array:
         """(N, STEPS) change of the course, without walk, from ``after`` s beyond the record on, m/s² or rad/s."""
         s = duration * np.arange(1, STEPS + 1) / STEPS
-        left = self.settling * np.exp(-(self.span + after) / self.tau)
-        settles = [left[:, [j]] * -np.expm1(-s / self.tau[:, [j]]) for j in range(2)]
+        remaining = self.settling * np.exp(-(self.span + after) / self.tau)
+        settles = [remaining[:, [j]] * -np.expm1(-s / self.tau[:, [j]]) for j in range(2)]
         return np.asarray(self.drift[:, None] * s / self.span + sum(settles))
 
 

@@ -130,19 +130,19 @@ class Readiness(
     @property
     def wait(self) -> tuple[float, float, float] | None:
         """s more to wait, 5 %, 50 % and 95 %: of whoever needs longest; None where waiting is not the answer."""
-        waits = [one.wait for one in self._judged if one.wait is not None]
+        waits = [outlook.wait for outlook in self._judged if outlook.wait is not None]
         return max(waits, key=lambda wait: wait[1]) if waits and self.state is State.NOT_WARM else None
 
     @property
     def needed(self) -> float | None:
         """s more of record until it can be told; None where it can, or no length would do."""
-        lengths = [one.needed for one in self._judged if one.needed is not None]
+        lengths = [outlook.needed for outlook in self._judged if outlook.needed is not None]
         return max(lengths) if lengths and self.state is State.TOO_EARLY else None
 
     @property
     def worst(self) -> Outlook | None:
         """Whose drift takes most of what is allowed."""
-        return max(self._judged, key=lambda one: one.bound / one.allowed, default=None)
+        return max(self._judged, key=lambda outlook: outlook.bound / outlook.allowed, default=None)
 
     @property
     def _judged(self) -> tuple[Outlook, ...]:

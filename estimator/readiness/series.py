@@ -81,17 +81,17 @@ def series_of(session: CalibrationSession, time: Array) -> Series:
     )
     begin = np.flatnonzero(np.r_[True, (np.diff(slot) != 0) | (np.diff(place) != 0)])
     count = np.diff(np.append(begin, len(time)))
-    kept = count >= FULL * np.median(count)
+    full = count >= FULL * np.median(count)
     end = begin + count - 1
     mean = np.add.reduceat(value, begin, axis=0) / count[:, None]
     return Series(
-        time=_mean(time, begin, count)[kept],
-        edges=np.column_stack([time[begin], time[end]])[kept],
-        value=mean[kept],
-        place=place[begin][kept],
-        count=count[kept].astype(float),
-        inner=_inner(value, np.repeat(mean, count, axis=0), begin, count)[kept],
-        temperature=None if session.temperature is None else _mean(session.temperature, begin, count)[kept],
+        time=_mean(time, begin, count)[full],
+        edges=np.column_stack([time[begin], time[end]])[full],
+        value=mean[full],
+        place=place[begin][full],
+        count=count[full].astype(float),
+        inner=_inner(value, np.repeat(mean, count, axis=0), begin, count)[full],
+        temperature=None if session.temperature is None else _mean(session.temperature, begin, count)[full],
     )
 
 

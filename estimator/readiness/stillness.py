@@ -53,30 +53,30 @@ def _steps(series: Series, names: tuple[str, ...], allowed: Array) -> list[tuple
     least = np.sqrt(2 / WINDOW) * TO_NORMAL * np.median(np.abs(np.diff(series.value, axis=0)), axis=0) / np.sqrt(2)
     bound = student.isf(FALSE_ALARMS / (4 * away.size), max(n / WINDOW - 1, 2)) * np.maximum(spread, least)
     far = (np.abs(away) > bound) & (np.abs(away) > allowed)
-    found = [_step(series, names, middles, away, far, run) for run in _runs(far.any(axis=1))]
-    return [one for one in found if _is_sharp(series, names, one, allowed)]
+    steps = [_step(series, names, middles, away, far, run) for run in _runs(far.any(axis=1))]
+    return [step for step in steps if _is_sharp(series, names, step, allowed)]
 
 
-def _is_sharp(series: Series, names: tuple[str, ...], found: tuple[int, Disturbance], allowed: Array) -> bool:
+def _is_sharp(series: Series, names: tuple[str, ...], candidate: tuple[int, Disturbance], allowed: Array) -> bool:
     """Whether some sensor has a step there that no smooth course through the means around it makes."""
-    at = found[0] - 1
+    at = candidate[0] - 1
     rows = slice(max(at - AROUND * WINDOW, 0), at + AROUND * WINDOW)
     t = series.time[rows] - series.time[at]
     after = np.arange(len(series.time))[rows] >= at
     X = np.column_stack([after, np.vander(t / np.abs(t).max(), SMOOTH + 1)])
-    own = [i for i, name in enumerate(names) if name in found[1].sensors]
-    fit = least_squares(X, series.value[rows][:, own])
+    members = [i for i, name in enumerate(names) if name in candidate[1].sensors]
+    fit = least_squares(X, series.value[rows][:, members])
     error, step = np.sqrt(fit.chi2 / fit.freedom * fit.covariance[0, 0]), np.abs(fit.value[0])
-    return bool(((step > SURE * error) & (step > allowed[own])).any())
+    return bool(((step > SURE * error) & (step > allowed[members])).any())
 
 
 def _usual(jump: Array) -> Array:
     """Median of the differences around each, itself and what overlaps with it left out where there are others."""
-    found = np.empty_like(jump)
+    usual = np.empty_like(jump)
     for k in range(len(jump)):
         near = np.r_[max(k - AROUND * WINDOW, 0) : max(k - WINDOW, 0), k + WINDOW : min(k + AROUND * WINDOW, len(jump))]
-        found[k] = np.median(jump[near] if len(near) else jump, axis=0)
-    return found
+        usual[k] = np.median(jump[near] if len(near) else jump, axis=0)
+    return usual
 
 
 def _step(
@@ -100,13 +100,13 @@ def _bursts(series: Series, names: tuple[str, ...]) -> list[tuple[int, Disturban
     spread = np.maximum(TO_NORMAL * np.median(np.abs(away), axis=0), least)
     bound = student.isf(FALSE_ALARMS / (2 * away.size), max(len(level) / 4, 4)) * spread
     far = away > np.maximum(bound, np.log(TWICE))
-    found = []
+    bursts = []
     for start, stop in _runs(far.any(axis=1)):
-        shaken = tuple(name for name, own in zip(names, far[start:stop].any(axis=0), strict=True) if own)
+        shaken = tuple(name for name, is_shaken in zip(names, far[start:stop].any(axis=0), strict=True) if is_shaken)
         size = float(np.sqrt(np.where(far[start:stop], series.inner[start:stop], 0.0).max()))
         first, last = float(series.edges[start, 0]), float(series.edges[stop - 1, 1])
-        found.append((stop, Disturbance(Kind.BURST, shaken, first, last, size)))
-    return found
+        bursts.append((stop, Disturbance(Kind.BURST, shaken, first, last, size)))
+    return bursts
 
 
 def _runs(flag: Array) -> list[tuple[int, int]]:
@@ -125,19 +125,19 @@ def shaking(series: Series, names: tuple[str, ...], quadratic: Array, allowed: A
     if not far.any():
         return []
     size = float(np.sqrt(level[far].max()))
-    shaken = tuple(name for name, own in zip(names, far, strict=True) if own)
+    shaken = tuple(name for name, is_shaken in zip(names, far, strict=True) if is_shaken)
     return [Disturbance(Kind.SHAKING, shaken, float(series.edges[0, 0]), float(series.edges[-1, 1]), size)]
 
 
 def clipped(readings: Array, names: tuple[str, ...], until: float) -> list[Disturbance]:
     """Channels (R, m) of samples that stand at the end of their range in rows."""
-    found = []
+    disturbances = []
     for name, channel in zip(names, readings.T, strict=True):
         ends = [channel == end for end in (channel.min(), channel.max())]
         share = max(_in_rows(end) for end in ends)
         if share > CLIPPED and len(np.unique(channel)) > IN_A_ROW:
-            found.append(Disturbance(Kind.CLIPPED, (name,), 0.0, until, share))
-    return found
+            disturbances.append(Disturbance(Kind.CLIPPED, (name,), 0.0, until, share))
+    return disturbances
 
 
 def _in_rows(flag: Array) -> float:

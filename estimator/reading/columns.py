@@ -63,7 +63,7 @@ class Columns:
         except (KeyError, TypeError):
             bad = [j for j, cell in enumerate(cells) if not (isinstance(cell, str) and cell in index)]
             message = f"give {' or '.join(allowed)}"
-            self.problems.add_rows(name, bad, lambda j: f"{_found(cells[j])}; {message}", of=self.rows)
+            self.problems.add_rows(name, bad, lambda j: f"{_described(cells[j])}; {message}", of=self.rows)
             return np.zeros(self.rows, dtype=np.int64)
 
     def labels(self, name: str) -> NDArray[np.int64]:
@@ -73,7 +73,7 @@ class Columns:
         cells = [_label(cell) for cell in self.values[name]]
         bad = [j for j, cell in enumerate(cells) if isinstance(cell, _Bad)]
         message = "must be a whole number from 0, a name, or -1 or empty where the row belongs to no position"
-        self.problems.add_rows(name, bad, lambda j: f"{_found(self.values[name][j])}; {message}", of=self.rows)
+        self.problems.add_rows(name, bad, lambda j: f"{_described(self.values[name][j])}; {message}", of=self.rows)
         if bad:
             return np.arange(self.rows)
         if not any(isinstance(cell, str) for cell in cells):
@@ -135,7 +135,7 @@ def _cell_fault(cell: object, within: Interval, holes: bool) -> str:
     return number_in(cell, within)[1]
 
 
-def _found(cell: object) -> str:
+def _described(cell: object) -> str:
     return "is missing" if cell is None else f"is {shown(cell)}"
 
 

@@ -61,8 +61,8 @@ class Fields:
         value = self.values.get(key)
         if isinstance(value, str) and value in allowed:
             return value
-        found = f"{shown(value)} is unknown" if self.has(key) else "missing"
-        self.add(key, f"{found}; give one of {', '.join(allowed)}")
+        problem = f"{shown(value)} is unknown" if self.has(key) else "missing"
+        self.add(key, f"{problem}; give one of {', '.join(allowed)}")
         return allowed[0]
 
     def number(self, key: str, within: Interval, advice: str) -> float:

@@ -19,10 +19,10 @@ def parse_json(text: str, problems: Problems) -> dict[str, object]:
     repeated: list[str] = []
 
     def as_object(pairs: list[tuple[str, object]]) -> dict[str, object]:
-        found = dict(pairs)
-        if len(found) < len(pairs):
+        document = dict(pairs)
+        if len(document) < len(pairs):
             repeated.extend(_repeated([key for key, _ in pairs]))
-        return found
+        return document
 
     try:
         document = json.loads(text, object_pairs_hook=as_object)
@@ -46,8 +46,8 @@ def _check_extent(text: str, problems: Problems) -> None:
     if text.count(",") > most.cells + FURTHER:
         raise problems.fail("table", f"has more than {most.cells} cells; average or split it")
     depth = lists = 0
-    for found in STRUCTURE.finditer(text):
-        start = text[found.start()]
+    for match in STRUCTURE.finditer(text):
+        start = text[match.start()]
         if start in "]}":
             depth -= 1
         elif start != '"':

@@ -54,8 +54,8 @@ def _check_positions(table: Rows, raw: bool, problems: Problems) -> None:
     if table.position is not None:
         labels = np.unique(table.position[table.position >= 0])
         if labels.size < FEWEST_POSITIONS:
-            found = "a single position" if labels.size else "no position"
-            problems.add_to_schedule("position", f"the rows belong to {found}; a calibration needs several")
+            problem = "a single position" if labels.size else "no position"
+            problems.add_to_schedule("position", f"the rows belong to {problem}; a calibration needs several")
     elif len(table.readings) < FEWEST_POSITIONS:
         needs = "the samples of a whole log" if raw else "several orientations"
         problems.add_to_schedule("table", f"has a single row, a single position; a calibration needs {needs}")

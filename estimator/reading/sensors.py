@@ -30,8 +30,8 @@ def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:
     """The declared sensors; records every fault of the list and of each sensor."""
     entries = document.values.get("sensors")
     if not isinstance(entries, list | tuple):
-        found = "missing" if entries is None else f"is {shown(entries)}"
-        document.add("sensors", f"{found}; give a list with one object per sensor")
+        problem = "missing" if entries is None else f"is {shown(entries)}"
+        document.add("sensors", f"{problem}; give a list with one object per sensor")
         return ()
     if len(entries) > MOST:
         document.add("sensors", f"holds {len(entries)} sensors; a block has at most {MOST}")
@@ -94,11 +94,11 @@ def _read_position(entry: Fields) -> Array | None:
 
 
 def _read_repeatability(entry: Fields, kind: str) -> float:
-    own = REPEATABILITY[kind]
+    field = REPEATABILITY[kind]
     for other, key in REPEATABILITY.items():
         if other != kind and entry.has(key):
-            entry.add(key, f"is for a {other}; this sensor is a {kind}, so give {own}")
-    value = entry.optional_number(own, WITHIN[f"sensors[].{own}"])
+            entry.add(key, f"is for a {other}; this sensor is a {kind}, so give {field}")
+    value = entry.optional_number(field, WITHIN[f"sensors[].{field}"])
     return 0.0 if value is None else value
 
 

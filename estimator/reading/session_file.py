@@ -94,7 +94,7 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
 
 
 def _check_format(document: Fields) -> None:
-    found = document.values.get("format")
-    if not (isinstance(found, str) and found == FORMAT):
-        stated = "missing" if found is None else f"is {shown(found)}"
+    declared = document.values.get("format")
+    if not (isinstance(declared, str) and declared == FORMAT):
+        stated = "missing" if declared is None else f"is {shown(declared)}"
         document.add("format", f'{stated}; must be "{FORMAT}"')

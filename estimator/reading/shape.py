@@ -22,8 +22,8 @@ def read_columns(document: Fields) -> Columns | None:
     problems = document.problems
     table = document.values.get("table")
     if not isinstance(table, Mapping):
-        found = "missing" if table is None else f"is {shown(table)}"
-        document.add("table", f"{found}; give the columns of readings, each with one value per row")
+        problem = "missing" if table is None else f"is {shown(table)}"
+        document.add("table", f"{problem}; give the columns of readings, each with one value per row")
         return None
     check_extent(0, len(table), problems)
     given = {str(name): cells for name, cells in table.items() if cells is not None}

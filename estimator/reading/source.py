@@ -32,10 +32,10 @@ def _load_path(source: str | Path, problems: Problems) -> dict[str, object]:
         raise problems.fail("file", "this is the text of a file, not its path; pass a path, a dict or bytes")
     path = Path(source)
     text = _decode(_read(path, problems), problems)
-    beside = path.with_suffix(".json") if path.suffix.lower() == ".csv" else None
+    companion = path.with_suffix(".json") if path.suffix.lower() == ".csv" else None
     sidecar = None
-    if beside is not None and not text.lstrip().startswith("#") and _exists(beside):
-        sidecar = _decode(_read(beside, problems), problems)
+    if companion is not None and not text.lstrip().startswith("#") and _exists(companion):
+        sidecar = _decode(_read(companion, problems), problems)
     return _parse(text, problems, sidecar)
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.diagnosis.explanation.temperature import APART
+from estimator.diagnosis.explanation.temperature import LEAST_DIFFERENCE
 from estimator.health.detection import LEVEL, Warmth, warmed
 from estimator.health.fits import Readings
 from estimator.health.prognosis import Track
@@ -47,7 +47,7 @@ class Covered:
     @property
     def is_far(self) -> bool:
         """Whether it was measured at another temperature."""
-        return abs(self.outside) > APART
+        return abs(self.outside) > LEAST_DIFFERENCE
 
 
 def covered_by(session: StoredSession, reference: Residuals, earlier: Iterable[StoredSession]) -> Covered | None:

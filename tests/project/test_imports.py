@@ -181,7 +181,7 @@ def test_what_comes_on_demand_is_what_the_type_checker_is_shown() -> None:
         for own, (home, name) in shown.items():
             meant = getattr(import_module(home), name)
             got = getattr(loaded, own)
-            assert got is meant or inspect.getclosurevars(got).nonlocals["found"]() is meant
+            assert got is meant or inspect.getclosurevars(got).nonlocals["target"]() is meant
 
 
 def only_shown(module: Module) -> dict[str, tuple[str, str]]:

@@ -22,7 +22,7 @@ from estimator.calibration.free.knowledge import merged, of_accelerometers, of_g
 from estimator.calibration.free.model import Rows, predicted
 from estimator.calibration.free.optional import solve
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
-from estimator.calibration.free.schedule import Mask, check, sorted_out
+from estimator.calibration.free.schedule import Mask, check, classified
 from estimator.calibration.free.start import start
 from estimator.forward import measured
 from estimator.parameters import names
@@ -48,7 +48,7 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     ScheduleError
         Rows from which nothing can be estimated. Rows that determine only a part are a result.
     """
-    live, dead, gyro = sorted_out(session)
+    live, dead, gyro = classified(session)
     scale = np.array([s.nominal_scale for s in session.sensors])
     axes = np.stack([s.nominal_axis for s in session.sensors])
     readings = measured(session)[0]
@@ -65,8 +65,8 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     solution = solve(rows, stated, quadratic)
     used = explained(solution) if stated else solution
     known = of_accelerometers(used, solution.rows.sigma, scale[live], g)
-    own_names = names(tuple(s for s, own in zip(session.sensors, live, strict=True) if own))
-    fit = fit_of_accelerometers(solution, used, known, stated, own_names)
+    live_names = names(tuple(s for s, is_live in zip(session.sensors, live, strict=True) if is_live))
+    fit = fit_of_accelerometers(solution, used, known, stated, live_names)
     everything = merged([(np.flatnonzero(live), known), *parts])
     return report(session, everything, fit, "directions" if rows.held else NOMINAL_AXES)
 
@@ -77,7 +77,7 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     What the still stretches of a raw log are chosen by; infinite where the rows do not determine everything, and zero,
     so that the first choice stands, for a block of gyros alone.
     """
-    live, _, _ = sorted_out(session)
+    live, _, _ = classified(session)
     if not live.any():
         return 0.0
     g = gravity(session.site)
@@ -91,7 +91,7 @@ def residual_per_freedom(session: CalibrationSession) -> float:
 
 def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> tuple[Rows, bool]:
     """Dimensionless rows of the accelerometers, and whether their noise is stated."""
-    sensors = [s for s, own in zip(session.sensors, chosen, strict=True) if own]
+    sensors = [s for s, is_chosen in zip(session.sensors, chosen, strict=True) if is_chosen]
     readings, errors = measured(session)
     unit = g * np.array([s.nominal_scale for s in sensors])
     axes = np.stack([s.nominal_axis for s in sensors])

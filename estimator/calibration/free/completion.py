@@ -21,8 +21,8 @@ time."""
 LEAST = 9
 """Generic orientations that identify everything but the quadratic terms."""
 
-ASKED = 12
-"""Sensors of a block that are asked at most, to bound the work, which grows with their cube: see the head."""
+MOST_CANDIDATES = 12
+"""Sensors of a block whose axes are candidates, to bound the work, which grows with their cube: see the head."""
 
 NOISE = 1e-5
 """g; of a reading where none is stated: 10 µg, a good instrument's. The rank does not depend on it."""
@@ -49,7 +49,7 @@ def shares(rows: Rows, unknowns: Unknowns) -> Array:
     R, m = rows.y.shape
     full = np.zeros((R, m, 5, m, 5))
     each = np.arange(m)
-    full[:, each, :, each] = np.einsum("rmi,rmj->mrij", linear.own, linear.own)
+    full[:, each, :, each] = np.einsum("rmi,rmj->mrij", linear.local, linear.local)
     return full.reshape(R, 5 * m, 5 * m) - linear.coupling @ linear.inverse @ np.swapaxes(linear.coupling, 1, 2)
 
 
@@ -61,12 +61,12 @@ def grid(count: int = GRID) -> Array:
     return np.stack([side * np.cos(turn), side * np.sin(turn), height], axis=-1)
 
 
-def asked(axes: Array) -> Array:
-    """At most `ASKED` of the axes (m, 3), unit vectors, for the whole block: three that span space best, and others."""
-    if len(axes) <= ASKED:
+def candidate_directions(axes: Array) -> Array:
+    """At most `MOST_CANDIDATES` axes (m, 3), unit vectors, of the block: three that span space best, and others."""
+    if len(axes) <= MOST_CANDIDATES:
         return axes
     best = qr(axes.T, pivoting=True, mode="r")[1][:3]
-    others = np.setdiff1d(np.arange(len(axes)), best)[: ASKED - 3]
+    others = np.setdiff1d(np.arange(len(axes)), best)[: MOST_CANDIDATES - 3]
     return np.asarray(axes[np.sort(np.concatenate([best, others]))])
 
 
@@ -90,19 +90,19 @@ def completion(
     direction_sigma : one sigma of the directions, rad, where they are stated.
     at_least : orientations to add even where fewer complete the set.
     """
-    known = asked(axes)
+    known = candidate_directions(axes)
     rows, unknowns = planned_rows(known, directions, noise, direction_sigma)
     candidates = grid()
     basis = movable(rows, unknowns, quadratic)
-    own = basis.T @ shares(rows, unknowns).sum(axis=0) @ basis
+    information = basis.T @ shares(rows, unknowns).sum(axis=0) @ basis
     offered = basis.T @ shares(*planned_rows(known, candidates, noise, direction_sigma)) @ basis
     ridge = PLAUSIBLE**-2 * np.eye(basis.shape[1])
     chosen: list[int] = []
     for _ in range(max(at_least, 4 * LEAST)):
-        values = np.linalg.eigvalsh(own)
+        values = np.linalg.eigvalsh(information)
         if len(chosen) >= at_least and values[0] > unseen_below(values):
             break
-        best = int(np.argmax(np.linalg.slogdet(own + offered + ridge)[1]))
+        best = int(np.argmax(np.linalg.slogdet(information + offered + ridge)[1]))
         chosen.append(best)
-        own = own + offered[best]
+        information = information + offered[best]
     return candidates[chosen].reshape(-1, 3)

@@ -34,25 +34,25 @@ def explained(solution: Solution) -> Solution:
     """The solution under noise that explains its residuals; itself where the stated noise does."""
     if p_value(solution.chi2, solution.dof) >= UNLIKELY:
         return solution
-    stated, found, last = solution.rows.sigma, solution, np.inf
+    stated, current, last = solution.rows.sigma, solution, np.inf
     for _ in range(ROUNDS):
-        added = added_noise(found, stated, solution.dof)
-        sigma = np.hypot(stated, added * np.exp(found.unknowns.log_scale))
-        found = search(solution.rows.weighted(sigma), found.unknowns, solution.quadratic)
-        if abs(added - last) < SETTLED * added or not found.converged:
+        added = added_noise(current, stated, solution.dof)
+        sigma = np.hypot(stated, added * np.exp(current.unknowns.log_scale))
+        current = search(solution.rows.weighted(sigma), current.unknowns, solution.quadratic)
+        if abs(added - last) < SETTLED * added or not current.converged:
             break
         last = added
-    return replace(found, iterations=solution.iterations, freedom=float(solution.dof))
+    return replace(current, iterations=solution.iterations, freedom=float(solution.dof))
 
 
-def added_noise(found: Solution, stated: Array, dof: int) -> float:
+def added_noise(solution: Solution, stated: Array, dof: int) -> float:
     """Sigma at the input, in g, that brings χ² of the residuals as they are to its degrees of freedom.
 
     stated : (R, m) one sigma of the readings, relative to nominal scale times g.
     """
-    gain = np.exp(found.unknowns.log_scale)
-    squares = (found.rows.y - predicted(found.unknowns)) ** 2
-    turned = found.rows.prior[:, None] * (found.rows.directions - found.unknowns.directions) ** 2
+    gain = np.exp(solution.unknowns.log_scale)
+    squares = (solution.rows.y - predicted(solution.unknowns)) ** 2
+    turned = solution.rows.prior[:, None] * (solution.rows.directions - solution.unknowns.directions) ** 2
 
     def surplus(log_sigma: float) -> float:
         variance = stated**2 + (np.exp(log_sigma) * gain) ** 2

@@ -73,9 +73,9 @@ def movable(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Array:
     turns, n = unknowns.axis_tangents, rows.nominal_axes[:, :, None]
     crossed = n[:, NEXT] * turns[:, LAST] - n[:, LAST] * turns[:, NEXT]
     constraint[:, :, 3:] = np.swapaxes(crossed, 0, 1)
-    left = np.linalg.svd(constraint.reshape(3, 5 * m)[:, free])[2][3:].T
-    basis = np.zeros((5 * m, left.shape[1]))
-    basis[free] = left
+    null_basis = np.linalg.svd(constraint.reshape(3, 5 * m)[:, free])[2][3:].T
+    basis = np.zeros((5 * m, null_basis.shape[1]))
+    basis[free] = null_basis
     return basis
 
 

@@ -37,7 +37,7 @@ class Knowledge:
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class Determined:
     """What the orientations tell of the elements ln K, b/g, c·g and the axis' turns of m sensors. P = 5 m."""
 
     covariance: Array
@@ -67,9 +67,9 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
     unseen = T @ solution.knowledge.unseen
     observable = observed(covariance, unseen, np.linalg.norm(solution.knowledge.basis, axis=1) > 0)
     factors = parameters.si_factors(np.full(m, g))
-    certain = solution.tells_noise
-    told = Told(covariance, unseen, observable, certain)
-    known = tuple(combinations(i, parameters, told, factors) for i in range(m))
+    certain = solution.knows_noise
+    determined = Determined(covariance, unseen, observable, certain)
+    known = tuple(combinations(i, parameters, determined, factors) for i in range(m))
     given = np.outer(observable, observable) & certain
     return Knowledge(
         parameters=parameters,
@@ -101,32 +101,34 @@ def observed(covariance: Array, unseen: Array, free: Array) -> Array:
     An axis is observed with both its turns or not at all.
     """
     moved = PLAUSIBLE * np.linalg.norm(unseen, axis=1)
-    found = (free & (moved <= np.sqrt(np.diagonal(covariance)))).reshape(-1, 5)
-    found[:, 3:] = found[:, 3:].all(axis=1, keepdims=True)
-    return found.ravel()
+    result = (free & (moved <= np.sqrt(np.diagonal(covariance)))).reshape(-1, 5)
+    result[:, 3:] = result[:, 3:].all(axis=1, keepdims=True)
+    return result.ravel()
 
 
-def combinations(i: int, p: SensorParameters, told: Told, factors: Array) -> tuple[KnownCombination, ...]:
+def combinations(i: int, p: SensorParameters, determined: Determined, factors: Array) -> tuple[KnownCombination, ...]:
     """What is known of sensor i's lost scale, bias and quadratic: the combinations that unseen directions leave alone.
 
     ``factors`` (P,) take the dimensionless elements to SI.
     """
-    own = slice(5 * i, 5 * i + 3)
-    lost = 5 * i + np.flatnonzero(~told.observable[own] & (np.linalg.norm(told.unseen[own], axis=1) > 0))
+    elements = slice(5 * i, 5 * i + 3)
+    lost = 5 * i + np.flatnonzero(
+        ~determined.observable[elements] & (np.linalg.norm(determined.unseen[elements], axis=1) > 0)
+    )
     if len(lost) < 2:
         return ()
     values = np.array([p.scale[i], p.bias[i], p.quadratic[i]])[lost % 5]
-    found = []
-    for a in null_space(told.unseen[lost].T).T:
+    known = []
+    for a in null_space(determined.unseen[lost].T).T:
         coefficients = a / factors[lost]
-        found.append(
+        known.append(
             KnownCombination(
                 coefficients={ELEMENTS[k % 5]: float(c) for k, c in zip(lost, coefficients, strict=True)},
                 value=float(coefficients @ values),
-                sigma=float(np.sqrt(a @ told.covariance[np.ix_(lost, lost)] @ a)) if told.certain else None,
+                sigma=float(np.sqrt(a @ determined.covariance[np.ix_(lost, lost)] @ a)) if determined.certain else None,
             )
         )
-    return tuple(found)
+    return tuple(known)
 
 
 def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:

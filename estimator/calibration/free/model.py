@@ -115,7 +115,7 @@ class Linear:
 
     residual: Array
     """(R, m) in sigmas."""
-    own: Array
+    local: Array
     """(R, m, 5) derivative of each reading by its own sensor's parameters."""
     shared: Array
     """(R, m, 2) derivative by the orientation's two turns."""
@@ -152,20 +152,20 @@ def jacobian(unknowns: Unknowns) -> tuple[Array, Array]:
     s = unknowns.directions @ unknowns.axes.T
     gain = np.exp(unknowns.log_scale)
     slope = gain * (1.0 + 2.0 * unknowns.quadratic * s)
-    own = np.empty((*s.shape, 5))
-    own[..., 0] = gain * (s + unknowns.quadratic * s * s)
-    own[..., 1] = 1.0
-    own[..., 2] = gain * s * s
-    own[..., 3:] = slope[..., None] * (unknowns.directions @ unknowns.axis_tangents).swapaxes(0, 1)
+    local = np.empty((*s.shape, 5))
+    local[..., 0] = gain * (s + unknowns.quadratic * s * s)
+    local[..., 1] = 1.0
+    local[..., 2] = gain * s * s
+    local[..., 3:] = slope[..., None] * (unknowns.directions @ unknowns.axis_tangents).swapaxes(0, 1)
     shared = slope[..., None] * (unknowns.axes @ unknowns.direction_tangents)
-    return own, shared
+    return local, shared
 
 
 def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
     """Jacobian, normal equations and Schur complement at one point; shapes and units: see `Linear`."""
     R, m = rows.y.shape
-    own, shared = jacobian(unknowns)
-    own, shared = own / rows.sigma[..., None], shared / rows.sigma[..., None]
+    local, shared = jacobian(unknowns)
+    local, shared = local / rows.sigma[..., None], shared / rows.sigma[..., None]
     residual = (rows.y - predicted(unknowns)) / rows.sigma
     D = np.swapaxes(shared, 1, 2) @ shared + rows.prior[:, None, None] * np.eye(2)
     D += (LEAST_TURN * np.trace(D, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.5)[:, None, None] * np.eye(2)
@@ -174,8 +174,8 @@ def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
     if rows.held:
         off = rows.prior[:, None, None] * (rows.directions - unknowns.directions)[:, None]
         turn_gradient = turn_gradient + (off @ unknowns.direction_tangents)[:, 0]
-    coupling = (own[..., :, None] * shared[..., None, :]).reshape(R, 5 * m, 2)
-    by_sensor = own.swapaxes(0, 1)
+    coupling = (local[..., :, None] * shared[..., None, :]).reshape(R, 5 * m, 2)
+    by_sensor = local.swapaxes(0, 1)
     blocks = np.swapaxes(by_sensor, 1, 2) @ by_sensor
     spread = np.zeros((m, 5, m, 5))
     spread[np.arange(m), :, np.arange(m), :] = blocks
@@ -184,7 +184,7 @@ def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
     schur = N - np.swapaxes(coupling, 1, 2).reshape(2 * R, 5 * m).T @ flat
     return Linear(
         residual=residual,
-        own=own,
+        local=local,
         shared=shared,
         inverse=inverse,
         coupling=coupling,

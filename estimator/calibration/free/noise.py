@@ -79,9 +79,11 @@ class Projected:
     @property
     def overlap(self) -> Array:
         """(m, m) T, without unit."""
-        kept = np.eye(self.turns.shape[1]) - self.turns
-        flat = self.shares.reshape(len(kept[0]), -1)
-        return (kept**2 - 2.0 * kept * (self.lean @ np.swapaxes(self.lean, 1, 2))).sum(axis=0) + flat @ flat.T
+        complement = np.eye(self.turns.shape[1]) - self.turns
+        flat = self.shares.reshape(len(complement[0]), -1)
+        return (complement**2 - 2.0 * complement * (self.lean @ np.swapaxes(self.lean, 1, 2))).sum(
+            axis=0
+        ) + flat @ flat.T
 
 
 def projected(rows: Rows, unknowns: Unknowns, knowledge: Information) -> Projected:
@@ -90,8 +92,8 @@ def projected(rows: Rows, unknowns: Unknowns, knowledge: Information) -> Project
     through = (linear.shared[:, :, None, :] @ linear.inverse[:, None])[:, :, 0, :]
     root = scaled(knowledge)
     moved = np.einsum("rma,rpa->rmp", through, linear.coupling) @ root
-    own = np.einsum("rmi,mif->rmf", linear.own, root.reshape(rows.y.shape[1], 5, -1))
-    return Projected(through @ np.swapaxes(linear.shared, 1, 2), own - moved, linear.residual)
+    local = np.einsum("rmi,mif->rmf", linear.local, root.reshape(rows.y.shape[1], 5, -1))
+    return Projected(through @ np.swapaxes(linear.shared, 1, 2), local - moved, linear.residual)
 
 
 def scaled(knowledge: Information) -> Array:
@@ -133,19 +135,19 @@ def search_with_noise(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Soluti
 
     Without a degree of freedom nothing tells the noise, and the first guess stays.
     """
-    found, m = search(rows, unknowns, quadratic), rows.y.shape[1]
-    iterations, noise = found.iterations, Noise(np.ones(m), np.ones(m, dtype=bool))
-    left = projected(found.rows, found.unknowns, found.knowledge)
-    for _ in range(ROUNDS if left.redundancy.sum() > NO_FREEDOM else 0):
-        noise = noise.improved((left.residual**2).sum(axis=0), left.redundancy.sum(axis=0))
+    solution, m = search(rows, unknowns, quadratic), rows.y.shape[1]
+    iterations, noise = solution.iterations, Noise(np.ones(m), np.ones(m, dtype=bool))
+    projection = projected(solution.rows, solution.unknowns, solution.knowledge)
+    for _ in range(ROUNDS if projection.redundancy.sum() > NO_FREEDOM else 0):
+        noise = noise.improved((projection.residual**2).sum(axis=0), projection.redundancy.sum(axis=0))
         sigma = np.maximum(rows.sigma * np.sqrt(noise.factor), LEAST_NOISE)
-        change = np.abs(sigma / found.rows.sigma - 1.0).max()
-        found = search(rows.weighted(sigma), found.unknowns, quadratic)
-        left = projected(found.rows, found.unknowns, found.knowledge)
-        iterations += found.iterations
+        change = np.abs(sigma / solution.rows.sigma - 1.0).max()
+        solution = search(rows.weighted(sigma), solution.unknowns, quadratic)
+        projection = projected(solution.rows, solution.unknowns, solution.knowledge)
+        iterations += solution.iterations
         if change < SETTLED or iterations > MOST_ITERATIONS:
             break
-    return replace(found, iterations=iterations, freedom=float(left.redundancy.sum()), borrows=noise.borrows)
+    return replace(solution, iterations=iterations, freedom=float(projection.redundancy.sum()), borrows=noise.borrows)
 
 
 def freedom_of(solution: Solution, change: Array) -> Array:
@@ -153,15 +155,15 @@ def freedom_of(solution: Solution, change: Array) -> Array:
 
     Infinite where no noise that was estimated has a part, NaN where nothing tells the noise.
     """
-    if not solution.tells_noise:
+    if not solution.knows_noise:
         return np.full(len(change), np.nan)
     if solution.borrows is None:
         return np.full(len(change), solution.freedom)
-    left = projected(solution.rows, solution.unknowns, solution.knowledge)
+    projection = projected(solution.rows, solution.unknowns, solution.knowledge)
     moves = change @ scaled(solution.knowledge)
     variance = (moves**2).sum(axis=-1)
-    gradient = np.stack([((moves @ share) * moves).sum(axis=-1) for share in left.shares], axis=-1)
+    gradient = np.stack([((moves @ share) * moves).sum(axis=-1) for share in projection.shares], axis=-1)
     b = solution.borrows.astype(float)
     pull = ALIKE * (np.diag(b) - np.outer(b, b) / max(b.sum(), 1.0))
-    doubt = ((gradient @ np.linalg.pinv(left.overlap + pull, hermitian=True)) * gradient).sum(axis=-1)
+    doubt = ((gradient @ np.linalg.pinv(projection.overlap + pull, hermitian=True)) * gradient).sum(axis=-1)
     return np.where(doubt > 0, variance**2 / np.where(doubt > 0, doubt, 1.0), np.inf)

@@ -59,37 +59,37 @@ def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
     if quadratic is not None or not affordable(plain, stated):
         return plain
     extended = lowest(run, run(plain.rows if stated else rows, plain.unknowns, True), [])
-    return extended if deserved(extended, plain, stated) else plain
+    return extended if is_supported(extended, plain, stated) else plain
 
 
 def affordable(plain: Solution, stated: bool) -> bool:
     """Whether the terms would be determined and leave degrees of freedom to judge by: one, or to tell the noise."""
     wanted = information(plain.rows, plain.unknowns, quadratic=True)
-    left = plain.dof + plain.knowledge.rank - wanted.rank
-    return wanted.full and left >= (1 if stated else WANTED)
+    remaining_dof = plain.dof + plain.knowledge.rank - wanted.rank
+    return wanted.full and remaining_dof >= (1 if stated else WANTED)
 
 
-def lowest(run: Run, found: Solution, others: list[Unknowns]) -> Solution:
-    """The lowest of the minima around ``found`` and from other starts, all compared under the noise of ``found``."""
-    best = found
-    for start in (*others, *around(found)):
-        tried = search(found.rows, start, found.quadratic)
+def lowest(run: Run, solution: Solution, others: list[Unknowns]) -> Solution:
+    """The lowest of the minima around ``solution`` and from other starts, all compared under its noise."""
+    best = solution
+    for start in (*others, *starts_around(solution)):
+        tried = search(solution.rows, start, solution.quadratic)
         if tried.converged and tried.chi2 < best.chi2 - LOWER:
             best = tried
-    return found if best is found else run(found.rows, best.unknowns, found.quadratic)
+    return solution if best is solution else run(solution.rows, best.unknowns, solution.quadratic)
 
 
-def around(found: Solution) -> list[Unknowns]:
+def starts_around(solution: Solution) -> list[Unknowns]:
     """Points `FAR` standard errors up and down the least known directions, each orientation turned to suit; none where
     the search has not ended, since standard errors mean nothing there."""
-    if not found.converged:
+    if not solution.converged:
         return []
-    order = np.argsort(found.knowledge.variances)
-    steps = [s for s in FAR * scaled(found.knowledge)[:, order[-VALLEYS:]].T if np.linalg.norm(s) > STRAIGHT]
+    order = np.argsort(solution.knowledge.variances)
+    steps = [s for s in FAR * scaled(solution.knowledge)[:, order[-VALLEYS:]].T if np.linalg.norm(s) > STRAIGHT]
     if not steps:
         return []
-    linear = linearise(found.rows, found.unknowns)
-    return [found.unknowns.stepped(s, linear.turns(s)) for step in steps for s in (step, -step)]
+    linear = linearise(solution.rows, solution.unknowns)
+    return [solution.unknowns.stepped(s, linear.turns(s)) for step in steps for s in (step, -step)]
 
 
 def without_terms(unknowns: Unknowns) -> Unknowns:
@@ -97,7 +97,7 @@ def without_terms(unknowns: Unknowns) -> Unknowns:
     return replace(unknowns, quadratic=np.zeros_like(unknowns.quadratic))
 
 
-def deserved(extended: Solution, plain: Solution, stated: bool) -> bool:
+def is_supported(extended: Solution, plain: Solution, stated: bool) -> bool:
     """Whether the quadratic terms are plainly there, or known well at the minimum that belongs to them."""
     used = explained(extended) if stated else extended
     if not used.knowledge.full or not used.converged:

@@ -44,7 +44,7 @@ def fit_of_accelerometers(
         iterations=used.iterations,
         converged=used.converged,
         add=() if used.knowledge.full else to_add(used),
-        positions_to_add=0 if used.tells_noise else more_positions(used),
+        positions_to_add=0 if used.knows_noise else more_positions(used),
     )
 
 
@@ -58,8 +58,8 @@ def to_add(solution: Solution) -> tuple[tuple[float, float, float], ...]:
     """Directions of up that complete what the orientations leave open."""
     rows, up = solution.rows, solution.unknowns.directions
     sigma = None if not rows.held else float(rows.prior.max() ** -0.5)
-    found = completion(rows.nominal_axes, up, quadratic=solution.quadratic, direction_sigma=sigma)
-    return tuple((float(x), float(y), float(z)) for x, y, z in found)
+    directions = completion(rows.nominal_axes, up, quadratic=solution.quadratic, direction_sigma=sigma)
+    return tuple((float(x), float(y), float(z)) for x, y, z in directions)
 
 
 def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
@@ -85,7 +85,7 @@ def sensor_result(
     i: int, known: Knowledge, sigma: Array, turns: Array, session: CalibrationSession
 ) -> SensorCalibration:
     """What the session says of sensor i; ``sigma`` (m, 5), SI; ``turns`` (m, 3, 2), the axes' tangents, no unit."""
-    p, sensor, own = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
+    p, sensor, elements = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
     seen = [bool(s) for s in known.observable[i]]
     values = (float(p.scale[i]), float(p.bias[i]), float(p.quadratic[i]))
     freedom = known.freedom[5 * i : 5 * i + 5].tolist()
@@ -101,7 +101,7 @@ def sensor_result(
         quadratic=quadratic,
         axis=p.axis[i] if seen[3] else None,
         axis_tangents=turns[i],
-        axis_covariance=known.covariance[own, own],
+        axis_covariance=known.covariance[elements, elements],
         observable=dict(zip(PARAMETERS, seen, strict=False)),
         known=known.known[i],
         axis_dof=finite(float(known.freedom[5 * i + 3 : 5 * i + 5].min())),

@@ -32,10 +32,10 @@ GENERIC = 9
 
 def check(session: CalibrationSession) -> None:
     """ScheduleError unless something can be estimated."""
-    sorted_out(session)
+    classified(session)
 
 
-def sorted_out(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
+def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
     """Which sensors (m,) are accelerometers that answer to turns, accelerometers that do not, and gyros.
 
     Raises
@@ -63,7 +63,7 @@ def sorted_out(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
             ]
         )
     live = swing > LEAST_ANSWER * swing.max()
-    spread = np.linalg.svd([s.nominal_axis for s, own in zip(session.sensors, live, strict=True) if own])[1]
+    spread = np.linalg.svd([s.nominal_axis for s, is_live in zip(session.sensors, live, strict=True) if is_live])[1]
     if live.sum() < 3 or spread[2] < FLATTEST * spread[0]:
         raise ScheduleError([Problem("sensors", too_few_axes(session, live, gyro))])
     return live, ~live & ~gyro, gyro

@@ -55,7 +55,7 @@ class Solution:
     """(m,) where each sensor's noise was estimated: whether it is taken as like the others'."""
 
     @property
-    def tells_noise(self) -> bool:
+    def knows_noise(self) -> bool:
         """Whether the noise is known, so that uncertainties can be given."""
         return self.freedom > NO_FREEDOM
 
@@ -84,11 +84,11 @@ def search(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
         iterations += 1
         step, turns, fall = proposal(linear, basis, damping)
         trial = held_frame(rows, unknowns.stepped(step, turns))
-        found = cost(rows, trial)
+        trial_cost = cost(rows, trial)
         small = max(np.abs(step).max(), np.abs(turns).max()) < STILL
         converged = bool(small or fall < CONVERGED * max(1.0, chi2 * CONVERGED))
-        if found < chi2:
-            unknowns, chi2, damping = trial, found, max(damping / 10, LEAST_DAMPING)
+        if trial_cost < chi2:
+            unknowns, chi2, damping = trial, trial_cost, max(damping / 10, LEAST_DAMPING)
             linear = linearise(rows, unknowns)
             basis = movable(rows, unknowns, quadratic)
         else:

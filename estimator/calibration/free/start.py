@@ -38,8 +38,8 @@ def start(rows: Rows) -> Unknowns:
 
 def starts(rows: Rows) -> list[Unknowns]:
     """Parameters and orientations from different linear estimates, the one that fits best first."""
-    found = [with_directions(rows)] if rows.held else from_shape(rows)
-    return sorted((oriented(rows, *linear) for linear in found), key=lambda unknowns: cost(rows, unknowns))
+    linear_starts = [with_directions(rows)] if rows.held else from_shape(rows)
+    return sorted((oriented(rows, *linear) for linear in linear_starts), key=lambda unknowns: cost(rows, unknowns))
 
 
 def oriented(rows: Rows, sensitivity: Array, offset: Array) -> Unknowns:
@@ -68,12 +68,12 @@ def from_shape(rows: Rows) -> list[tuple[Array, Array]]:
     inward = np.linalg.pinv(rows.nominal_axes) @ basis
     points = (rows.y - centre) @ basis @ inward.T
     to_readings = basis @ np.linalg.inv(inward)
-    found = []
+    starts = []
     for middle, root in ellipsoids(points):
         shaped = to_readings @ root
         U, _, Vt = np.linalg.svd(shaped.T @ rows.nominal_axes)
-        found.append((shaped @ U @ Vt, centre + to_readings @ middle))
-    return found
+        starts.append((shaped @ U @ Vt, centre + to_readings @ middle))
+    return starts
 
 
 def subspace(centred: Array, nominal_axes: Array) -> Array:
@@ -100,19 +100,19 @@ def ellipsoids(points: Array) -> list[tuple[Array, Array]]:
     U, spread, Vt = np.linalg.svd(quadric, full_matrices=False)
     along = U.T @ (1.0 - (v**2).sum(axis=1))
     shown = dict.fromkeys(tuple((spread > slight * spread[0]).tolist()) for slight in SLIGHT)
-    told = along / np.maximum(spread, TINY)
-    return [ellipsoid(middle, radius, Vt.T @ np.where(kept, told, 0.0)) for kept in shown]
+    solved = along / np.maximum(spread, TINY)
+    return [ellipsoid(middle, radius, Vt.T @ np.where(mask, solved, 0.0)) for mask in shown]
 
 
-def ellipsoid(middle: Array, radius: float, found: Array) -> tuple[Array, Array]:
-    """Centre (3,) and shape (3, 3) of the quadric ``found`` (9,) about a sphere; the sphere where it is no ellipsoid.
+def ellipsoid(middle: Array, radius: float, quadric: Array) -> tuple[Array, Array]:
+    """Centre (3,) and shape (3, 3) of a ``quadric`` (9,) about a sphere; the sphere where it is no ellipsoid.
 
     middle (3,) and radius, like the result, relative to nominal scale times g; the quadric in units of the sphere.
     """
-    Q = np.eye(3) + found[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+    Q = np.eye(3) + quadric[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
     values, vectors = eigh(Q)
     if values[0] < FLAT * values[-1]:
         return middle, radius * np.eye(3)
-    offset = -0.5 * np.linalg.solve(Q, found[6:])
+    offset = -0.5 * np.linalg.solve(Q, quadric[6:])
     size = 1.0 + offset @ Q @ offset
     return middle + radius * offset, radius * (vectors * np.sqrt(size / values)) @ vectors.T

@@ -9,7 +9,7 @@ from estimator.diagnosis.explanation.extended_model import amplitudes, extended_
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.selection.refinement import with_refined_shapes
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.signatures.scores import score
 from estimator.results import Calibration
@@ -40,7 +40,7 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
         for place in places(rows, sensors):
             if (identifier, place) not in done:
                 state = with_cause(state, identifier, place)
-    if not state.found:
+    if not state.detections:
         return calibrate(whole)
     state = with_refined_shapes(state)
     return extended_calibration(state, amplitudes(state))
@@ -54,9 +54,9 @@ def places(session: CalibrationSession, sensors: Sequence[str]) -> list[tuple[in
 
 def with_cause(state: SearchState, identifier: str, place: tuple[int, ...]) -> SearchState:
     """The state with one more cause, at the nonlinear parameters that fit best beside the others."""
-    own = [t for t in state.traces if t.cause.identifier == identifier]
-    found = [s for s in score(state.residuals, own, state.attributed()) if s.sensors == place]
-    if not found:
+    traces = [t for t in state.traces if t.cause.identifier == identifier]
+    scored = [s for s in score(state.residuals, traces, state.attributed()) if s.sensors == place]
+    if not scored:
         return state
-    best = max(found, key=lambda s: s.statistic)
-    return replace(state, found=(*state.found, Found(best, best.p_value, ())))
+    best = max(scored, key=lambda s: s.statistic)
+    return replace(state, detections=(*state.detections, Detection(best, best.p_value, ())))

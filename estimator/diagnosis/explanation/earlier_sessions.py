@@ -42,12 +42,12 @@ class Effect:
 def transfer(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> Transfer | None:
     """Scores of the latest earlier session before and after; None where no finding can have acted there.
 
-    ``new``: `newness` of every finding.
+    ``new``: `are_new` of every finding.
     """
     if not state.history:
         return None
     residuals = WhitenedResiduals.of(state.history[-1])
-    lasted = [(f.best, part) for f, part, n in zip(state.found, fitted.slices, new, strict=True) if not n]
+    lasted = [(f.best, part) for f, part, n in zip(state.detections, fitted.slices, new, strict=True) if not n]
     effect = effect_in(residuals, lasted, fitted)
     if effect is None:
         return None
@@ -55,37 +55,39 @@ def transfer(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     return Transfer(started_at, predicted(residuals, effect.absent), predicted(residuals, effect))
 
 
-def effect_in(residuals: WhitenedResiduals, found: Sequence[tuple[Scored, slice]], fitted: Amplitudes) -> Effect | None:
+def effect_in(
+    residuals: WhitenedResiduals, effects: Sequence[tuple[Scored, slice]], fitted: Amplitudes
+) -> Effect | None:
     """Some findings, with their places among the amplitudes, in the session of ``residuals``; None if none can show.
 
     What acts in one session only, or cannot show in that one, is left out.
     """
     columns, places = [], []
-    for scored, part in found:
+    for scored, part in effects:
         if not scored.cause.can_be_modelled:
             continue
-        there, own = scored.columns_in(residuals.baseline.setting), len(scored.cause.units)
+        there, width = scored.columns_in(residuals.baseline.setting), len(scored.cause.units)
         if there is not None:
-            columns.append(there[..., :own])
-            places.append(part.start + np.arange(own))
+            columns.append(there[..., :width])
+            places.append(part.start + np.arange(width))
     if not columns:
         return None
     chosen = np.concatenate(places)
     return Effect(np.concatenate(columns, axis=-1), fitted.value[chosen], fitted.covariance[np.ix_(chosen, chosen)])
 
 
-def newness(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
+def are_new(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
     """Whether each finding came since the latest earlier session; None without history or for what moved since.
 
     The readings of that session say it: with the effect or without. Where they are undecided, it is how the
     parameters changed.
     """
     if not state.history:
-        return (None,) * len(state.found)
+        return (None,) * len(state.detections)
     residuals = WhitenedResiduals.of(state.history[-1])
     return tuple(
         None if f.best.cause.between else is_new(f.best, residuals, effect_in(residuals, [(f.best, part)], fitted))
-        for f, part in zip(state.found, fitted.slices, strict=True)
+        for f, part in zip(state.detections, fitted.slices, strict=True)
     )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from estimator.calibration.calibrate import calibrate
 from estimator.diagnosis.residuals.turns import turned_baseline, turned_session
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.least_squares import FAINT, FLAT, least_squares, orthonormal
 from estimator.results import Calibration, Estimate, SensorCalibration
@@ -41,18 +41,18 @@ class Amplitudes:
 
 def amplitudes(state: SearchState) -> Amplitudes:
     """Least squares of the residuals on the traces of all findings together."""
-    found = [f.best for f in state.found]
-    widths = np.cumsum([0, *(s.trace.shape[1] for s in found)])
+    detected = [f.best for f in state.detections]
+    widths = np.cumsum([0, *(s.trace.shape[1] for s in detected)])
     slices = tuple(slice(int(a), int(b)) for a, b in pairwise(widths))
-    if not found:
+    if not detected:
         return Amplitudes(np.zeros(0), np.zeros((0, 0)), slices)
-    columns = np.concatenate([s.trace for s in found], axis=1)
+    columns = np.concatenate([s.trace for s in detected], axis=1)
     z = state.residuals.z
     if state.structures:
         pattern = np.concatenate([s.best.trace for s in state.structures], axis=1)
         basis = orthonormal(pattern, FLAT)
         z = z - basis @ (basis.T @ z)
-    raw = np.concatenate([np.linalg.norm(state.residuals.whitened(s.shape.columns), axis=0) for s in found])
+    raw = np.concatenate([np.linalg.norm(state.residuals.whitened(s.shape.columns), axis=0) for s in detected])
     shown = np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * raw)
     scale = np.where(shown > 0, shown, 1.0)
     gram = (columns / scale).T @ (columns / scale)
@@ -61,11 +61,11 @@ def amplitudes(state: SearchState) -> Amplitudes:
     return Amplitudes(covariance @ (columns.T @ z), covariance, slices)
 
 
-def amplitude_beside(state: SearchState, found: Found) -> tuple[Array, Array]:
+def joint_amplitude(state: SearchState, detection: Detection) -> tuple[Array, Array]:
     """(q,) SI: the amplitudes of one finding given the others; and (n, q) its trace with theirs projected out,
     standard errors per unit amplitude."""
-    attributed = state.attributed(without=found)
-    columns = found.best.trace - attributed @ (attributed.T @ found.best.trace)
+    attributed = state.attributed(without=detection)
+    columns = detection.best.trace - attributed @ (attributed.T @ detection.best.trace)
     return least_squares(columns, state.residuals.z, FAINT).value, columns
 
 
@@ -78,7 +78,7 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
     session, p = without_turns(state, fitted), state.baseline.parameters
     inside = [
         f.best.shape.columns @ fitted.value[part]
-        for f, part in zip(state.found, fitted.slices, strict=True)
+        for f, part in zip(state.detections, fitted.slices, strict=True)
         if not (f.best.cause.moves_parameters or f.best.cause.turns_block or f.best.cause.turns_flipped_run)
     ]
     readings = session.readings
@@ -91,7 +91,7 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
 
 def without_turns(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
     """The session as the block would have been held without its turns, in its mounting and in the flipped run."""
-    flips = [f.best.cause.turns_flipped_run for f in state.found]
+    flips = [f.best.cause.turns_flipped_run for f in state.detections]
     turns = [fitted.value[part] for part, is_flip in zip(fitted.slices, flips, strict=True) if is_flip]
     session = replace(state.baseline.session, flip_turn=turns[0] if turns else np.zeros(3))
     return turned_session(session, turned_back(state, fitted))
@@ -99,7 +99,9 @@ def without_turns(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
 
 def turned_back(state: SearchState, fitted: Amplitudes) -> Array:
     """(3, 3) rotation, dimensionless, from the frame of the session to that of the block before it was turned."""
-    turns = [fitted.value[part] for f, part in zip(state.found, fitted.slices, strict=True) if f.best.cause.turns_block]
+    turns = [
+        fitted.value[part] for f, part in zip(state.detections, fitted.slices, strict=True) if f.best.cause.turns_block
+    ]
     return turn_of(-turns[0]) if turns else np.eye(3)
 
 
@@ -118,9 +120,9 @@ def true_errors(state: SearchState) -> Array:
 def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
     """The calibration under the extended model, its covariance enlarged by the amplitudes' own."""
     plain = calibrate(without_effects(state, fitted))
-    if not state.found:
+    if not state.detections:
         return plain
-    columns = [f.best.shape.columns * (not f.best.cause.moves_parameters) for f in state.found]
+    columns = [f.best.shape.columns * (not f.best.cause.moves_parameters) for f in state.detections]
     baseline = turned_baseline(state.baseline, turned_back(state, fitted))
     residuals = WhitenedResiduals.of(baseline)
     response = residuals.response @ residuals.whitened(np.concatenate(columns, axis=-1))
@@ -132,9 +134,9 @@ def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
 def enlarged(calibration: Calibration, more: Array, frames: Array) -> Calibration:
     """The calibration with ``more`` (P, P), SI, added to both covariances; its axes turn along ``frames`` (m, 3, 2),
     dimensionless, which may be others than the calibration's."""
-    own = np.stack([sensor.axis_tangents for sensor in calibration.sensors])
+    tangents = np.stack([sensor.axis_tangents for sensor in calibration.sensors])
     carry = np.eye(len(more))
-    for i, turn in enumerate(np.swapaxes(own, -1, -2) @ frames):
+    for i, turn in enumerate(np.swapaxes(tangents, -1, -2) @ frames):
         angles = slice(5 * i + 3, 5 * i + 5)
         carry[angles, angles] = turn
     more = carry @ more @ carry.T

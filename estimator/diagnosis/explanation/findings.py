@@ -14,7 +14,7 @@ from estimator.diagnosis.explanation.sensor_or_stand import parity_split
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.noise_claim import BEYOND_NOISE
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.signatures.applied_course import AppliedCourse
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, NoiseClaim, UnlikeNoise
 from estimator.diagnosis.signatures.patterns import Pattern
@@ -31,43 +31,43 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     """
     named = [
         (f.best.cause, finding(state, f, fitted, part, since))
-        for f, part, since in zip(state.found, fitted.slices, new, strict=True)
+        for f, part, since in zip(state.detections, fitted.slices, new, strict=True)
     ]
     cause = noise_cause(state)
     excess = [] if cause is None else [excess_finding(state, cause, e) for e in state.excess]
-    together = (as_event(state, found) for found in merged(named))
+    together = (as_event(state, event) for event in merged(named))
     return tuple(sorted((*together, *excess), key=lambda f: -f.strength))
 
 
-def as_event(state: SearchState, found: Finding) -> Finding:
+def as_event(state: SearchState, finding: Finding) -> Finding:
     """A finding in the words of one event, where all its sensors share one."""
-    own = [f for f in state.found if f.best.cause.identifier == found.cause]
-    one = len(own) > 1 and len({f.event for f in own}) == 1 and bool(own[0].event)
-    return shared_event(own[0].best.cause, found) if one else found
+    related = [f for f in state.detections if f.best.cause.identifier == finding.cause]
+    is_shared = len(related) > 1 and len({f.event for f in related}) == 1 and bool(related[0].event)
+    return shared_event(related[0].best.cause, finding) if is_shared else finding
 
 
-def finding(state: SearchState, found: Found, fitted: Amplitudes, part: slice, new: bool | None) -> Finding:
+def finding(state: SearchState, detection: Detection, fitted: Amplitudes, part: slice, new: bool | None) -> Finding:
     """One named cause; ``part``: its amplitudes among all."""
-    best, cause = found.best, found.best.cause
-    own = slice(part.start, part.start + len(cause.units))
+    best, cause = detection.best, detection.best.cause
+    place = slice(part.start, part.start + len(cause.units))
     amplitude, sigma = cause.reported(
-        state.baseline.setting, best.shape, fitted.value[own], np.sqrt(np.diagonal(fitted.covariance)[own])
+        state.baseline.setting, best.shape, fitted.value[place], np.sqrt(np.diagonal(fitted.covariance)[place])
     )
-    others = alternatives(state, found)
+    others = alternatives(state, detection)
     gyro = cause.kind is None and any(state.baseline.setting.kinds[i] != ACCELEROMETER for i in best.sensors)
     return replace(
-        named_cause(cause, tuple(state.names[i] for i in best.sensors), found.p_family, best.strength),
+        named_cause(cause, tuple(state.names[i] for i in best.sensors), detection.p_family, best.strength),
         amplitude=tuple(map(float, amplitude)),
         sigma=tuple(map(float, sigma)),
         units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in cause.units),
         nonlinear_each=(nonlinear(cause.nonlinear_units, best.shape.nonlinear),),
         alternatives=(
             *(r.cause.identifier for r in others),
-            *((UNEXPLAINED,) if found.unnamed > 1 - CREDIBLE else ()),
+            *((UNEXPLAINED,) if detection.unnamed > 1 - CREDIBLE else ()),
         ),
-        separations=separations(state, found, others),
-        ranking=ranking(state, found),
-        parity=parity_split(state, found),
+        separations=separations(state, detection, others),
+        ranking=ranking(state, detection),
+        parity=parity_split(state, detection),
         new=new,
     )
 
@@ -105,7 +105,7 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     """Unexplained structure and where it lives."""
     patterns = [
         Structure(
-            where=where_it_lives(f),
+            where=pattern_description(f),
             sensors=tuple(state.names[i] for i in f.best.sensors),
             p_value=f.p_family,
             strength=f.best.strength,
@@ -125,11 +125,11 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     )
 
 
-def where_it_lives(found: Found) -> str:
+def pattern_description(detection: Detection) -> str:
     """A pattern's own words; of a name that was taken back, that it does not hold."""
-    if isinstance(found.best.cause, Pattern):
-        return found.best.cause.where(found.best.shape)
-    return f"as of {found.best.cause.name}, which does not hold"
+    if isinstance(detection.best.cause, Pattern):
+        return detection.best.cause.where(detection.best.shape)
+    return f"as of {detection.best.cause.name}, which does not hold"
 
 
 def common_course(course: AppliedCourse) -> Structure:

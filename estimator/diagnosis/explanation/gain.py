@@ -15,9 +15,14 @@ import numpy as np
 from estimator.diagnosis.explanation.earlier_sessions import transfer
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.prediction import Prediction, counted, root_mean_square, unaided
+from estimator.diagnosis.residuals.prediction import (
+    Prediction,
+    predicted_without_effects,
+    root_mean_square,
+    row_redundancy,
+)
 from estimator.diagnosis.results import Gain, Score
-from estimator.diagnosis.selection.chosen_again import predicted_anew
+from estimator.diagnosis.selection.chosen_again import predicted_from_folds
 from estimator.diagnosis.selection.search_state import SearchState
 
 
@@ -27,11 +32,14 @@ def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Se
     ``given``: of the record as it came, where it had to be put right; ``new``: of every finding, whether it came since
     the history.
     """
-    named = [f for f in state.found if not f.best.cause.between]
+    named = [f for f in state.detections if not f.best.cause.between]
     given = as_stated(state) if given is None or state.courses else given
-    before, after = score(given, unaided(given)), score(state.baseline, predicted_anew(state, named))
+    before, after = (
+        score(given, predicted_without_effects(given)),
+        score(state.baseline, predicted_from_folds(state, named)),
+    )
     dearer = volume(state.baseline) - volume(given)
-    after = replace(after, log_score=after.log_score + dearer / float(counted(given).sum()))
+    after = replace(after, log_score=after.log_score + dearer / float(row_redundancy(given).sum()))
     return Gain(before, after, "positions", transfer(state, fitted, new))
 
 

@@ -35,11 +35,11 @@ def sentence(cause: Cause, sensors: tuple[str, ...]) -> str:
 
 def merged(named: Sequence[tuple[Cause, Finding]]) -> list[Finding]:
     """Findings of one cause on several sensors put together, one sentence of all of them."""
-    kept: dict[str, Finding] = {}
+    by_cause: dict[str, Finding] = {}
     for cause, f in named:
-        old = kept.get(f.cause)
-        kept[f.cause] = f if old is None else joined(cause, old, f)
-    return list(kept.values())
+        old = by_cause.get(f.cause)
+        by_cause[f.cause] = f if old is None else joined(cause, old, f)
+    return list(by_cause.values())
 
 
 def joined(cause: Cause, a: Finding, b: Finding) -> Finding:

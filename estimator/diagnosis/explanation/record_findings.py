@@ -32,11 +32,11 @@ def clip_findings(
     limits = [abs(float((c.side * inputs[list(c.rows), c.sensor]).max())) for c in clips]
     scales = [calibration.sensors[c.sensor].scale for c in clips]
     known = [abs(k.sigma / k.value) if k.sigma and k.value else 0.0 for k in scales]
-    found = [
+    clips_found = [
         (c.cause, clip_finding(c, limit, limit * relative, baseline))
         for c, limit, relative in zip(clips, limits, known, strict=True)
     ]
-    return tuple(merged(found))
+    return tuple(merged(clips_found))
 
 
 def clip_finding(clip: Clip, limit: float, by_scale: float, baseline: Baseline) -> Finding:

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import logsumexp
 
-from estimator.diagnosis.explanation.extended_model import amplitude_beside
+from estimator.diagnosis.explanation.extended_model import joint_amplitude
 from estimator.diagnosis.explanation.next_measurement import proposals
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import Rival, Separation
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.signatures.scores import WORTH
 from estimator.diagnosis.signatures.traces import Scored
 from estimator.least_squares import least_squares
@@ -28,31 +28,31 @@ SHOWN = 8
 """Lines of the ranking that people see."""
 
 
-def probabilities(found: Found) -> list[tuple[Scored, float]]:
+def probabilities(detection: Detection) -> list[tuple[Scored, float]]:
     """Every (cause, sensors) with its share, strongest first."""
-    values = np.array([value for _, value in found.ranking])
-    return [(s, float(p)) for (s, _), p in zip(found.ranking, np.exp(values - logsumexp(values)), strict=True)]
+    values = np.array([value for _, value in detection.ranking])
+    return [(s, float(p)) for (s, _), p in zip(detection.ranking, np.exp(values - logsumexp(values)), strict=True)]
 
 
-def alternatives(state: SearchState, found: Found) -> list[Scored]:
+def alternatives(state: SearchState, detection: Detection) -> list[Scored]:
     """Rivals that the session cannot distinguish from the named cause, most likely first.
 
     A rival with more amplitudes that contains the named cause pays for each of them in its share (`bayes_factor`):
     it is listed where it is still likely after that, and else parsimony has ruled it out. What by itself would be no
     evidence of an effect explains nothing and is no alternative, nor is what lies too far from the named cause.
     """
-    kept: list[Scored] = []
-    reached, attributed = 0.0, state.attributed(without=found)
-    amplitude, columns = amplitude_beside(state, found)
-    for rival, share in probabilities(found):
+    chosen: list[Scored] = []
+    reached, attributed = 0.0, state.attributed(without=detection)
+    amplitude, columns = joint_amplitude(state, detection)
+    for rival, share in probabilities(detection):
         if reached >= CREDIBLE:
             break
         reached += share
-        known = {found.best.cause.identifier, *(k.cause.identifier for k in kept)}
+        known = {detection.best.cause.identifier, *(k.cause.identifier for k in chosen)}
         near = separation(columns @ amplitude, rival.trace, attributed) < DISTINGUISHED
         if rival.cause.identifier not in known and rival.p_value < WORTH and near:
-            kept.append(rival)
-    return kept
+            chosen.append(rival)
+    return chosen
 
 
 def separation(signature: Array, rival: Array, attributed: Array) -> float:
@@ -64,15 +64,15 @@ def separation(signature: Array, rival: Array, attributed: Array) -> float:
     return float(np.sqrt(least_squares(columns, signature).chi2))
 
 
-def separations(state: SearchState, found: Found, others: Sequence[Scored]) -> tuple[Separation, ...]:
+def separations(state: SearchState, detection: Detection, others: Sequence[Scored]) -> tuple[Separation, ...]:
     """For every alternative: how far it is now, and what would bring it to `DISTINGUISHED`."""
-    attributed = state.attributed(without=found)
-    amplitude, columns = amplitude_beside(state, found)
+    attributed = state.attributed(without=detection)
+    amplitude, columns = joint_amplitude(state, detection)
     signature = columns @ amplitude
     answers = []
     for rival in others:
         now = separation(signature, rival.trace, attributed)
-        measurement, then = proposal(state.baseline, found.best, amplitude, rival)
+        measurement, then = proposal(state.baseline, detection.best, amplitude, rival)
         sensors = tuple(state.names[i] for i in rival.sensors)
         answers.append(Separation(rival.cause.identifier, sensors, now, measurement, then))
     return tuple(answers)
@@ -94,17 +94,17 @@ def proposal(baseline: Baseline, named: Scored, amplitude: Array, rival: Scored)
 def expected_separation(planned: Baseline, named: Scored, amplitude: Array, rival: Scored) -> float | None:
     """Separation of the named cause, at its ``amplitude`` (q,), SI, from the rival in a planned session."""
     residuals = WhitenedResiduals.of(planned)
-    own, other = (s.columns_in(planned.setting) for s in (named, rival))
-    if own is None or other is None:
+    named_columns, other = (s.columns_in(planned.setting) for s in (named, rival))
+    if named_columns is None or other is None:
         return None
-    signature = residuals.trace(own) @ amplitude[: own.shape[-1]]
+    signature = residuals.trace(named_columns) @ amplitude[: named_columns.shape[-1]]
     nothing = np.zeros((len(signature), 0))
     return separation(signature, residuals.trace(other), nothing)
 
 
-def ranking(state: SearchState, found: Found) -> tuple[Rival, ...]:
+def ranking(state: SearchState, detection: Detection) -> tuple[Rival, ...]:
     """The strongest causes, as people see them."""
     return tuple(
         Rival(s.cause.identifier, tuple(state.names[i] for i in s.sensors), p, s.strength)
-        for s, p in probabilities(found)[:SHOWN]
+        for s, p in probabilities(detection)[:SHOWN]
     )

@@ -9,14 +9,14 @@ more. So *before* is taken at the parameters of the extended model: what that le
 
 import numpy as np
 
-from estimator.diagnosis.explanation.extended_model import amplitude_beside
+from estimator.diagnosis.explanation.extended_model import joint_amplitude
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import ParitySplit
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.session import Array
 
 
-def parity_split(state: SearchState, found: Found) -> ParitySplit | None:
+def parity_split(state: SearchState, detection: Detection) -> ParitySplit | None:
     """χ² in parity space and in the range of the axes, with the effect left in and taken out.
 
     None for three sensors, which have no parity.
@@ -24,14 +24,14 @@ def parity_split(state: SearchState, found: Found) -> ParitySplit | None:
     kinds = state.baseline.setting.kinds
     if len(kinds) <= 3 or len(set(kinds)) > 1:
         return None
-    amplitude, _ = amplitude_beside(state, found)
-    effect = state.residuals.whitened(found.best.shape.columns) @ amplitude
+    amplitude, _ = joint_amplitude(state, detection)
+    effect = state.residuals.whitened(detection.best.shape.columns) @ amplitude
     after = state.remaining
     before = after.copy()
     before[: len(effect)] += effect
     parity_before, range_before = energies(state.residuals, before)
     parity_after, range_after = energies(state.residuals, after)
-    share = signature_share(state.residuals, found.best.shape.columns)
+    share = signature_share(state.residuals, detection.best.shape.columns)
     return ParitySplit(share, parity_before, parity_after, range_before, range_after)
 
 

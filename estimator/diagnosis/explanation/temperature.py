@@ -14,7 +14,7 @@ from estimator.diagnosis.explanation.findings import UNEXPLAINED
 from estimator.diagnosis.results import Finding, Rival, Separation
 from estimator.session import Array
 
-APART = 5.0
+LEAST_DIFFERENCE = 5.0
 """°C from which on two sessions were measured at different temperatures: laboratories that are held at 20 ± 2 °C differ
 by less through all seasons, while 30 µg and 100 ppm per °C, usual of sensors without compensation, are worth whole
 tolerances beyond it."""
@@ -35,7 +35,7 @@ class Temperatures:
     usual: float
 
     @property
-    def apart(self) -> float:
+    def difference(self) -> float:
         """°C."""
         return abs(self.now - self.usual)
 
@@ -54,40 +54,42 @@ def temperatures(session: Array | None, history: Sequence[Array | None]) -> Temp
     now = float(session.mean())
     nearest = np.array([np.clip(now, rows.min(), rows.max()) for rows in known])
     usual = now + float(np.median(nearest - now))
-    found = Temperatures(now, usual)
-    return found if found.apart > APART else None
+    pair = Temperatures(now, usual)
+    return pair if pair.difference > LEAST_DIFFERENCE else None
 
 
-def with_temperature(findings: Sequence[Finding], found: Temperatures | None) -> tuple[Finding, ...]:
+def with_temperature(findings: Sequence[Finding], temperatures: Temperatures | None) -> tuple[Finding, ...]:
     """The findings; changes since the history have temperature beside them where it changed as well."""
-    return tuple(findings if found is None else (beside_temperature(f, found) for f in findings))
+    return tuple(findings if temperatures is None else (compared_with_temperature(f, temperatures) for f in findings))
 
 
-def beside_temperature(finding: Finding, found: Temperatures) -> Finding:
+def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> Finding:
     """One finding with what temperature may be instead of it."""
     rivals = tuple(name for name in rivals_of(finding) if name not in finding.alternatives)
     if not rivals:
         return finding
     named = tuple(name for name in rivals if name != UNEXPLAINED)
-    again = f"measure again at about {found.usual:.0f} °C"
-    apart = tuple(Separation(name, finding.sensors, 0.0, again, finding.strength) for name in named)
-    own = replace(
+    again = f"measure again at about {temperatures.usual:.0f} °C"
+    separated = tuple(Separation(name, finding.sensors, 0.0, again, finding.strength) for name in named)
+    compared = replace(
         finding,
         alternatives=(*named, *finding.alternatives, *(name for name in rivals if name == UNEXPLAINED)),
-        separations=(*apart, *finding.separations),
+        separations=(*separated, *finding.separations),
         ranking=tuple(shared(finding, named)),
-        advice=f"Measure again at about {found.usual:.0f} °C, as in the earlier sessions, or calibrate over "
-        f"temperature, before you act on this: the session was measured at {found.now:.0f} °C.",
+        advice=f"Measure again at about {temperatures.usual:.0f} °C, as in the earlier sessions, or calibrate over "
+        f"temperature, before you act on this: the session was measured at {temperatures.now:.0f} °C.",
     )
-    return replace(own, sentence=in_words(own, found)) if finding.cause == DRIFT else own
+    return (
+        replace(compared, sentence=temperature_advice(compared, temperatures)) if finding.cause == DRIFT else compared
+    )
 
 
-def in_words(finding: Finding, found: Temperatures) -> str:
+def temperature_advice(finding: Finding, temperatures: Temperatures) -> str:
     """What is known of a drift, and no more."""
     sensors = ", ".join(finding.sensors)
     return (
         f"The parameters of {sensors} differ from those of the earlier sessions, and the temperature "
-        f"differs by {found.apart:.0f} °C."
+        f"differs by {temperatures.difference:.0f} °C."
     )
 
 
@@ -102,10 +104,10 @@ def rivals_of(finding: Finding) -> tuple[str, ...]:
 def shared(finding: Finding, rivals: Sequence[str]) -> list[Rival]:
     """The ranking, in which a cause shares its probability evenly with rivals that do the same to these sessions."""
     ranked = list[Rival]()
-    for one in finding.ranking:
-        if one.cause != finding.cause:
-            ranked.append(one)
+    for rival in finding.ranking:
+        if rival.cause != finding.cause:
+            ranked.append(rival)
             continue
-        part = replace(one, probability=one.probability / (1 + len(rivals)))
+        part = replace(rival, probability=rival.probability / (1 + len(rivals)))
         ranked += [part, *(replace(part, cause=name) for name in rivals)]
     return ranked

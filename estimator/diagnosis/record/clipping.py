@@ -92,15 +92,15 @@ def unclipped(session: CalibrationSession, catalogue: Sequence[Cause]) -> tuple[
 
 def clips_among(session: CalibrationSession, suspects: Sequence[Suspect], cause: Cause) -> list[Clip]:
     """Those of the suspects that are clipped, none of which takes part in saying what the others should have read."""
-    found = []
+    clips = []
     for suspect, expected in zip(suspects, expectations(session, suspects), strict=True):
         if expected is None or (len(suspect.rows) < FEWEST and not expected.believed):
             continue
         strength, p_value = expected.significance(session.readings[suspect.rows, suspect.sensor], suspect.side)
         if p_value < LEVEL / (2 * len(session.sensors)):
             rows = tuple(map(int, suspect.rows))
-            found.append(Clip(cause, suspect.sensor, suspect.side, rows, expected.value, p_value, strength))
-    return found
+            clips.append(Clip(cause, suspect.sensor, suspect.side, rows, expected.value, p_value, strength))
+    return clips
 
 
 def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
@@ -111,8 +111,8 @@ def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
     ends = [(UPPER, np.argmax), (LOWER, np.argmin)]
     felt = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
     each = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in felt]
-    found = [clips_among(session, suspects, cause) for suspects in each]
-    return max(found, key=lambda clips: sum(clip.strength**2 for clip in clips), default=[])
+    by_channel = [clips_among(session, suspects, cause) for suspects in each]
+    return max(by_channel, key=lambda clips: sum(clip.strength**2 for clip in clips), default=[])
 
 
 def suspected(session: CalibrationSession) -> Iterator[Suspect]:
@@ -138,13 +138,13 @@ def expectations(session: CalibrationSession, suspects: Sequence[Suspect]) -> li
     """What to expect in the rows of every suspect, none of which takes part, in order."""
     if session.programme != TWO_AXIS_STAND:
         return in_orientations(session, [(s.sensor, s.rows) for s in suspects]) if suspects else []
-    found: list[Expected | None] = []
+    results: list[Expected | None] = []
     for i, both in groupby(suspects, key=lambda s: s.sensor):
         sides = list(both)
         together = on_stand(session, (i, np.concatenate([s.rows for s in sides])))
         ends = np.cumsum([0, *(len(s.rows) for s in sides)])
-        found += [None if together is None else together.of(slice(a, b)) for a, b in pairwise(ends)]
-    return found
+        results += [None if together is None else together.of(slice(a, b)) for a, b in pairwise(ends)]
+    return results
 
 
 @remembered

@@ -50,14 +50,16 @@ def exchanged_rows(baseline: Baseline, known: Sequence[Correction]) -> RecordErr
     return RecordError(tuple(attempt for attempt, _ in tried))
 
 
-def exchanged_back(baseline: Baseline, cause: Correction, rows: tuple[int, int], ways: int) -> tuple[Attempt, float]:
+def exchanged_back(
+    baseline: Baseline, cause: Correction, rows: tuple[int, int], alternatives: int
+) -> tuple[Attempt, float]:
     """One exchange, among so many ways, with the χ² that the corrected record leaves under the same noise."""
     before, freedom = weighted_square(baseline), baseline.residual.size
     right = exchange_rows(baseline.session, *rows)
     after = float((baseline_of(right).residual ** 2 / baseline.variance).sum())
     blind = bool(baseline.unstated.any())
     gained = 0.5 * freedom * np.log(before / after) if blind else 0.5 * (before - after)
-    return Attempt(cause, rows, right, float(gained - np.log(ways))), after
+    return Attempt(cause, rows, right, float(gained - np.log(alternatives))), after
 
 
 def weighted_square(baseline: Baseline) -> float:

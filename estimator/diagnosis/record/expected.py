@@ -75,22 +75,22 @@ def on_stand(session: CalibrationSession, cells: Cells) -> Expected | None:
 
     u = c₀ + c·n + c₂·a², a along the nominal axis, fitted by least squares.
     """
-    i, left_out = cells
+    i, omitted = cells
     n = stand_geometry(session).n[:, i]
     size = float(np.linalg.norm(n[0]))
     along = n @ session.sensors[i].nominal_axis
     terms = np.column_stack([np.ones(len(n)), n / size, (along / size) ** 2])
-    kept = np.setdiff1d(np.arange(len(n)), left_out)
-    _, values, turn = np.linalg.svd(terms[kept], full_matrices=False)
+    remaining = np.setdiff1d(np.arange(len(n)), omitted)
+    _, values, turn = np.linalg.svd(terms[remaining], full_matrices=False)
     seen = turn[values > SEEN * values[0]]
-    freedom = len(kept) - len(seen)
-    if freedom < SPARE or np.abs(terms[left_out] - terms[left_out] @ seen.T @ seen).max() > SEEN:
+    freedom = len(remaining) - len(seen)
+    if freedom < SPARE or np.abs(terms[omitted] - terms[omitted] @ seen.T @ seen).max() > SEEN:
         return None
     basis = terms @ seen.T
-    fit = least_squares(basis[kept], session.readings[kept, i])
+    fit = least_squares(basis[remaining], session.readings[remaining, i])
     variance = float(fit.chi2) / freedom + (EXACT * np.ptp(session.readings[:, i])) ** 2
-    lean = basis[left_out] @ fit.covariance @ basis[left_out].T
-    return Expected(basis[left_out] @ fit.value, variance * (np.eye(len(left_out)) + lean), freedom)
+    lean = basis[omitted] @ fit.covariance @ basis[omitted].T
+    return Expected(basis[omitted] @ fit.value, variance * (np.eye(len(omitted)) + lean), freedom)
 
 
 def explained(session: CalibrationSession) -> bool:
@@ -101,8 +101,8 @@ def explained(session: CalibrationSession) -> bool:
     prepared, stated = accelerometer_rows(session, felt, gravity(session.site))
     if not stated:
         return True
-    found = solve(prepared, stated, None)
-    return bool(p_value(found.chi2, found.dof) >= UNLIKELY)
+    solution = solve(prepared, stated, None)
+    return bool(p_value(solution.chi2, solution.dof) >= UNLIKELY)
 
 
 def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list[Expected | None]:
@@ -118,34 +118,34 @@ def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list
     sigma = prepared.sigma.copy()
     for i, rows in cells:
         sigma[rows, place[i]] = UNWEIGHTED
-    found = solve(prepared.weighted(sigma), True, None)
-    spare = found.dof - sum(len(rows) for _, rows in cells)
-    believed = stated and spare > 0 and p_value(found.chi2, spare) >= UNLIKELY
-    if not found.converged or (spare < SPARE and not believed):
+    solution = solve(prepared.weighted(sigma), True, None)
+    spare = solution.dof - sum(len(rows) for _, rows in cells)
+    believed = stated and spare > 0 and p_value(solution.chi2, spare) >= UNLIKELY
+    if not solution.converged or (spare < SPARE and not believed):
         return [None] * len(cells)
-    growth = 1.0 if believed else found.chi2 / spare
+    growth = 1.0 if believed else solution.chi2 / spare
     expected: list[Expected | None] = []
     for i, rows in cells:
-        own = prepared.sigma[rows, place[i]]
-        covariance = _covariance(found, int(place[i]), rows)
+        sigma_of_cells = prepared.sigma[rows, place[i]]
+        covariance = _covariance(solution, int(place[i]), rows)
         if covariance is None:
             expected.append(None)
             continue
         unit, offset = g * session.sensors[i].nominal_scale, session.sensors[i].nominal_offset or 0.0
-        value = readings_of(found.unknowns)[rows, place[i]] * unit + offset
-        full = growth * (covariance + np.diag(own**2)) + EXACT**2 * np.eye(len(rows))
+        value = readings_of(solution.unknowns)[rows, place[i]] * unit + offset
+        full = growth * (covariance + np.diag(sigma_of_cells**2)) + EXACT**2 * np.eye(len(rows))
         expected.append(Expected(value, full * unit**2, np.inf if believed else spare))
     return expected
 
 
-def _covariance(found: Solution, i: int, rows: Array) -> Array | None:
+def _covariance(solution: Solution, i: int, rows: Array) -> Array | None:
     """(k, k) of the predictions of sensor i in ``rows`` (k,), relative to g; None where the fit leaves one open."""
-    linear, known = linearise(found.rows, found.unknowns), found.knowledge
-    sigma = found.rows.sigma[rows, i]
-    own, shared = linear.own[rows, i] * sigma[:, None], linear.shared[rows, i] * sigma[:, None]
+    linear, known = linearise(solution.rows, solution.unknowns), solution.knowledge
+    sigma = solution.rows.sigma[rows, i]
+    local, shared = linear.local[rows, i] * sigma[:, None], linear.shared[rows, i] * sigma[:, None]
     through = np.einsum("ka,kab->kb", shared, linear.inverse[rows])
     h = -np.einsum("kb,kpb->kp", through, linear.coupling[rows])
-    h[:, 5 * i : 5 * i + 5] += own
+    h[:, 5 * i : 5 * i + 5] += local
     if np.abs(h @ known.unseen).max(initial=0.0) > SEEN:
         return None
     return np.asarray(h @ known.covariance @ h.T + np.diag(np.einsum("kb,kb->k", through, shared)))

@@ -31,9 +31,9 @@ def implausible_axes(baseline: Baseline, expected: Array) -> ImplausibleAxes | N
 
     In arbitrary orientations a turn of the whole block is not seen and means nothing.
     """
-    found = baseline.parameters.axis
-    turn = nearest_turn(expected, found)
-    angle = np.arccos(np.clip((found * (expected @ turn.T)).sum(axis=-1), -1.0, 1.0))
+    axes = baseline.parameters.axis
+    turn = nearest_turn(expected, axes)
+    angle = np.arccos(np.clip((axes * (expected @ turn.T)).sum(axis=-1), -1.0, 1.0))
     if angle.max() > BEYOND:
         return ImplausibleAxes(tuple(np.flatnonzero(angle > BEYOND).tolist()), float(angle.max()))
     whole = float(np.arccos(np.clip((np.trace(turn) - 1) / 2, -1.0, 1.0)))

@@ -40,12 +40,12 @@ def turned_record(baseline: Baseline, expected: Array, known: Sequence[Correctio
     for cause in known:
         if not cause.between or not usable(cause, session):
             continue
-        ways = list(cause.corrected(session))
-        for places, right in ways:
+        alternatives = list(cause.corrected(session))
+        for places, right in alternatives:
             after, largest = misfit_of(right, expected)
             if largest < worst / NEARER and scales_agree(right):
                 floor = max(after, m * LEAST)
-                log_evidence = m * float(np.log(before / floor)) - float(np.log(len(ways)))
+                log_evidence = m * float(np.log(before / floor)) - float(np.log(len(alternatives)))
                 tried.append(Attempt(cause, places, right, log_evidence))
     tried.sort(key=lambda a: -a.log_evidence)
     return RecordError(tuple(tried)) if tried and tried[0].log_evidence >= BETTER else None
@@ -53,9 +53,9 @@ def turned_record(baseline: Baseline, expected: Array, known: Sequence[Correctio
 
 def misfit(baseline: Baseline, expected: Array) -> tuple[float, float]:
     """Sum of squared angles between fitted and ``expected`` axes (m, 3), rad², and the largest, rad."""
-    found = baseline.parameters.axis
-    cosine = np.clip((found * expected).sum(axis=-1), -1.0, 1.0)
-    chord = np.linalg.norm(found - expected, axis=-1)
+    axes = baseline.parameters.axis
+    cosine = np.clip((axes * expected).sum(axis=-1), -1.0, 1.0)
+    chord = np.linalg.norm(axes - expected, axis=-1)
     angle = np.where(cosine > 0.5, chord, np.arccos(cosine))
     return float((angle**2).sum()), float(angle.max())
 

@@ -26,11 +26,11 @@ def undo_record_errors(
             break
         errors.append(error)
         baseline = baseline_of(error.undone.session)
-    return [e for e in errors if not taken_back(e, errors)], baseline
+    return [e for e in errors if not is_reverted(e, errors)], baseline
 
 
-def taken_back(error: RecordError, errors: Sequence[RecordError]) -> bool:
+def is_reverted(error: RecordError, errors: Sequence[RecordError]) -> bool:
     """Whether a record error was undone and then done again, because another one had misled the first look."""
-    own = error.undone
-    same = [e for e in errors if (e.undone.cause, e.undone.places) == (own.cause, own.places)]
+    undone = error.undone
+    same = [e for e in errors if (e.undone.cause, e.undone.places) == (undone.cause, undone.places)]
     return len(same) % 2 == 0

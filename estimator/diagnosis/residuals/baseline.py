@@ -187,9 +187,9 @@ class Baseline:
         return np.asarray(keep @ covariance @ keep.T)
 
 
-def block_columns(own: Array) -> Array:
+def block_columns(by_sensor: Array) -> Array:
     """Each sensor's own columns (R, m, 5), m/s² (rad/s), as (R, m, 5 m) columns of the parameters of all."""
-    rows, m, width = own.shape
+    rows, m, width = by_sensor.shape
     full = np.zeros((rows, m, m, width))
-    full[:, np.arange(m), np.arange(m), :] = own
+    full[:, np.arange(m), np.arange(m), :] = by_sensor
     return full.reshape(rows, m, m * width)

@@ -42,8 +42,8 @@ def deviation(now: SensorParameters, then: SensorParameters, norm: Array) -> Arr
 def carried(now: SensorParameters, frames: Array) -> Array:
     """(P, P) dimensionless: a change along tangents ``frames`` (m, 3, 2) as one along the tangents of ``now``."""
     m = len(frames)
-    full, one = np.zeros((m, 5, m, 5)), np.arange(m)
-    full[one, :, one, :] = carried_each(now, frames)
+    full, index = np.zeros((m, 5, m, 5)), np.arange(m)
+    full[index, :, index, :] = carried_each(now, frames)
     return full.reshape(5 * m, 5 * m)
 
 
@@ -58,8 +58,8 @@ def inverse_root(matrix: Array) -> Array:
     """W (…, P, P), symmetric up to scale, with W'W the pseudo-inverse of a dimensionless covariance (…, P, P)."""
     scale = np.sqrt(np.diagonal(matrix, axis1=-2, axis2=-1))
     values, vectors = eigh(matrix / scale[..., :, None] / scale[..., None, :])
-    kept = values > NO_VARIANCE * values[..., -1:]
-    inverse = np.where(kept, 1 / np.sqrt(np.where(kept, values, 1.0)), 0.0)
+    positive = values > NO_VARIANCE * values[..., -1:]
+    inverse = np.where(positive, 1 / np.sqrt(np.where(positive, values, 1.0)), 0.0)
     return np.asarray((vectors * inverse[..., None, :]) @ np.swapaxes(vectors, -1, -2) / scale[..., None, :])
 
 
@@ -69,29 +69,31 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
     The reference is the information-weighted mean of the history's parameters. What tells nothing of the common turn
     because the block sat otherwise enters without it.
     """
-    p, keep = now.parameters, observable_directions(now.gauge_free, now.parameters)
+    p, observable = now.parameters, observable_directions(now.gauge_free, now.parameters)
     alike = [h for h in history if h.setting.kinds == now.setting.kinds]
     if not alike:
         return None
     steps = [deviation(p, h.parameters, now.setting.norm).reshape(-1) for h in alike]
     maps = [carried(p, h.parameters.axis_tangents) for h in alike]
-    known = [keep.T @ map @ h.covariance @ map.T @ keep for h, map in zip(alike, maps, strict=True)]
+    known = [observable.T @ map @ h.covariance @ map.T @ observable for h, map in zip(alike, maps, strict=True)]
     information = [(root := inverse_root(covariance)).T @ root for covariance in known]
-    turn = keep.T @ turn_response(p)
-    information = [without(i, turn) if h.sits_otherwise else i for h, i in zip(alike, information, strict=True)]
+    turn = observable.T @ turn_response(p)
+    information = [
+        without_directions(i, turn) if h.sits_otherwise else i for h, i in zip(alike, information, strict=True)
+    ]
     covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
-    shares = [keep @ covariance @ own @ keep.T for own in information]
-    whiten = keep @ inverse_root(covariance + keep.T @ now.covariance @ keep) @ keep.T
-    steps = [step + map @ taken_off(h) for h, step, map in zip(alike, steps, maps, strict=True)]
+    shares = [observable @ covariance @ part @ observable.T for part in information]
+    whiten = observable @ inverse_root(covariance + observable.T @ now.covariance @ observable) @ observable.T
+    steps = [step + map @ effect_of_turns(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
     earlier = tuple(
         EarlierSession(WhitenedResiduals.of(h), share @ map, replace(h.setting, parameters=p))
         for h, share, map in zip(alike, shares, maps, strict=True)
     )
-    return ParameterChange(whiten @ (taken_off(now) - step), whiten, earlier)
+    return ParameterChange(whiten @ (effect_of_turns(now) - step), whiten, earlier)
 
 
-def taken_off(baseline: Baseline) -> Array:
+def effect_of_turns(baseline: Baseline) -> Array:
     """(P,) dimensionless: what the turns that a baseline is linear about would make of its parameters if left in."""
     setting = baseline.setting
     if not (setting.turn.any() or setting.flip_turn.any()):
@@ -101,7 +103,7 @@ def taken_off(baseline: Baseline) -> Array:
     return residuals.response @ residuals.whitened(columns[..., None])[:, 0]
 
 
-def without(information: Array, directions: Array) -> Array:
+def without_directions(information: Array, directions: Array) -> Array:
     """(q, q) information that leaves nothing known along ``directions`` (q, k), both dimensionless."""
     along = information @ directions
     return np.asarray(information - along @ np.linalg.pinv(directions.T @ along, hermitian=True) @ along.T)

@@ -52,30 +52,30 @@ def on_stand(session: CalibrationSession, start: SensorParameters | None) -> Bas
 def near(sessions: Sequence[CalibrationSession], starts: Sequence[SensorParameters]) -> list[Baseline]:
     """Baselines of sessions on a stand, each fitted from its own start; those of one schedule in one call."""
     groups: defaultdict[Hashable, list[int]] = defaultdict(list)
-    found: dict[int, Baseline] = {}
+    baselines: dict[int, Baseline] = {}
     for k, session in enumerate(sessions):
         groups[schedule(session)].append(k)
     for members in groups.values():
-        own = [sessions[k] for k in members]
-        solution = solved(own, together([starts[k] for k in members]))
-        found.update((k, seen_on_stand(sessions[k], solution, at)) for at, k in enumerate(members))
-    return [found[k] for k in range(len(sessions))]
+        group = [sessions[k] for k in members]
+        solution = solved(group, together([starts[k] for k in members]))
+        baselines.update((k, seen_on_stand(sessions[k], solution, at)) for at, k in enumerate(members))
+    return [baselines[k] for k in range(len(sessions))]
 
 
 def seen_on_stand(session: CalibrationSession, solution: Solved, k: int) -> Baseline:
     """The baseline of the k-th of sessions that were solved together."""
     fitted, variance = solution.fitted, solution.fitted.variance[k]
-    found = stand_baseline(session, fitted.parameters.at(k), solution.geometry, fitted.residual[k], variance)
-    asked = found.unstated & np.isfinite(variance[0])
-    if not asked.any():
-        return found
-    ratio = typical(variance[:1], asked[np.newaxis], found.setting.norm)[0] / variance[0]
-    return replace(found, expected_ratio=np.nan_to_num(ratio))
+    baseline = stand_baseline(session, fitted.parameters.at(k), solution.geometry, fitted.residual[k], variance)
+    wanted = baseline.unstated & np.isfinite(variance[0])
+    if not wanted.any():
+        return baseline
+    ratio = typical(variance[:1], wanted[np.newaxis], baseline.setting.norm)[0] / variance[0]
+    return replace(baseline, expected_ratio=np.nan_to_num(ratio))
 
 
 def stand_baseline(
     session: CalibrationSession,
-    own: SensorParameters,
+    parameters: SensorParameters,
     g: Geometry,
     residual: Array,
     variance: Array,
@@ -84,12 +84,12 @@ def stand_baseline(
 
     ``residual`` (R, m) at the input, m/s² (rad/s), and its ``variance`` (R, m), (m/s²)² ((rad/s)²).
     """
-    steep = slope(own, g.n)
+    steep = slope(parameters, g.n)
     rows, schedule = len(residual), Schedule.of(session)
-    constant = [steep * projected(own.axis, d) for d in g.constant]
+    constant = [steep * projected(parameters.axis, d) for d in g.constant]
     setting = Setting(
         kinds=tuple(s.kind for s in session.sensors),
-        parameters=own,
+        parameters=parameters,
         n=g.n,
         norm=g.norm,
         beta=session.beta,
@@ -111,7 +111,7 @@ def stand_baseline(
         unstated=unstated_noise(session),
         constant=np.stack(constant, axis=-1) if constant else np.zeros((rows, len(session.sensors), 0)),
         constant_sigma=g.constant_sigma,
-        row=(steep * projected(own.axis, g.beta))[..., None],
+        row=(steep * projected(parameters.axis, g.beta))[..., None],
         row_sigma=np.full((rows, 1), g.beta_sigma),
     )
 
@@ -134,9 +134,9 @@ def elevation_derivative(session: Schedule) -> Array:
         size = gravity(session.site) if kind == ACCELEROMETER else EARTH_RATE
         up, down = (stand_vector(angle + sign * step, session.beta) for sign in (1, -1))
         change[kind] = size * to_block((up - down) / (2 * step), session)
-    found = np.stack([change[kind] for kind in session.kinds], axis=1)
-    found.setflags(write=False)
-    return found
+    derivative = np.stack([change[kind] for kind in session.kinds], axis=1)
+    derivative.setflags(write=False)
+    return derivative
 
 
 @lru_cache(maxsize=SCHEDULES)
@@ -144,9 +144,9 @@ def force_on_stand(session: Schedule) -> Array | None:
     """(R, 3) specific force on the block, m/s², read only; None where the elevation above the horizon is not stated."""
     if session.stand.alpha is None:
         return None
-    found = gravity(session.site) * to_block(stand_vector(session.stand.alpha, session.beta), session)
-    found.setflags(write=False)
-    return found
+    force = gravity(session.site) * to_block(stand_vector(session.stand.alpha, session.beta), session)
+    force.setflags(write=False)
+    return force
 
 
 def in_orientations(session: CalibrationSession) -> Baseline:

@@ -36,21 +36,21 @@ def flip_effect(setting: Setting) -> Array:
 
 def with_its_flip(session: CalibrationSession) -> Baseline:
     """The baseline of a session, fitted about the turn of its flipped run where that is not small."""
-    return about_its_flip(baseline_of(replace(session, flip_turn=np.zeros(3))))
+    return with_fitted_flip(baseline_of(replace(session, flip_turn=np.zeros(3))))
 
 
-def about_its_flip(found: Baseline, start: SensorParameters | None = None) -> Baseline:
+def with_fitted_flip(baseline: Baseline, start: SensorParameters | None = None) -> Baseline:
     """The same of a session that is fitted, from the same ``start``, with no turn."""
-    session, cause = found.session, FlipMisalignment()
-    if session.programme != TWO_AXIS_STAND or not cause.available(found.setting):
-        return found
+    session, cause = baseline.session, FlipMisalignment()
+    if session.programme != TWO_AXIS_STAND or not cause.available(baseline.setting):
+        return baseline
     for _ in range(ROUNDS):
-        residuals = WhitenedResiduals.of(found)
-        trace = residuals.trace(found.setting.through(cause.change(found.setting)))
+        residuals = WhitenedResiduals.of(baseline)
+        trace = residuals.trace(baseline.setting.through(cause.change(baseline.setting)))
         turn = least_squares(trace, residuals.z, FAINT).value
-        apart = np.linalg.norm(turn - found.session.flip_turn)
-        if apart < SMALL or np.linalg.norm(turn) > LARGEST:
+        difference = np.linalg.norm(turn - baseline.session.flip_turn)
+        if difference < SMALL or np.linalg.norm(turn) > LARGEST:
             break
-        found = baseline_of(replace(session, flip_turn=turn), start)
-        found = replace(found, residual=found.residual + flip_effect(found.setting))
-    return found
+        baseline = baseline_of(replace(session, flip_turn=turn), start)
+        baseline = replace(baseline, residual=baseline.residual + flip_effect(baseline.setting))
+    return baseline

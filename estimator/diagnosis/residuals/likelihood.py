@@ -18,12 +18,12 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
 
 
-def log_likelihood_ratio(one: WhitenedResiduals, other: WhitenedResiduals) -> float:
-    """ln of the restricted likelihood of the readings, and of their change since the history, in ``one`` over
+def log_likelihood_ratio(first: WhitenedResiduals, other: WhitenedResiduals) -> float:
+    """ln of the restricted likelihood of the readings, and of their change since the history, in ``first`` over
     ``other``: the same session under two noises, dimensionless."""
     scale = np.linalg.norm(other.baseline.whitened_design, axis=0)
     scale = np.where(scale > 0, scale, 1.0)
-    return restricted(one, scale) - restricted(other, scale)
+    return restricted(first, scale) - restricted(other, scale)
 
 
 def restricted(residuals: WhitenedResiduals, scale: Array) -> float:

@@ -47,7 +47,7 @@ class Prediction:
         return -0.5 * (self.count * float(np.log(self.square)) + self.volume)
 
 
-def counted(baseline: Baseline) -> Array:
+def row_redundancy(baseline: Baseline) -> Array:
     """(R,) number of readings of every row less the directions that they serve to estimate."""
     return np.asarray(baseline.residual.shape[1] - baseline.whiten.projected_out.sum(axis=1))
 
@@ -58,7 +58,7 @@ def fold_of(rows: int) -> Array:
 
 
 @once
-def unaided(baseline: Baseline) -> Prediction:
+def predicted_without_effects(baseline: Baseline) -> Prediction:
     """Every row predicted with no effect in the model."""
     return predicted(baseline, [()] * FOLDS)
 
@@ -66,15 +66,15 @@ def unaided(baseline: Baseline) -> Prediction:
 def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Prediction:
     """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there."""
     R, m = baseline.residual.shape
-    whiten, number = baseline.whiten, counted(baseline)
-    own = baseline.whitened_design[: R * m]
+    whiten, number = baseline.whiten, row_redundancy(baseline)
+    whitened = baseline.whitened_design[: R * m]
     data = whiten(baseline.residual[..., None]).reshape(R, m)
     errors, volume, squares = np.zeros((R, m)), 0.0, 0.0
     for fold, columns in enumerate(effects):
         rows = fold_of(R) == fold
         if not rows.any():
             continue
-        design = np.concatenate([own, *map(whiten, columns)], axis=1).reshape(R, m, -1)
+        design = np.concatenate([whitened, *map(whiten, columns)], axis=1).reshape(R, m, -1)
         size = np.maximum(np.linalg.norm(design, axis=(0, 1)), 1e-300)
         held, rest = (design[r].reshape(-1, len(size)) / size for r in (rows, ~rows))
         inverse = np.linalg.pinv(rest.T @ rest + np.diag(priors(baseline, size)), hermitian=True)
@@ -100,5 +100,9 @@ def priors(baseline: Baseline, size: Array) -> Array:
 def root_mean_square(error: Array, baseline: Baseline) -> dict[str, float]:
     """Of errors (R, m), m/s² (rad/s), by kind of sensor: units are never mixed."""
     kinds = np.array(baseline.setting.kinds)
-    own = {str(kind): float(np.sqrt(np.mean(error[:, kinds == kind] ** 2))) for kind in dict.fromkeys(kinds)}
-    return own if baseline.session.block in own else {baseline.session.block: next(iter(own.values())), **own}
+    by_kind = {str(kind): float(np.sqrt(np.mean(error[:, kinds == kind] ** 2))) for kind in dict.fromkeys(kinds)}
+    return (
+        by_kind
+        if baseline.session.block in by_kind
+        else {baseline.session.block: next(iter(by_kind.values())), **by_kind}
+    )

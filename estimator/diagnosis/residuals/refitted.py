@@ -18,10 +18,10 @@ def refitted(baseline: Baseline) -> Baseline:
     residuals, as the effect that it is.
     """
     residuals, setting = WhitenedResiduals.of(baseline), baseline.setting
-    keep = observable_directions(baseline.gauge_free, baseline.parameters)
-    own = residuals.whitened((baseline.residual - flip_effect(setting))[..., None])[:, 0]
-    free = keep @ (keep.T @ (residuals.response @ own))
+    observable = observable_directions(baseline.gauge_free, baseline.parameters)
+    whitened = residuals.whitened((baseline.residual - flip_effect(setting))[..., None])[:, 0]
+    free = observable @ (observable.T @ (residuals.response @ whitened))
     step = free - baseline.covariance @ free / PLAUSIBLE**2
-    left = baseline.residual - block_columns(baseline.design) @ step
+    remaining = baseline.residual - block_columns(baseline.design) @ step
     parameters = setting.parameters.stepped(step.reshape(-1, 5), setting.norm)
-    return replace(baseline, residual=left, setting=replace(setting, parameters=parameters))
+    return replace(baseline, residual=remaining, setting=replace(setting, parameters=parameters))

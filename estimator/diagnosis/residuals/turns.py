@@ -66,17 +66,17 @@ def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
         force=to(old.force),
         flip_turn=turn @ old.flip_turn,
     )
-    found = replace(baseline, session=turned_session(baseline.session, turn), setting=setting, turn=vector_of(turn))
-    C, absorbed = carried(found.parameters, turn @ p.axis_tangents), baseline.absorption
+    turned = replace(baseline, session=turned_session(baseline.session, turn), setting=setting, turn=vector_of(turn))
+    C, absorbed = carried(turned.parameters, turn @ p.axis_tangents), baseline.absorption
     design = baseline.whitened_design.copy()
     design[:, : len(C)] = design[:, : len(C)] @ C.T
-    vars(found).update(
+    vars(turned).update(
         whiten=baseline.whiten,
         whitened_design=design,
         absorption=Absorption(absorbed.basis, C @ absorbed.response),
         covariance=C @ baseline.covariance @ C.T,
     )
-    return found
+    return turned
 
 
 def of_each(covariance: Array) -> Array:
@@ -89,14 +89,14 @@ def turns_between(nows: Sequence[Baseline], earlier: Sequence[Baseline]) -> Arra
     """(H, 3, 3) rotations, dimensionless, that take the axes of earlier sessions onto those of as many ``nows`` of the
     same sensors; each iterates until it has settled itself."""
     p, q = together([b.parameters for b in nows]), together([b.parameters for b in earlier])
-    own, origin = (np.stack([of_each(b.covariance) for b in each]) for each in (nows, earlier))
+    current, origin = (np.stack([of_each(b.covariance) for b in each]) for each in (nows, earlier))
     norm, frames = np.stack([b.setting.norm for b in nows]), q.axis_tangents
     response = turn_response(p).reshape(*p.scale.shape, 5, 3)
     turn = common_turn(q.axis, p.axis, NEAR)
     moving = np.ones(len(turn), dtype=bool)
     for _ in range(ROUNDS):
         mapping = carried_each(p, turn[:, None] @ frames)
-        roots = inverse_root(own + mapping @ origin @ np.swapaxes(mapping, -1, -2))
+        roots = inverse_root(current + mapping @ origin @ np.swapaxes(mapping, -1, -2))
         turned = replace(q, axis=q.axis @ np.swapaxes(turn, -1, -2))
         step = roots @ deviation(p, turned, norm)[..., None]
         length = np.linalg.norm(step, axis=-2, keepdims=True) / np.sqrt(5)
@@ -110,35 +110,37 @@ def turns_between(nows: Sequence[Baseline], earlier: Sequence[Baseline]) -> Arra
     return turn
 
 
-def in_the_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline]:
+def in_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline]:
     """Earlier baselines turned into the frame of ``now``; those of other sensors as they are."""
     alike = [h for h in history if h.setting.kinds == now.setting.kinds]
     if not alike:
         return list(history)
     turns = dict(zip(map(id, alike), turns_between([now] * len(alike), alike), strict=True))
     latest, shared = alike[-1], turns[id(alike[-1])]
-    reference = seen_from(now, latest, shared)
+    reference = turned_covariance(now, latest, shared)
 
-    def framed(one: Baseline) -> Baseline:
-        if one.setting.kinds != now.setting.kinds:
-            return one
-        own = turns[id(one)]
-        otherwise = one is not latest and sits_otherwise(now, own @ shared.T, seen_from(now, one, own) + reference)
+    def framed(baseline: Baseline) -> Baseline:
+        if baseline.setting.kinds != now.setting.kinds:
+            return baseline
+        turn = turns[id(baseline)]
+        otherwise = baseline is not latest and is_reseated(
+            now, turn @ shared.T, turned_covariance(now, baseline, turn) + reference
+        )
         if otherwise or now.gauge_free.any():
-            return replace(turned_baseline(one, own), sits_otherwise=otherwise)
-        return turned_baseline(one, shared)
+            return replace(turned_baseline(baseline, turn), sits_otherwise=otherwise)
+        return turned_baseline(baseline, shared)
 
     return [framed(h) for h in history]
 
 
-def seen_from(now: Baseline, one: Baseline, turn: Array) -> Array:
+def turned_covariance(now: Baseline, earlier: Baseline, turn: Array) -> Array:
     """(P, P) dimensionless: covariance of the parameters of a session that is turned by (3, 3), in those of ``now``."""
-    carry = carried(now.parameters, turn @ one.parameters.axis_tangents)
-    return np.asarray(carry @ one.covariance @ carry.T)
+    carry = carried(now.parameters, turn @ earlier.parameters.axis_tangents)
+    return np.asarray(carry @ earlier.covariance @ carry.T)
 
 
-def sits_otherwise(now: Baseline, apart: Array, covariance: Array) -> bool:
-    """Whether the block sat otherwise in one session than in the latest: turned by ``apart`` (3, 3) against it, with
-    the ``covariance`` (P, P) of both, dimensionless, as `seen_from` ``now``."""
-    seen = inverse_root(covariance) @ turn_response(now.parameters) @ vector_of(apart)
+def is_reseated(now: Baseline, difference: Array, covariance: Array) -> bool:
+    """Whether the block sat otherwise in one session than in the latest: turned by ``difference`` (3, 3), with
+    the ``covariance`` (P, P) of both, dimensionless, as `turned_covariance` ``now``."""
+    seen = inverse_root(covariance) @ turn_response(now.parameters) @ vector_of(difference)
     return bool(p_value(seen @ seen, 3) < OTHERWISE)

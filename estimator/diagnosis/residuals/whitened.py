@@ -105,9 +105,9 @@ class WhitenedResiduals:
         What the baseline absorbs of it shows as a change of the parameters, unless it was there ``before``: (P, q)
         dimensionless, what the history absorbed of it; 0 of what is new, None where it absorbed as much as now.
         """
-        return self.left_of(self.whitened(columns), before)
+        return self.remaining_of(self.whitened(columns), before)
 
-    def left_of(self, white: Array, before: Array | float | None = None) -> Array:
+    def remaining_of(self, white: Array, before: Array | float | None = None) -> Array:
         """(n, q) standard errors: the same of a signature that is `whitened` (N, q)."""
         inside = white - self.basis @ (self.basis.T @ white)
         if self.change is None:

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
-from estimator.diagnosis.selection.common_or_own import common_or_own, with_events
-from estimator.diagnosis.selection.confirmation import hold, too_sure
+from estimator.diagnosis.selection.common_or_own import with_events, with_likelier_vector_course
+from estimator.diagnosis.selection.confirmation import doubtful_claims, hold_jointly
 from estimator.diagnosis.selection.heavy_tails import without_names_of_tails
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
 from estimator.diagnosis.selection.noise_claim import (
@@ -30,11 +30,13 @@ def accepted(start: SearchState) -> SearchState:
     """
     claims, state = doubted(start), None
     if not claims or shared_event(start):
-        state = believed(start)
-        if not claims or any(f.event for f in state.found):
+        state = accepted_against_course(start)
+        if not claims or any(f.event for f in state.detections):
             claims = doubted(state)
-    rival = whatever_the_scale(start, claims) if claims else None
-    return without_names_of_tails(without_names_in_no_noise(confirmed(start, rival or state or believed(start))))
+    rival = under_free_scale(start, claims) if claims else None
+    return without_names_of_tails(
+        without_names_in_no_noise(confirmed(start, rival or state or accepted_against_course(start)))
+    )
 
 
 def confirmed(start: SearchState, state: SearchState) -> SearchState:
@@ -44,16 +46,16 @@ def confirmed(start: SearchState, state: SearchState) -> SearchState:
     readings do not tell that it is wrong, nor do they confirm that it is right.
     """
     claims = state.noise_claims
-    while doubt := too_sure(state):
+    while doubt := doubtful_claims(state):
         claims = (*claims, *doubt)
-        unknown = with_unknown_scale(start, claims, state.found)
-        if hold(unknown, state.found):
+        unknown = with_unknown_scale(start, claims, state.detections)
+        if hold_jointly(unknown, state.detections):
             break
-        state = replace(believed(unknown), noise_claims=state.noise_claims)
+        state = replace(accepted_against_course(unknown), noise_claims=state.noise_claims)
     return state
 
 
-def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState | None:
+def under_free_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState | None:
     """The causes that hold with the noise of some sensors known up to a factor; None where what they leave scatters as
     stated.
 
@@ -61,21 +63,25 @@ def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
     turn out to be right are believed again.
     """
     wide = of_whole_kinds(start, claims)
-    found = believed(with_unknown_scale(start, wide))
-    left = doubted(found)
-    again = with_quieter_kinds_whole(start, left)
-    if left and sensors_of(again) != sensors_of(wide):
-        found = believed(with_unknown_scale(start, again, found.found))
-        left = doubted(found) or left
-    return replace(found, noise_claims=left) if left else None
+    accepted = accepted_against_course(with_unknown_scale(start, wide))
+    doubts = doubted(accepted)
+    again = with_quieter_kinds_whole(start, doubts)
+    if doubts and sensors_of(again) != sensors_of(wide):
+        accepted = accepted_against_course(with_unknown_scale(start, again, accepted.detections))
+        doubts = doubted(accepted) or doubts
+    return replace(accepted, noise_claims=doubts) if doubts else None
 
 
-def believed(start: SearchState) -> SearchState:
+def accepted_against_course(start: SearchState) -> SearchState:
     """The causes that a search finds and that hold: they fit, and no course of the applied vector explains as much."""
-    return with_unlike_noise(without_unpredictive(without_common_rows(common_or_own(start, held(start), held))))
+    return with_unlike_noise(
+        without_unpredictive(
+            without_common_rows(with_likelier_vector_course(start, fitting_causes(start), fitting_causes))
+        )
+    )
 
 
-def held(start: SearchState) -> SearchState:
+def fitting_causes(start: SearchState) -> SearchState:
     """The causes that a search finds and that fit; what sensors share counts once."""
     state = without_misfits(with_refined_shapes(search(start)))
     shared = with_events(start, state)

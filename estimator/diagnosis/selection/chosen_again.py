@@ -12,11 +12,11 @@ import numpy as np
 from estimator.causes.contract import Shape
 from estimator.content import once
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.prediction import FOLDS, Prediction, fold_of, predicted, unaided
+from estimator.diagnosis.residuals.prediction import FOLDS, Prediction, fold_of, predicted, predicted_without_effects
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
-from estimator.diagnosis.selection.search_state import NEW_DIRECTION, Found, SearchState
+from estimator.diagnosis.selection.search_state import NEW_DIRECTION, Detection, SearchState
 from estimator.diagnosis.signatures.scores import bayes_factor
 from estimator.diagnosis.signatures.traces import Traces
 from estimator.session import Array
@@ -37,62 +37,62 @@ def without_unpredictive(state: SearchState) -> SearchState:
 
     What they explained is then structure; where no pattern holds it, as it is.
     """
-    judged = [f for f in state.found if predicts(state, f)]
+    judged = [f for f in state.detections if predicts(state, f)]
     if not judged:
         return state
-    nothing = unaided(state.baseline)
-    named = predicted_anew(state, judged)
+    nothing = predicted_without_effects(state.baseline)
+    named = predicted_from_folds(state, judged)
     known = not state.baseline.unstated.any()
     gained = named.log_score - nothing.log_score if known else named.scale_free - nothing.scale_free
     if gained > -WORSE:
         return state
-    rest = with_structures(replace(state, found=tuple(f for f in state.found if f not in judged)))
+    rest = with_structures(replace(state, detections=tuple(f for f in state.detections if f not in judged)))
     return rest if rest.structures else replace(rest, structures=tuple(judged))
 
 
-def predicts(state: SearchState, found: Found) -> bool:
+def predicts(state: SearchState, detection: Detection) -> bool:
     """Whether a finding says something of rows by which it was not chosen.
 
     It does not where it shows in what changed since the history rather than in the session's own rows, nor where a fold
     holds most of what shows of it: without those rows nobody could know.
     """
-    if found.best.cause.between:
+    if detection.best.cause.between:
         return False
     rows, m = state.baseline.setting.rows, state.sensor_count
-    basis, _ = np.linalg.qr(found.best.trace)
+    basis, _ = np.linalg.qr(detection.best.trace)
     fitted = (basis @ (basis.T @ state.residuals.z)) ** 2
     each = fitted[: rows * m].reshape(rows, m).sum(axis=1)
     by_fold = np.bincount(fold_of(rows), weights=each)
     return bool(each.sum() > WITHIN * fitted.sum() and by_fold.max() < WITHIN * each.sum())
 
 
-def predicted_anew(state: SearchState, judged: Sequence[Found]) -> Prediction:
+def predicted_from_folds(state: SearchState, judged: Sequence[Detection]) -> Prediction:
     """Every row predicted by the causes of some findings, chosen again in the folds that do not hold it."""
     return _predicted(state.residuals, state.traces, tuple(judged))
 
 
 @once
-def _predicted(residuals: WhitenedResiduals, traces: tuple[Traces, ...], judged: tuple[Found, ...]) -> Prediction:
+def _predicted(residuals: WhitenedResiduals, traces: tuple[Traces, ...], judged: tuple[Detection, ...]) -> Prediction:
     return predicted(residuals.baseline, chosen_in_folds(residuals, traces, judged))
 
 
 def chosen_in_folds(
-    residuals: WhitenedResiduals, traces: Sequence[Traces], judged: Sequence[Found]
+    residuals: WhitenedResiduals, traces: Sequence[Traces], judged: Sequence[Detection]
 ) -> list[list[Array]]:
     """For every fold the columns (R, m, q), m/s² (rad/s), of the causes chosen without its rows."""
     candidates = [list(shapes_of(traces, f)) for f in judged]
-    whitened = [alike(residuals, [shape for shape, _ in own]) for own in candidates]
+    whitened = [alike(residuals, [shape for shape, _ in members]) for members in candidates]
     chosen = []
     for rest in without_folds(residuals.baseline):
-        kept, basis, z = rest.kept, rest.basis, rest.z
+        remaining, basis, z = rest.remaining, rest.basis, rest.z
         columns = []
-        for own, groups in zip(candidates, whitened, strict=True):
-            weight = np.empty(len(own))
+        for members, groups in zip(candidates, whitened, strict=True):
+            weight = np.empty(len(members))
             for group in groups:
-                weight[group.number] = weights(basis, z, group.columns[:, kept])
-            best = int(np.argmax(weight - [shared for _, shared in own]))
-            columns.append(own[best][0].columns)
-            seen = residuals.whitened(own[best][0].columns)[kept]
+                weight[group.number] = weights(basis, z, group.columns[:, remaining])
+            best = int(np.argmax(weight - [shared for _, shared in members]))
+            columns.append(members[best][0].columns)
+            seen = residuals.whitened(members[best][0].columns)[remaining]
             basis = extended_basis(basis, seen)
             z = z - basis @ (basis.T @ z)
         chosen.append(columns)
@@ -103,7 +103,7 @@ def chosen_in_folds(
 class Rest:
     """The rows that one fold leaves. N rows in all, n of them left."""
 
-    kept: Array
+    remaining: Array
     """(N,) bool."""
     basis: Array
     """(n, p) orthonormal, dimensionless: what the baseline absorbs of them."""
@@ -118,19 +118,19 @@ def without_folds(baseline: Baseline) -> tuple[Rest, ...]:
     data, fold = np.zeros(len(design)), np.full(len(design), -1)
     data[: rows * m] = baseline.whiten(baseline.residual[..., None])[:, 0]
     fold[: rows * m] = np.repeat(fold_of(rows), m)
-    found = []
+    rests = []
     for held in range(FOLDS):
-        kept = fold != held
-        basis = extended_basis(np.zeros((int(kept.sum()), 0)), design[kept])
-        found.append(Rest(kept, basis, data[kept] - basis @ (basis.T @ data[kept])))
-    return tuple(found)
+        remaining = fold != held
+        basis = extended_basis(np.zeros((int(remaining.sum()), 0)), design[remaining])
+        rests.append(Rest(remaining, basis, data[remaining] - basis @ (basis.T @ data[remaining])))
+    return tuple(rests)
 
 
-def shapes_of(every: Sequence[Traces], found: Found) -> Iterator[tuple[Shape, float]]:
+def shapes_of(every: Sequence[Traces], detection: Detection) -> Iterator[tuple[Shape, float]]:
     """The shapes among which a finding is chosen again, each with the ln of the number that share its cause's prior;
     as lasting and as new it is the same in the rows of the session, and taken once."""
-    yield found.best.shape, float(np.log(max(found.best.places, 1)))
-    leaders = {s.group for s, _ in found.ranking[:LEADERS]}
+    yield detection.best.shape, float(np.log(max(detection.best.places, 1)))
+    leaders = {s.group for s, _ in detection.ranking[:LEADERS]}
     fewest: dict[Shape, int] = {}
     for traces in every:
         for shape in traces.shapes:

@@ -18,13 +18,13 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.backward import FURTHER, weighed
+from estimator.diagnosis.selection.backward import FURTHER, penalised_log_evidence
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.lack_of_fit import MISFIT
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.selection.shared_event import with_shared_event
-from estimator.diagnosis.selection.start import begun_with
+from estimator.diagnosis.selection.start import restart_from
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course, components
 from estimator.diagnosis.signatures.scores import score
 from estimator.diagnosis.signatures.traces import Group, Scored
@@ -44,11 +44,11 @@ def in_parity_space(start: SearchState, *, size: bool) -> SearchState:
     if not turns:
         return replace(start, traces=(), patterns=())
     sigma = np.full((setting.rows, len(turns)), np.inf)
-    free = refitted(renoised(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
-    return begun_with(start, free)
+    free = refitted(with_restricted_noise(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
+    return restart_from(start, free)
 
 
-def renoised(free: Baseline) -> Baseline:
+def with_restricted_noise(free: Baseline) -> Baseline:
     """A baseline in parity space with the noise that is not stated estimated there (restricted likelihood).
 
     The others of a kind are taken to be alike, as everywhere (`calibration.noise`).
@@ -59,8 +59,8 @@ def renoised(free: Baseline) -> Baseline:
     for _ in range(ROUNDS):
         residuals = WhitenedResiduals.of(replace(free, variance=variance))
         rows = residuals.rows
-        own = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
-        energy, freedom = own @ residuals.z[:rows] ** 2, own @ residuals.row_freedom
+        of_sensor = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
+        energy, freedom = of_sensor @ residuals.z[:rows] ** 2, of_sensor @ residuals.row_freedom
         value = np.where(free.unstated, variance.mean(axis=0), np.nan)
         expected = typical(value[None], free.unstated[None], free.setting.norm)[0] / variance.mean(axis=0)
         energy, freedom = with_the_others(energy, freedom, expected)
@@ -72,25 +72,25 @@ MOST_LIKELY = 2
 """Different names in one session that are believed without a look at parity space."""
 
 
-def without_crowd(state: SearchState, held_there: Set[Group]) -> SearchState:
+def drop_overfitted_causes(state: SearchState, held_there: Set[Group]) -> SearchState:
     """The state without a crowd of names that parity space does not bear out, where none explains half of what they do.
 
     ``held_there``: what holds in parity space.
     """
-    if not crowded(state):
+    if not is_overfitted(state):
         return state
-    loose = [f for f in state.found if f.best.group not in held_there]
+    loose = [f for f in state.detections if f.best.group not in held_there]
     share = [f.best.statistic for f in loose]
     if len({f.best.cause.identifier for f in loose}) <= MOST_LIKELY or max(share) > 0.5 * sum(share):
         return state
-    kept = tuple(f for f in state.found if f not in loose)
-    left = with_structures(replace(state, found=kept, structures=()))
-    return left if left.structures else state
+    detections = tuple(f for f in state.detections if f not in loose)
+    reduced = with_structures(replace(state, detections=detections, structures=()))
+    return reduced if reduced.structures else state
 
 
-def crowded(state: SearchState) -> bool:
+def is_overfitted(state: SearchState) -> bool:
     """Whether more happened than misfortunes are likely at once: different names, structures, sensors that scatter."""
-    names = {f.best.cause.identifier for f in state.found}
+    names = {f.best.cause.identifier for f in state.detections}
     return len(names) + bool(state.structures) + len(state.scatter_attributed) > MOST_LIKELY
 
 
@@ -108,14 +108,14 @@ LEAK = 0.025
 the course, or what an unseen change of all scale factors leaves of it."""
 
 
-def nearly(state: SearchState) -> float:
+def misfit_allowance(state: SearchState) -> float:
     """ln evidence that one name alone may lack: a cause that describes all but a small part is it, though its own
     formula is linear where the stand turned by minutes of arc."""
-    alone = len(state.found) == 1 and not (state.structures or state.scatter)
-    return 0.5 * MISFIT * state.found[0].best.statistic if alone else 0.0
+    alone = len(state.detections) == 1 and not (state.structures or state.scatter)
+    return 0.5 * MISFIT * state.detections[0].best.statistic if alone else 0.0
 
 
-def settled(start: SearchState, state: SearchState, unknown: Array) -> tuple[SearchState, SearchState]:
+def with_residual_noise(start: SearchState, state: SearchState, unknown: Array) -> tuple[SearchState, SearchState]:
     """Nothing found, and what was found, ``unknown`` sensors' (m,) bool noise taken as what that leaves.
 
     A noise estimated from residuals that hold an effect hides it, from a course more than from a name. Where no name is
@@ -125,21 +125,21 @@ def settled(start: SearchState, state: SearchState, unknown: Array) -> tuple[Sea
     if not (unknown.any() or state.scatter):
         return start, state
     energy, freedom = sensor_scatter(state)
-    left = np.where(freedom >= LEAST_FREEDOM, energy / np.maximum(freedom, 1.0), 1.0)
-    variance = np.where(unknown, state.baseline.variance * left, start.baseline.variance)
+    scale = np.where(freedom >= LEAST_FREEDOM, energy / np.maximum(freedom, 1.0), 1.0)
+    variance = np.where(unknown, state.baseline.variance * scale, start.baseline.variance)
     known = replace(start.baseline, variance=variance, unstated=start.baseline.unstated & ~unknown)
     as_stated = not (unknown & ~start.baseline.unstated).any()
-    between = any(f.best.cause.between for f in (*state.found, *state.structures))
+    between = any(f.best.cause.between for f in (*state.detections, *state.structures))
     past = (start if as_stated else state).history if between else ()
-    begun = begun_with(replace(start, history=past), refitted(known))
-    found, structures = seen_from(begun, state.found), seen_from(begun, state.structures)
-    seen = replace(begun, found=found, structures=structures)
+    begun = restart_from(replace(start, history=past), refitted(known))
+    detections, structures = rescored_detections(begun, state.detections), rescored_detections(begun, state.structures)
+    seen = replace(begun, detections=detections, structures=structures)
     return begun, replace(seen, excess=state.excess, autocorrelated=state.autocorrelated)
 
 
 def concerns_all(state: SearchState) -> bool:
     """Whether what was found is of no sensor, or on two sensors or more."""
-    places = {f.best.sensors for f in (*state.found, *state.structures)} | {(s.sensor,) for s in state.scatter}
+    places = {f.best.sensors for f in (*state.detections, *state.structures)} | {(s.sensor,) for s in state.scatter}
     return () in places or len(places) > 1
 
 
@@ -160,15 +160,15 @@ class Ground:
 
 def likeliest_ground(begun: SearchState, plain: SearchState, noise: float) -> Ground:
     """A course may act beside the scatter that was found, as in ``begun``, or explain it, in the noise as stated."""
-    beside = Ground(begun, noise, likeliest_course(begun, ()))
-    return beside if begun is plain else max(beside, Ground(plain, 0.0, likeliest_course(plain, ())), key=_evidence)
+    joint = Ground(begun, noise, likeliest_course(begun, ()))
+    return joint if begun is plain else max(joint, Ground(plain, 0.0, likeliest_course(plain, ())), key=_evidence)
 
 
 def _evidence(ground: Ground) -> float:
     return ground.log_evidence
 
 
-def weighed_noise(state: SearchState, begun: SearchState, plain: SearchState) -> float:
+def log_evidence_of_noise(state: SearchState, begun: SearchState, plain: SearchState) -> float:
     """ln evidence of scatter beyond what is stated, of sensors' own courses in it, every sensor paid for as a name.
 
     ``begun``, ``plain``: nothing found, in the noise that was found and as stated.
@@ -182,46 +182,48 @@ def weighed_noise(state: SearchState, begun: SearchState, plain: SearchState) ->
 
 def with_events(start: SearchState, state: SearchState) -> SearchState:
     """The state, or its rival in which several sensors share one event, whichever is likelier."""
-    return with_shared_event(start, state, own_log_evidence)
+    return with_shared_event(start, state, log_evidence_of_sensors)
 
 
-def own_log_evidence(start: SearchState, state: SearchState) -> float:
+def log_evidence_of_sensors(start: SearchState, state: SearchState) -> float:
     """ln evidence of what was found, scatter beyond the stated noise included, against nothing; ``start``: nothing
     found, in the noise by which all that is compared is weighed.
 
     Where noise is not known it is what the findings leave: what explains more also leaves less of it.
     """
-    begun, seen = settled(start, state, state.baseline.unstated)
+    begun, seen = with_residual_noise(start, state, state.baseline.unstated)
     same = begun.history == start.history
-    plain = start if same else begun_with(replace(start, history=begun.history), start.baseline)
-    return weighed(seen) + weighed_noise(state, begun, plain)
+    plain = start if same else restart_from(replace(start, history=begun.history), start.baseline)
+    return penalised_log_evidence(seen) + log_evidence_of_noise(state, begun, plain)
 
 
-def common_or_own(start: SearchState, state: SearchState, search: Callable[[SearchState], SearchState]) -> SearchState:
+def with_likelier_vector_course(
+    start: SearchState, state: SearchState, search: Callable[[SearchState], SearchState]
+) -> SearchState:
     """The state, or its rival with a course of the applied vector, whichever is likelier; ``start``: nothing found."""
     if not concerns_all(state):
         return state
-    begun, seen = settled(start, state, state.baseline.unstated)
-    plain = settled(start, state, start.baseline.unstated)[0] if state.scatter else begun
-    noise = weighed_noise(state, begun, plain)
+    begun, seen = with_residual_noise(start, state, state.baseline.unstated)
+    plain = with_residual_noise(start, state, start.baseline.unstated)[0] if state.scatter else begun
+    noise = log_evidence_of_noise(state, begun, plain)
     ground = likeliest_ground(begun, plain, noise)
-    own = weighed(seen) + nearly(seen) + noise
-    if ground.log_evidence - FURTHER - own < -DISTINCT and not crowded(state):
+    evidence = penalised_log_evidence(seen) + misfit_allowance(seen) + noise
+    if ground.log_evidence - FURTHER - evidence < -DISTINCT and not is_overfitted(state):
         return state
-    rival = whatever_the_vector(start, ground.begun, ground.course, search)
-    gained = rival.log_evidence + ground.noise - FURTHER - own
+    rival = with_free_vector(start, ground.begun, ground.course, search)
+    gained = rival.log_evidence + ground.noise - FURTHER - evidence
     if gained > 0 and rival.course.log_evidence > LEAST:
         return without_leaks(replace(rival.parity, courses=(rival.course,)))
-    held_there = {f.best.group for f in rival.parity.found}
-    return with_doubt(without_crowd(state, held_there), held_there, float(expit(gained)))
+    held_there = {f.best.group for f in rival.parity.detections}
+    return with_doubt(drop_overfitted_causes(state, held_there), held_there, float(expit(gained)))
 
 
 def without_leaks(state: SearchState) -> SearchState:
     """The state without names so small beside the common course that they may be what is not linear in it."""
     common = 2 * LEAK * sum(c.log_evidence for c in state.courses)
-    small = tuple(f for f in state.found if f.best.statistic < common)
-    kept = tuple(f for f in state.found if f not in small)
-    return replace(state, found=kept, structures=(*state.structures, *small))
+    small = tuple(f for f in state.detections if f.best.statistic < common)
+    detections = tuple(f for f in state.detections if f not in small)
+    return replace(state, detections=detections, structures=(*state.structures, *small))
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +236,7 @@ class Rival:
     """Of both together."""
 
 
-def whatever_the_vector(
+def with_free_vector(
     start: SearchState, begun: SearchState, course: AppliedCourse, search: Callable[[SearchState], SearchState]
 ) -> Rival:
     """The course with the causes that parity space shows beside it; its size is free only where that explains more.
@@ -242,38 +244,40 @@ def whatever_the_vector(
     ``begun``: the search of ``start`` with the noise by which both are weighed.
     """
     parity = search(in_parity_space(start, size=False))
-    kept = seen_from(begun, parity.found)
-    beside = likeliest_course(begun, kept)
-    paid = beside.log_evidence + weighed(replace(begun, found=kept)) - FURTHER * bool(kept)
-    if kept and paid > course.log_evidence:
-        return Rival(beside, parity, paid)
-    if kept and SIZE in course.components:
+    supported = rescored_detections(begun, parity.detections)
+    joint = likeliest_course(begun, supported)
+    paid = joint.log_evidence + penalised_log_evidence(replace(begun, detections=supported)) - FURTHER * bool(supported)
+    if supported and paid > course.log_evidence:
+        return Rival(joint, parity, paid)
+    if supported and SIZE in course.components:
         parity = search(in_parity_space(start, size=True))
     return Rival(course, parity, course.log_evidence)
 
 
 def with_doubt(state: SearchState, held_there: Set[Group], doubt: float) -> SearchState:
     """The state with the probability that a course acts instead beside every name that parity does not bear out."""
-    found = [f if f.best.group in held_there else replace(f, unnamed=max(f.unnamed, doubt)) for f in state.found]
-    return replace(state, found=tuple(found))
+    detections = [
+        f if f.best.group in held_there else replace(f, unnamed=max(f.unnamed, doubt)) for f in state.detections
+    ]
+    return replace(state, detections=tuple(detections))
 
 
-def likeliest_course(start: SearchState, beside: Sequence[Found]) -> AppliedCourse:
+def likeliest_course(start: SearchState, detections: Sequence[Detection]) -> AppliedCourse:
     """The course of the applied vector beside findings, lasting since the history or new."""
-    attributed = replace(start, found=tuple(beside)).attributed()
+    attributed = replace(start, detections=tuple(detections)).attributed()
     lasting = (False, True) if start.history else (False,)
     tried = [applied_course(start.residuals, attributed, lasting=k) for k in lasting]
     return max(tried, key=lambda c: c.log_evidence)
 
 
-def seen_from(start: SearchState, found: Sequence[Found]) -> tuple[Found, ...]:
+def rescored_detections(start: SearchState, detections: Sequence[Detection]) -> tuple[Detection, ...]:
     """Findings of another search as the residuals of ``start`` show them, those that show there at all."""
     nothing = np.zeros((len(start.residuals.z), 0))
     seen = []
-    for old in found:
+    for old in detections:
         known = (*start.traces, *start.patterns)
-        own = [t.at(old.best.sensors) for t in known if t.cause is old.best.cause]
-        same = [s for s in score(start.residuals, own, nothing) if s.shape.nonlinear == old.best.shape.nonlinear]
+        candidates = [t.at(old.best.sensors) for t in known if t.cause is old.best.cause]
+        same = [s for s in score(start.residuals, candidates, nothing) if s.shape.nonlinear == old.best.shape.nonlinear]
         if same:
             best = max(same, key=lambda s: s.log_evidence)
             seen.append(replace(old, best=sharing(best, old.best.places) if old.event else best))

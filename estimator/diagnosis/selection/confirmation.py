@@ -24,11 +24,11 @@ from scipy.special import expit, logit
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.common_or_own import seen_from
+from estimator.diagnosis.selection.common_or_own import rescored_detections
 from estimator.diagnosis.selection.excess_noise import sensor_scatter, with_unknown_noise
-from estimator.diagnosis.selection.ranking import extended_basis, p_beside
-from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
-from estimator.diagnosis.selection.start import as_they_scatter
+from estimator.diagnosis.selection.ranking import conditional_p_value, extended_basis
+from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
+from estimator.diagnosis.selection.start import with_residual_scatter
 from estimator.diagnosis.signatures.lasting import MANY
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.diagnosis.signatures.products import Projected
@@ -48,42 +48,44 @@ FEWEST = 2.0
 """
 
 
-def too_sure(state: SearchState) -> tuple[NoiseClaim, ...]:
+def doubtful_claims(state: SearchState) -> tuple[NoiseClaim, ...]:
     """Sensors whose stated noise names may not rest on: it is too small by strong evidence, or may be and a name would
     then not hold."""
-    ratio, larger = evidence_of_more(state)
-    sensors = sorted({i for f in state.found for i in doubted_for(state, f, larger)})
+    ratio, larger = evidence_of_larger_noise(state)
+    sensors = sorted({i for f in state.detections for i in doubted_for(state, f, larger)})
     freedom, kinds = sensor_scatter(state)[1], state.baseline.setting.kinds
     return tuple(NoiseClaim(kinds[i], (i,), float(ratio[i]), float(freedom[i])) for i in sensors)
 
 
-def doubted_for(state: SearchState, found: Found, larger: Array) -> set[int]:
+def doubted_for(state: SearchState, detection: Detection, larger: Array) -> set[int]:
     """Sensors that one name may not rest on; ``larger`` (m,) ln B(E)."""
-    asked = [i for i in found.best.sensors or range(len(larger)) if np.isfinite(larger[i])]
-    at_its_mercy = {i: float(expit(logit(WRONG) + larger[i])) * p_if_unknown(state, found, i) for i in asked}
-    bound = LEVEL / max(len(asked), 1) if sum(at_its_mercy.values()) >= LEVEL else np.inf
-    return {i for i in asked if larger[i] > STRONG or at_its_mercy[i] >= bound}
+    sensors = [i for i in detection.best.sensors or range(len(larger)) if np.isfinite(larger[i])]
+    at_its_mercy = {
+        i: float(expit(logit(WRONG) + larger[i])) * p_value_in_unknown_noise(state, detection, i) for i in sensors
+    }
+    bound = LEVEL / max(len(sensors), 1) if sum(at_its_mercy.values()) >= LEVEL else np.inf
+    return {i for i in sensors if larger[i] > STRONG or at_its_mercy[i] >= bound}
 
 
-def hold(state: SearchState, names: tuple[Found, ...]) -> bool:
+def hold_jointly(state: SearchState, names: tuple[Detection, ...]) -> bool:
     """Whether names of another search are all significant beside one another in the noise of this one."""
-    seen = seen_from(state, names)
-    beside = replace(state, found=seen)
-    again = [rescored(state.residuals, f.best, beside.attributed(without=f)) for f in seen]
+    seen = rescored_detections(state, names)
+    joint = replace(state, detections=seen)
+    again = [rescored(state.residuals, f.best, joint.attributed(without=f)) for f in seen]
     return len(seen) == len(names) and all(
-        p_beside(f, s, state.families) < LEVEL for f, s in zip(names, again, strict=True)
+        conditional_p_value(f, s, state.families) < LEVEL for f, s in zip(names, again, strict=True)
     )
 
 
-def p_if_unknown(state: SearchState, found: Found, sensor: int) -> float:
+def p_value_in_unknown_noise(state: SearchState, detection: Detection, sensor: int) -> float:
     """Family-wise p-value of a name beside the others, the noise of a sensor known from its readings alone."""
-    doubting, attributed = with_unknown_noise(state, sensor), state.attributed(without=found)
-    own = extended_basis(attributed, found.best.trace)[:, attributed.shape[1] :]
-    p_value = tail(Projected.of(doubting.residuals, attributed), next(iter(found.best.sensors), -1), own)
-    return p_beside(found, replace(found.best, p_value=p_value), state.families)
+    doubting, attributed = with_unknown_noise(state, sensor), state.attributed(without=detection)
+    basis = extended_basis(attributed, detection.best.trace)[:, attributed.shape[1] :]
+    p_value = tail(Projected.of(doubting.residuals, attributed), next(iter(detection.best.sensors), -1), basis)
+    return conditional_p_value(detection, replace(detection.best, p_value=p_value), state.families)
 
 
-def evidence_of_more(state: SearchState) -> tuple[Array, Array]:
+def evidence_of_larger_noise(state: SearchState) -> tuple[Array, Array]:
     """(m,) variance over the stated one, and (m,) ln B(E) of noise larger than stated; −∞ where none is stated or
     nothing tells it."""
     energy, freedom = sensor_scatter(state)
@@ -91,12 +93,12 @@ def evidence_of_more(state: SearchState) -> tuple[Array, Array]:
     ratio = energy / f
     more = np.maximum(ratio, 1.0)
     gained = 0.5 * f * (more - 1 - np.log(more))
-    if state.found and state.sensor_count <= MANY:
-        beside = beside_effects(state)
-        plain = WhitenedResiduals.of(beside)
-        for i in sensors_asked(state):
-            scaled = as_they_scatter(beside, [[i]])
-            factor = float(np.median(scaled.variance[:, i] / beside.variance[:, i]))
+    if state.detections and state.sensor_count <= MANY:
+        joint = with_free_effects(state)
+        plain = WhitenedResiduals.of(joint)
+        for i in sensors_with_detections(state):
+            scaled = with_residual_scatter(joint, [[i]])
+            factor = float(np.median(scaled.variance[:, i] / joint.variance[:, i]))
             whole = log_likelihood_ratio(WhitenedResiduals.of(scaled), plain) if factor > 1 else 0.0
             if whole > gained[i]:
                 ratio[i], gained[i] = factor, whole
@@ -104,15 +106,15 @@ def evidence_of_more(state: SearchState) -> tuple[Array, Array]:
     return ratio, np.where((freedom >= FEWEST) & ~state.baseline.unstated, log_evidence, -np.inf)
 
 
-def sensors_asked(state: SearchState) -> set[int]:
+def sensors_with_detections(state: SearchState) -> set[int]:
     """Sensors of stated noise on which names rest."""
-    named = {i for f in state.found for i in f.best.sensors or range(state.sensor_count)}
+    named = {i for f in state.detections for i in f.best.sensors or range(state.sensor_count)}
     return {i for i in named if not state.baseline.unstated[i]}
 
 
-def beside_effects(state: SearchState) -> Baseline:
+def with_free_effects(state: SearchState) -> Baseline:
     """The baseline to which what was found is known but for its size: a nuisance of which nothing is known."""
-    effects = np.concatenate([f.best.shape.columns for f in (*state.found, *state.structures)], axis=-1)
+    effects = np.concatenate([f.best.shape.columns for f in (*state.detections, *state.structures)], axis=-1)
     size = np.sqrt((effects**2).sum(axis=(0, 1)))
     constant = np.concatenate([state.baseline.constant, effects[..., size > 0] / size[size > 0]], axis=-1)
     unknown = np.full(constant.shape[-1] - state.baseline.constant.shape[-1], np.inf)

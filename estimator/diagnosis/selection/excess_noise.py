@@ -33,9 +33,9 @@ def largest_excess(state: SearchState) -> ExcessVariance | None:
 def sensor_scatter(state: SearchState) -> tuple[Array, Array]:
     """(m,) energy, dimensionless, and (m,) degrees of freedom of every sensor's residual readings."""
     residuals = state.residuals
-    own = residuals.sensor_of_row[: residuals.rows] == np.arange(state.sensor_count)[:, None]
+    of_sensor = residuals.sensor_of_row[: residuals.rows] == np.arange(state.sensor_count)[:, None]
     freedom = residuals.row_freedom - (state.attributed()[: residuals.rows] ** 2).sum(axis=1)
-    return own @ state.remaining[: residuals.rows] ** 2, own @ freedom
+    return of_sensor @ state.remaining[: residuals.rows] ** 2, of_sensor @ freedom
 
 
 def overdispersed(state: SearchState) -> list[bool]:

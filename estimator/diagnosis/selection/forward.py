@@ -15,8 +15,8 @@ from estimator.diagnosis.selection.excess_noise import (
     with_unknown_noise,
 )
 from estimator.diagnosis.selection.ranking import joint_log_evidence, on_other_sensors, strongest
-from estimator.diagnosis.selection.search_state import Found, SearchState
-from estimator.diagnosis.selection.start import begin_anew
+from estimator.diagnosis.selection.search_state import Detection, SearchState
+from estimator.diagnosis.selection.start import restart_with_known_noise
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.traces import Group
 
@@ -32,22 +32,22 @@ more than sessions hold, so that the search ends."""
 
 def forward_selection(state: SearchState) -> SearchState:
     """Add causes until none is significant."""
-    while len({f.best.cause.identifier for f in state.found}) < MOST:
+    while len({f.best.cause.identifier for f in state.detections}) < MOST:
         noisy, best = largest_excess(state), strongest(state, state.traces)
         if noisy is not None and (best is None or noisy.log_evidence > best.cause_log_evidence - DECISIVE):
             scatter, best = scatter_or_cause(state, noisy)
             if scatter:
-                state = begin_anew(state, scatter)
+                state = restart_with_known_noise(state, scatter)
                 continue
         if best is None:
             break
-        found = (*state.found, best, *on_other_sensors(state, best, state.traces))
-        often = too_often(found)
+        extended = (*state.detections, best, *on_other_sensors(state, best, state.traces))
+        often = repeated_too_often(extended)
         if not often:
-            state = replace(state, found=found)
-        elif all(f.best.cause.repeats > 1 for f in found if f.best.group in often):
-            kept = tuple(f for f in found if f.best.group not in often)
-            state = replace(state, found=kept, refuted=state.refuted | often)
+            state = replace(state, detections=extended)
+        elif all(f.best.cause.repeats > 1 for f in extended if f.best.group in often):
+            rare = tuple(f for f in extended if f.best.group not in often)
+            state = replace(state, detections=rare, refuted=state.refuted | often)
         else:
             break
     return state
@@ -55,7 +55,7 @@ def forward_selection(state: SearchState) -> SearchState:
 
 def scatter_or_cause(
     state: SearchState, noisy: ExcessVariance
-) -> tuple[tuple[ExcessVariance | Autocorrelation, ...], Found | None]:
+) -> tuple[tuple[ExcessVariance | Autocorrelation, ...], Detection | None]:
     """What a sensor's scatter is, or the cause that stands out of it; neither where it holds a pattern."""
     doubting = with_unknown_noise(state, noisy.sensor)
     best = strongest(doubting, doubting.traces)
@@ -67,26 +67,26 @@ def scatter_or_cause(
     return (), best
 
 
-def log_evidence_of_two(doubting: SearchState, first: Found) -> float:
+def log_evidence_of_two(doubting: SearchState, first: Detection) -> float:
     """ln evidence of a cause and of the strongest other one beside it, while the noise of a sensor is not believed."""
-    state = replace(doubting, found=(*doubting.found, first))
+    state = replace(doubting, detections=(*doubting.detections, first))
     second = strongest(state, [t for t in state.traces if t.cause is not first.best.cause])
-    state = state if second is None else replace(state, found=(*state.found, second))
+    state = state if second is None else replace(state, detections=(*state.detections, second))
     return joint_log_evidence(state) - joint_log_evidence(doubting)
 
 
-def too_often(found: Sequence[Found]) -> frozenset[Group]:
+def repeated_too_often(detections: Sequence[Detection]) -> frozenset[Group]:
     """Causes named on a sensor more often than they can act there: then it is not that cause."""
-    times = Counter(f.best.group for f in found)
-    return frozenset(f.best.group for f in found if times[f.best.group] > f.best.cause.repeats)
+    times = Counter(f.best.group for f in detections)
+    return frozenset(f.best.group for f in detections if times[f.best.group] > f.best.cause.repeats)
 
 
 def holds_pattern(state: SearchState, doubting: SearchState, noisy: ExcessVariance) -> bool:
     """Whether a sensor's scatter holds a pattern: one of its own that stands out of it, or one common to all sensors
     that explains more than this sensor's noise does."""
-    own = [t.at((noisy.sensor,)) for t in doubting.patterns if not t.common]
+    patterns = [t.at((noisy.sensor,)) for t in doubting.patterns if not t.common]
     shared = strongest(state, [t for t in state.patterns if t.common])
-    return strongest(doubting, own) is not None or (
+    return strongest(doubting, patterns) is not None or (
         shared is not None and shared.cause_log_evidence > noisy.log_evidence
     )
 

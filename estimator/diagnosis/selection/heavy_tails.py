@@ -23,8 +23,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtrc, gammaln
 
-from estimator.diagnosis.selection.ranking import extended_basis, p_beside
-from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
+from estimator.diagnosis.selection.ranking import conditional_p_value, extended_basis
+from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
 from estimator.session import Array
 
 FREEDOMS = np.array([3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0, 32.0, np.inf])
@@ -68,13 +68,18 @@ def without_names_of_tails(state: SearchState) -> SearchState:
 
     They must be as rare under the tails that the readings show as under normal errors.
     """
-    while state.found and (tails := tails_of(state)) is not None:
-        chances = [p_beside(f, replace(f.best, p_value=p_value(state, f, tails)), state.families) for f in state.found]
+    while state.detections and (tails := tails_of(state)) is not None:
+        chances = [
+            conditional_p_value(f, replace(f.best, p_value=p_value(state, f, tails)), state.families)
+            for f in state.detections
+        ]
         worst = int(np.argmax(chances))
         if chances[worst] < LEVEL:
             break
-        gone = state.found[worst]
-        state = replace(state, found=tuple(f for f in state.found if f is not gone), in_tails=(*state.in_tails, gone))
+        gone = state.detections[worst]
+        state = replace(
+            state, detections=tuple(f for f in state.detections if f is not gone), in_tails=(*state.in_tails, gone)
+        )
     return state
 
 
@@ -85,65 +90,65 @@ def tails_of(state: SearchState) -> Tails | None:
     known = freedom > KNOWN
     if known.sum() < FEWEST:
         return None
-    left = state.remaining[:n][known] / np.sqrt(freedom[known])
+    scaled = state.remaining[:n][known] / np.sqrt(freedom[known])
     sensor = state.residuals.sensor_of_row[:n][known]
-    size = np.sqrt(np.bincount(sensor, left**2) / np.maximum(np.bincount(sensor), 1))[sensor]
-    left = left / np.where(size > 0, size, 1.0)
-    scale = np.array([scale_of(left, freedom) for freedom in FREEDOMS])
+    size = np.sqrt(np.bincount(sensor, scaled**2) / np.maximum(np.bincount(sensor), 1))[sensor]
+    scaled = scaled / np.where(size > 0, size, 1.0)
+    scale = np.array([scale_of(scaled, freedom) for freedom in FREEDOMS])
     prior = np.where(np.isinf(FREEDOMS), NORMAL, (1 - NORMAL) / (len(FREEDOMS) - 1))
-    logs = np.array([log_density(left, v, s).sum() for v, s in zip(FREEDOMS, scale, strict=True)]) + np.log(prior)
+    logs = np.array([log_density(scaled, v, s).sum() for v, s in zip(FREEDOMS, scale, strict=True)]) + np.log(prior)
     weight = np.exp(logs - logs.max())
     return Tails(weight / weight.sum(), scale)
 
 
-def scale_of(left: Array, freedom: float) -> float:
+def scale_of(residuals: Array, freedom: float) -> float:
     """s_ν of residuals (N,), in their unit."""
-    square = float(np.mean(left**2))
+    square = float(np.mean(residuals**2))
     for _ in range(0 if np.isinf(freedom) else ROUNDS):
-        square = float(np.mean(weights(left, freedom, np.sqrt(square)) * left**2))
+        square = float(np.mean(weights(residuals, freedom, np.sqrt(square)) * residuals**2))
     return float(np.sqrt(square))
 
 
-def weights(left: Array, freedom: float, scale: float) -> Array:
+def weights(residuals: Array, freedom: float, scale: float) -> Array:
     """(N,) how much a residual counts, dimensionless: one for normal errors."""
     if np.isinf(freedom):
-        return np.ones_like(left)
-    return np.asarray((freedom + 1) / (freedom + (left / scale) ** 2))
+        return np.ones_like(residuals)
+    return np.asarray((freedom + 1) / (freedom + (residuals / scale) ** 2))
 
 
-def log_density(left: Array, freedom: float, scale: float) -> Array:
+def log_density(residuals: Array, freedom: float, scale: float) -> Array:
     """(N,) ln t_ν(r/s)/s of residuals (N,)."""
-    square = (left / scale) ** 2
+    square = (residuals / scale) ** 2
     if np.isinf(freedom):
         return np.asarray(-square / 2 - np.log(scale * np.sqrt(2 * np.pi)))
     constant = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log(freedom * np.pi) - np.log(scale)
     return np.asarray(constant - (freedom + 1) / 2 * np.log1p(square / freedom))
 
 
-def p_value(state: SearchState, found: Found, tails: Tails) -> float:
+def p_value(state: SearchState, detection: Detection, tails: Tails) -> float:
     """p-value of a name beside the other names under the tails that the readings show."""
-    beside = replace(state, structures=()).attributed(without=found)
-    own = extended_basis(beside, found.best.trace)[:, beside.shape[1] :]
-    left = state.residuals.z - beside @ (beside.T @ state.residuals.z)
-    normal = float(((own.T @ left) ** 2).sum())
-    readings = np.arange(len(left)) < state.baseline.residual.size
+    others = replace(state, structures=()).attributed(without=detection)
+    basis = extended_basis(others, detection.best.trace)[:, others.shape[1] :]
+    remaining = state.residuals.z - others @ (others.T @ state.residuals.z)
+    normal = float(((basis.T @ remaining) ** 2).sum())
+    readings = np.arange(len(remaining)) < state.baseline.residual.size
     shares = [
-        gained(left, own, readings, (freedom, scale)) / max(normal, TINY)
+        gained(remaining, basis, readings, (freedom, scale)) / max(normal, TINY)
         for freedom, scale in zip(FREEDOMS, tails.scale, strict=True)
     ]
-    return float(tails.weight @ chdtrc(found.best.freedom, found.best.statistic * np.minimum(shares, 1.0)))
+    return float(tails.weight @ chdtrc(detection.best.freedom, detection.best.statistic * np.minimum(shares, 1.0)))
 
 
-def gained(left: Array, own: Array, readings: Array, law: tuple[float, float]) -> float:
-    """T_ν of directions ``own`` (n, q), orthonormal, in z (n,) of which ``readings`` (n,) follow the ``law`` (ν, s_ν);
+def gained(residuals: Array, basis: Array, readings: Array, law: tuple[float, float]) -> float:
+    """T_ν of an orthonormal ``basis`` (n, q) in z (n,) of which ``readings`` (n,) follow the ``law`` (ν, s_ν);
     the others, parameters of earlier sessions, are normal."""
-    amplitude = own.T @ left
+    amplitude = basis.T @ residuals
     if np.isinf(law[0]):
         return float(amplitude @ amplitude)
     for _ in range(ROUNDS):
-        weight = np.where(readings, weights(left - own @ amplitude, *law) / law[1] ** 2, 1.0)
-        amplitude = np.linalg.solve((own.T * weight) @ own, own.T @ (weight * left))
-    away = left - own @ amplitude
-    normal = float((left[~readings] ** 2).sum() - (away[~readings] ** 2).sum())
-    change = log_density(away[readings], *law) - log_density(left[readings], *law)
+        weight = np.where(readings, weights(residuals - basis @ amplitude, *law) / law[1] ** 2, 1.0)
+        amplitude = np.linalg.solve((basis.T * weight) @ basis, basis.T @ (weight * residuals))
+    away = residuals - basis @ amplitude
+    normal = float((residuals[~readings] ** 2).sum() - (away[~readings] ** 2).sum())
+    change = log_density(away[readings], *law) - log_density(residuals[readings], *law)
     return max(normal + 2 * float(change.sum()), 0.0)

@@ -13,7 +13,7 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.selection.excess_noise import with_autocorrelation
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
-from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
+from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
 from estimator.diagnosis.signatures.noise import ExcessVariance, UnlikeNoise
 from estimator.diagnosis.signatures.switching import switching
 
@@ -40,32 +40,32 @@ KNOWN = 0.5
 
 def without_misfits(state: SearchState) -> SearchState:
     """The state without names beside which structure is left that they should have explained."""
-    for place in dict.fromkeys(f.best.sensors for f in state.found):
-        names = tuple(f for f in state.found if f.best.sensors == place)
+    for place in dict.fromkeys(f.best.sensors for f in state.detections):
+        names = tuple(f for f in state.detections if f.best.sensors == place)
         drifted = any(f.best.cause.moves_parameters for f in names)
-        left = energy_left(state, place) - (changed(state, place) if drifted else 0.0)
-        if left > MISFIT * explained(state, names):
-            rest = replace(state, found=tuple(f for f in state.found if f not in names))
+        energy = remaining_energy(state, place) - (changed(state, place) if drifted else 0.0)
+        if energy > MISFIT * explained(state, names):
+            rest = replace(state, detections=tuple(f for f in state.detections if f not in names))
             again = with_autocorrelation(with_structures(replace(rest, structures=elsewhere(rest, place))))
-            state = again if energy_left(again, place) > 0 else rest
+            state = again if remaining_energy(again, place) > 0 else rest
     return state
 
 
 def without_common_rows(state: SearchState) -> SearchState:
     """The state without causes of single rows that most sensors show: something befell the rows, not the sensors."""
-    single = tuple(f for f in state.found if f.best.cause.passing and f.best.sensors)
+    single = tuple(f for f in state.detections if f.best.cause.passing and f.best.sensors)
     if 2 * len({f.best.sensors for f in single}) <= max(state.sensor_count, 4):
         return state
-    kept = tuple(f for f in state.found if f not in single)
-    return replace(state, found=kept, structures=(*state.structures, *single))
+    detections = tuple(f for f in state.detections if f not in single)
+    return replace(state, detections=detections, structures=(*state.structures, *single))
 
 
-def elsewhere(state: SearchState, place: tuple[int, ...]) -> tuple[Found, ...]:
+def elsewhere(state: SearchState, place: tuple[int, ...]) -> tuple[Detection, ...]:
     """Structures of other places."""
     return tuple(s for s in state.structures if s.best.sensors != place)
 
 
-def energy_left(state: SearchState, place: tuple[int, ...]) -> float:
+def remaining_energy(state: SearchState, place: tuple[int, ...]) -> float:
     """χ² of structure without a name on a sensor, or in common."""
     patterns = sum(s.best.statistic for s in state.structures if s.best.sensors == place)
     return patterns + sum(a.strength**2 for a in state.autocorrelated if (a.sensor,) == place and a.plain)
@@ -76,27 +76,27 @@ def changed(state: SearchState, place: tuple[int, ...]) -> float:
     return sum(s.best.statistic for s in state.structures if s.best.sensors == place and s.best.cause.between)
 
 
-def explained(state: SearchState, names: tuple[Found, ...]) -> float:
+def explained(state: SearchState, names: tuple[Detection, ...]) -> float:
     """χ² that some names explain together, given all that was found beside them."""
     others = replace(
         state,
-        found=tuple(f for f in state.found if f not in names),
+        detections=tuple(f for f in state.detections if f not in names),
         structures=(),
     ).attributed()
-    own = extended_basis(others, np.concatenate([f.best.trace for f in names], axis=1))[:, others.shape[1] :]
-    return float(((own.T @ state.residuals.z) ** 2).sum())
+    basis = extended_basis(others, np.concatenate([f.best.trace for f in names], axis=1))[:, others.shape[1] :]
+    return float(((basis.T @ state.residuals.z) ** 2).sum())
 
 
 def with_unlike_noise(state: SearchState) -> SearchState:
     """Sensors whose scatter, larger than stated or of unstated size, is not distributed as noise: no excess noise."""
     excess, unlike = {e.sensor: e for e in state.excess}, list(state.unlike_noise)
     for i in np.flatnonzero(state.baseline.unstated).tolist():
-        found = unlike_noise(state, i, excess.get(i))
-        if found is not None:
-            unlike.append(found)
-        if found is not None and found.of_its_kind:
+        noise = unlike_noise(state, i, excess.get(i))
+        if noise is not None:
+            unlike.append(noise)
+        if noise is not None and noise.of_its_kind:
             excess.pop(i, None)
-        elif found is None and i in excess:
+        elif noise is None and i in excess:
             excess[i] = replace(excess[i], doubtful=excess[i].ratio > UNUSUAL)
     coursing = {s.best.sensors for s in state.structures} | {(a.sensor,) for a in state.autocorrelated if a.plain}
     noisy = tuple(e for e in excess.values() if (e.sensor,) not in coursing)
@@ -107,10 +107,10 @@ def unlike_noise(state: SearchState, sensor: int, excess: ExcessVariance | None)
     """How a sensor's scatter differs from noise; None where it does not, or where too few rows tell."""
     residuals, attributed = state.residuals, state.attributed()
     freedom = residuals.row_freedom - (attributed[: residuals.rows] ** 2).sum(axis=1)
-    own = (residuals.sensor_of_row[: residuals.rows] == sensor) & (freedom > KNOWN)
-    if own.sum() < FEWEST:
+    of_sensor = (residuals.sensor_of_row[: residuals.rows] == sensor) & (freedom > KNOWN)
+    if of_sensor.sum() < FEWEST:
         return None
-    y = state.remaining[: residuals.rows][own] / np.sqrt(freedom[own])
+    y = state.remaining[: residuals.rows][of_sensor] / np.sqrt(freedom[of_sensor])
     variance = float(np.mean(y**2))
     if unlike_its_kind(state.baseline, sensor, variance):
         return UnlikeNoise(sensor, 0.0, variance, of_its_kind=False)

@@ -22,8 +22,8 @@ from estimator.diagnosis.residuals.fitted import unstated_noise
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
-from estimator.diagnosis.selection.search_state import Found, SearchState
-from estimator.diagnosis.selection.start import as_they_scatter, begun_with, with_earlier_scatter
+from estimator.diagnosis.selection.search_state import Detection, SearchState
+from estimator.diagnosis.selection.start import restart_from, with_earlier_scatter, with_residual_scatter
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import Array
 from estimator.significance import p_value
@@ -84,17 +84,17 @@ class Scatter:
 def doubted(state: SearchState) -> tuple[NoiseClaim, ...]:
     """Sensors that scatter otherwise than stated, most of a kind or less than they should, after all that was found."""
     unstated = unstated_noise(state.baseline.session)
-    found: list[NoiseClaim] = []
+    claims: list[NoiseClaim] = []
     for kind in dict.fromkeys(state.baseline.setting.kinds):
-        own = np.array([k == kind for k in state.baseline.setting.kinds])
-        if own.sum() > 1 and not unstated[own].any():
-            found.extend(_claims(state, kind, np.flatnonzero(own)))
-    return tuple(found)
+        of_kind = np.array([k == kind for k in state.baseline.setting.kinds])
+        if of_kind.sum() > 1 and not unstated[of_kind].any():
+            claims.extend(_claims(state, kind, np.flatnonzero(of_kind)))
+    return tuple(claims)
 
 
-def _claims(state: SearchState, kind: str, own: Array) -> Iterator[NoiseClaim]:
+def _claims(state: SearchState, kind: str, of_kind: Array) -> Iterator[NoiseClaim]:
     """Of the sensors (k,) int of one kind; in either sense at most one."""
-    each = scatter_of(state, own)
+    each = scatter_of(state, of_kind)
     whole = together(each)
     for side, least in enumerate((QUIET / len(each), SEEN)):
         seen = [s for s in each if s.tails[side] < least]
@@ -104,8 +104,8 @@ def _claims(state: SearchState, kind: str, own: Array) -> Iterator[NoiseClaim]:
             continue
         chosen = together([s for s in each if s.tails[side] < SEEN] or each)
         alike = [s.is_alike(chosen, side) for s in each]
-        claimed, sensors = together(s for s, yes in zip(each, alike, strict=True) if yes), own[alike]
-        if claimed.freedom >= FEWEST and not stands(replace(state.baseline, variance=state.stated), sensors):
+        claimed, sensors = together(s for s, yes in zip(each, alike, strict=True) if yes), of_kind[alike]
+        if claimed.freedom >= FEWEST and not is_credible(replace(state.baseline, variance=state.stated), sensors):
             ratio = max(claimed.energy / claimed.freedom, SMALLEST)
             yield NoiseClaim(kind, tuple(sensors.tolist()), ratio, claimed.freedom)
 
@@ -116,34 +116,34 @@ def together(each: Iterable[Scatter]) -> Scatter:
     return Scatter(sum(s.energy for s in parts), sum(s.freedom for s in parts))
 
 
-def scatter_of(state: SearchState, own: Array) -> list[Scatter]:
+def scatter_of(state: SearchState, of_kind: Array) -> list[Scatter]:
     """What a search leaves of each of some sensors (k,) int, dimensionless, in its stated errors."""
     energy, freedom = sensor_scatter(state)
     scale = np.median(state.baseline.variance / state.stated, axis=0)
-    return [Scatter(float(energy[i] * scale[i]), float(freedom[i])) for i in own]
+    return [Scatter(float(energy[i] * scale[i]), float(freedom[i])) for i in of_kind]
 
 
-def stands(baseline: Baseline, own: Array) -> bool:
-    """Whether rows of one position repeat as the stated noise says; ``own`` (k,) int, sensors."""
-    pure = pure_error(baseline, own)
+def is_credible(baseline: Baseline, of_kind: Array) -> bool:
+    """Whether rows of one position repeat as the stated noise says; ``of_kind`` (k,) int, sensors."""
+    pure = pure_error(baseline, of_kind)
     return pure.freedom >= FEWEST and min(pure.tails) > AGREES
 
 
-def pure_error(baseline: Baseline, own: Array) -> Scatter:
-    """Scatter of rows at the same β in the same run about their mean; ``own`` (k,) int, sensors.
+def pure_error(baseline: Baseline, of_kind: Array) -> Scatter:
+    """Scatter of rows at the same β in the same run about their mean; ``of_kind`` (k,) int, sensors.
 
     In standard errors of a row, its β error among them.
     """
     setting = baseline.setting
     if setting.beta is None or setting.flipped is None:
         return Scatter(0.0, 0.0)
-    whitened = WhitenedResiduals.of(baseline).whiten(baseline.residual[..., None]).reshape(setting.rows, -1)[:, own]
+    whitened = WhitenedResiduals.of(baseline).whiten(baseline.residual[..., None]).reshape(setting.rows, -1)[:, of_kind]
     place = np.stack([np.round(np.mod(setting.beta, 2 * np.pi), 9), setting.flipped], axis=-1)
     _, group = np.unique(place, axis=0, return_inverse=True)
     count = np.bincount(group.ravel())
     mean = np.stack([np.bincount(group.ravel(), weights=column) / count for column in whitened.T], axis=-1)
-    left = whitened - mean[group.ravel()]
-    return Scatter(float((left**2).sum()), float((count - 1).sum() * len(own)))
+    deviations = whitened - mean[group.ravel()]
+    return Scatter(float((deviations**2).sum()), float((count - 1).sum() * len(of_kind)))
 
 
 def of_whole_kinds(state: SearchState, claims: Iterable[NoiseClaim]) -> tuple[NoiseClaim, ...]:
@@ -192,8 +192,8 @@ def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:
 def without_names_in_no_noise(state: SearchState) -> SearchState:
     """The state without names of sensors, or common to all, that scatter as no noise does: it tells no cause."""
     lost = {i for claim in state.noise_claims if claim.ratio > BEYOND_NOISE**2 for i in claim.sensors}
-    kept = tuple(f for f in state.found if not lost or (f.best.sensors and lost.isdisjoint(f.best.sensors)))
-    return replace(state, found=kept)
+    detections = tuple(f for f in state.detections if not lost or (f.best.sensors and lost.isdisjoint(f.best.sensors)))
+    return replace(state, detections=detections)
 
 
 def groups_of(claim: NoiseClaim) -> list[tuple[int, ...]]:
@@ -204,23 +204,23 @@ def groups_of(claim: NoiseClaim) -> list[tuple[int, ...]]:
 
 
 def with_unknown_scale(
-    start: SearchState, claims: tuple[NoiseClaim, ...], found: tuple[Found, ...] = ()
+    start: SearchState, claims: tuple[NoiseClaim, ...], detections: tuple[Detection, ...] = ()
 ) -> SearchState:
     """The search begun anew with the noise of some sensors known up to a factor, which each one's own readings tell.
 
     The others of its kind tell nothing: what all show, such as a warm-up of the whole block, would pass for noise.
-    ``found`` was found before, and is no noise.
+    ``detections`` were made before, and are no noise.
     """
     baseline = start.baseline
     sensors = sorted(sensors_of(claims))
     unstated = baseline.unstated.copy()
     expected = np.zeros(len(unstated)) if baseline.expected_ratio is None else baseline.expected_ratio.copy()
     unstated[sensors], expected[sensors] = True, 0.0
-    off = [one for claim in claims if claim.freedom > 0 for one in groups_of(claim)]
-    named = np.concatenate([f.best.shape.columns for f in found], axis=-1) if found else None
-    scaled = as_they_scatter(baseline, off, named)
+    off = [group for claim in claims if claim.freedom > 0 for group in groups_of(claim)]
+    named = np.concatenate([f.best.shape.columns for f in detections], axis=-1) if detections else None
+    scaled = with_residual_scatter(baseline, off, named)
     changed = replace(scaled, unstated=unstated, expected_ratio=expected)
     again = refitted(changed)
     moved = np.abs(again.parameters.axis - baseline.parameters.axis).max()
     earlier = with_earlier_scatter(start, sensors)
-    return replace(begun_with(earlier, again if moved < LINEAR else changed), noise_claims=claims)
+    return replace(restart_from(earlier, again if moved < LINEAR else changed), noise_claims=claims)

@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.content import held, once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Found, SearchState
+from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Detection, SearchState
 from estimator.diagnosis.signatures.scores import Scores, rescored, scores
 from estimator.diagnosis.signatures.traces import Scored, Traces
 from estimator.session import Array
@@ -22,12 +22,12 @@ def family_p_value(scored: Scored, families: int) -> float:
     return family_wise(scored.p_value, scored.places * families)
 
 
-def p_beside(found: Found, again: Scored, families: int) -> float:
+def conditional_p_value(detection: Detection, again: Scored, families: int) -> float:
     """Family-wise p-value of a finding that was scored ``again`` beside others; of an event's sensor the event's."""
-    return found.p_family if found.event else family_p_value(again, families)
+    return detection.p_family if detection.event else family_p_value(again, families)
 
 
-def strongest(state: SearchState, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
+def strongest(state: SearchState, traces: Sequence[Traces], without: Detection | None = None) -> Detection | None:
     """The signature with the strongest evidence given the other findings; None if it is not significant.
 
     ``without``: one finding is taken back and chosen anew, on its own sensor or common to all.
@@ -36,16 +36,16 @@ def strongest(state: SearchState, traces: Sequence[Traces], without: Found | Non
     if without is not None and without.best.sensors:
         traces = [t.at(without.best.sensors) for t in traces]
     closed = {s.sensor for s in state.autocorrelated if s.plain}
-    found = scores_given(state, traces, without)
-    order = [(k, e) for k, e in found.ranked() if found.sensor[k] not in closed and found.group(k) not in state.refuted]
-    for best in (found.scored(k) for k, _ in order[:TRIED]):
+    given = scores_given(state, traces, without)
+    order = [(k, e) for k, e in given.ranked() if given.sensor[k] not in closed and given.group(k) not in state.refuted]
+    for best in (given.scored(k) for k, _ in order[:TRIED]):
         p_family = family_p_value(best, families)
         if p_family < LEVEL:
-            return Found(best, p_family, tuple((found.scored(k), e) for k, e in order))
+            return Detection(best, p_family, tuple((given.scored(k), e) for k, e in order))
     return None
 
 
-def scores_given(state: SearchState, traces: Sequence[Traces], without: Found | None) -> Scores:
+def scores_given(state: SearchState, traces: Sequence[Traces], without: Detection | None) -> Scores:
     """The scores given the other findings. The search comes back to the same findings: those of all that is looked for
     are kept."""
     attributed = state.attributed(without)
@@ -68,21 +68,21 @@ def _known(residuals: WhitenedResiduals, traces: tuple[Traces, ...], attributed:
     return scores(residuals, traces, attributed.attributed)
 
 
-def on_other_sensors(state: SearchState, best: Found, traces: Sequence[Traces]) -> list[Found]:
+def on_other_sensors(state: SearchState, best: Detection, traces: Sequence[Traces]) -> list[Detection]:
     """The same cause where it leads another sensor's own ranking and is significant beside the rest."""
     leads: dict[tuple[int, ...], Scored] = {}
     for scored, _ in best.ranking:
         leads.setdefault(scored.sensors, scored)
     same = [s for sensors, s in leads.items() if sensors and sensors != best.best.sensors]
     families = state.families if traces is state.traces else len(traces)
-    others: list[Found] = []
+    others: list[Detection] = []
     attributed = extended_basis(state.attributed(), best.best.trace)
     for scored in same:
         if scored.cause is not best.best.cause or family_p_value(scored, families) >= LEVEL:
             continue
         p_family = family_p_value(rescored(state.residuals, scored, attributed), families)
         if p_family < LEVEL:
-            others.append(Found(scored, p_family, best.ranking_on(scored.sensors)))
+            others.append(Detection(scored, p_family, best.ranking_on(scored.sensors)))
             attributed = extended_basis(attributed, scored.trace)
     return others
 
@@ -90,10 +90,10 @@ def on_other_sensors(state: SearchState, best: Found, traces: Sequence[Traces]) 
 def joint_log_evidence(state: SearchState) -> float:
     """ln evidence of everything found together, each weighed on what those before it leave."""
     nothing = np.zeros((len(state.residuals.z), 0))
-    return log_evidence_beside(state.residuals, nothing, (*state.found, *state.structures))
+    return conditional_log_evidence(state.residuals, nothing, (*state.detections, *state.structures))
 
 
-def log_evidence_beside(residuals: WhitenedResiduals, attributed: Array, members: Sequence[Found]) -> float:
+def conditional_log_evidence(residuals: WhitenedResiduals, attributed: Array, members: Sequence[Detection]) -> float:
     """ln evidence of some findings, each on what others and the stronger of them leave.
 
     The order matters where the noise is estimated from what is left: the strongest first, whatever they are called.

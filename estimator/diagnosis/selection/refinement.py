@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.causes.contract import Setting, Shape
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.signatures.lasting import absorbed_before
 from estimator.diagnosis.signatures.scores import rescored
 from estimator.diagnosis.signatures.traces import Scored
@@ -28,41 +28,41 @@ def with_refined_shapes(state: SearchState) -> SearchState:
     Where the session does not tell the parameter, the likeliest cause that has none is named first instead, and failing
     that the parameter keeps its value of the grid.
     """
-    for found in state.found:
-        best = refined(state, found)
-        if best is found.best:
+    for detection in state.detections:
+        best = refined(state, detection)
+        if best is detection.best:
             continue
-        new = plainer(state, found) if vague(state, found, best) else replace(found, best=best)
-        state = replace(state, found=tuple(new if f is found else f for f in state.found))
+        new = plainer(state, detection) if vague(state, detection, best) else replace(detection, best=best)
+        state = replace(state, detections=tuple(new if f is detection else f for f in state.detections))
     return state
 
 
-def vague(state: SearchState, found: Found, best: Scored) -> bool:
+def vague(state: SearchState, detection: Detection, best: Scored) -> bool:
     """Whether a refined shape leaves the amplitudes unknown."""
-    attributed = state.attributed(without=found)
+    attributed = state.attributed(without=detection)
     columns = best.trace - attributed @ (attributed.T @ best.trace)
-    fit, own = least_squares(columns, state.residuals.z, FAINT), slice(0, len(best.cause.units))
-    return bool(np.all(np.abs(fit.value[own]) < VAGUE * np.sqrt(np.diagonal(fit.covariance)[own])))
+    fit, amplitudes = least_squares(columns, state.residuals.z, FAINT), slice(0, len(best.cause.units))
+    return bool(np.all(np.abs(fit.value[amplitudes]) < VAGUE * np.sqrt(np.diagonal(fit.covariance)[amplitudes])))
 
 
-def plainer(state: SearchState, found: Found) -> Found:
+def plainer(state: SearchState, detection: Detection) -> Detection:
     """The finding as the likeliest rival on its sensors that has no free shape; as it is where none is as likely."""
-    for rival, log_evidence in found.ranking:
-        if found.ranking[0][1] - log_evidence > AS_LIKELY:
+    for rival, log_evidence in detection.ranking:
+        if detection.ranking[0][1] - log_evidence > AS_LIKELY:
             break
-        if rival.sensors == found.best.sensors and not rival.cause.nonlinear_units and not rival.cause.between:
-            return replace(found, best=rescored(state.residuals, rival, state.attributed(without=found)))
-    return found
+        if rival.sensors == detection.best.sensors and not rival.cause.nonlinear_units and not rival.cause.between:
+            return replace(detection, best=rescored(state.residuals, rival, state.attributed(without=detection)))
+    return detection
 
 
-def refined(state: SearchState, found: Found) -> Scored:
+def refined(state: SearchState, detection: Detection) -> Scored:
     """The best shape near the one found, its derivatives appended; the same where nothing is continuous."""
-    old, setting = found.best, state.baseline.setting
-    cause, own = old.cause, len(old.cause.units)
-    near = list(cause.neighbours(setting, old.shape.first(own)))
+    old, setting = detection.best, state.baseline.setting
+    cause, width = old.cause, len(old.cause.units)
+    near = list(cause.neighbours(setting, old.shape.first(width)))
     if not near:
         return old
-    attributed, padding = state.attributed(without=found), old.shape.columns[..., own:]
+    attributed, padding = state.attributed(without=detection), old.shape.columns[..., width:]
 
     def derivative(where: Setting, shapes: Sequence[Shape]) -> Array:
         """(R, m, r) m/s² (rad/s), of a single shape."""
@@ -71,7 +71,7 @@ def refined(state: SearchState, found: Found) -> Scored:
 
     def scored(shape: Shape) -> Scored:
         before = absorbed_before(state.residuals, cause, [shape]) if old.lasting else 0.0
-        trace = np.concatenate([state.residuals.trace(shape.columns, before), old.trace[:, own:]], axis=1)
+        trace = np.concatenate([state.residuals.trace(shape.columns, before), old.trace[:, width:]], axis=1)
         padded = replace(shape, columns=np.concatenate([shape.columns, padding], axis=-1))
         return rescored(state.residuals, replace(old, shape=padded, trace=trace), attributed)
 

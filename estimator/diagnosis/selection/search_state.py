@@ -25,7 +25,7 @@ NEW_DIRECTION = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Detection:
     """One selected signature with its rivals."""
 
     best: Scored
@@ -61,8 +61,8 @@ class SearchState:
     """Of structure without a name."""
     stated: Array
     """(R, m) variance of the noise as the file states it, or as the baseline leaves it, (m/s²)² ((rad/s)²)."""
-    found: tuple[Found, ...] = ()
-    structures: tuple[Found, ...] = ()
+    detections: tuple[Detection, ...] = ()
+    structures: tuple[Detection, ...] = ()
     """Patterns found."""
     excess: tuple[ExcessVariance, ...] = ()
     autocorrelated: tuple[Autocorrelation, ...] = ()
@@ -73,7 +73,7 @@ class SearchState:
     """Sensors whose scatter is not distributed as noise is."""
     noise_claims: tuple[NoiseClaim, ...] = ()
     """Sensors whose stated noise is taken as known up to a factor only."""
-    in_tails: tuple[Found, ...] = ()
+    in_tails: tuple[Detection, ...] = ()
     """Names taken back, because readings far out in the tails of the errors explain as much."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
@@ -106,8 +106,8 @@ class SearchState:
     @property
     def misfortunes(self) -> int:
         """How many independent things were found: names, of which those of one event count once, and structures."""
-        events = {(f.best.cause.identifier, f.event) for f in self.found if f.event}
-        return len(events) + sum(not f.event for f in self.found) + len(self.structures)
+        events = {(f.best.cause.identifier, f.event) for f in self.detections if f.event}
+        return len(events) + sum(not f.event for f in self.detections) + len(self.structures)
 
     @property
     def remaining(self) -> Array:
@@ -120,9 +120,9 @@ class SearchState:
         """Number of causes that this session puts to the test."""
         return len(self.traces) + 1
 
-    def attributed(self, without: Found | None = None) -> Array:
+    def attributed(self, without: Detection | None = None) -> Array:
         """(n, f) orthonormal, dimensionless: the span of the traces of findings and structures, one left out."""
-        parts = [f.best.trace for f in (*self.found, *self.structures) if f is not without]
+        parts = [f.best.trace for f in (*self.detections, *self.structures) if f is not without]
         if not parts:
             return np.zeros((len(self.residuals.z), 0))
         return orthonormal(np.concatenate(parts, axis=1), NEW_DIRECTION)

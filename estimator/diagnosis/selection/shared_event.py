@@ -30,7 +30,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import backward_elimination
 from estimator.diagnosis.selection.forward import forward_selection, with_structures
 from estimator.diagnosis.selection.ranking import extended_basis, scores_given
-from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
+from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
 from estimator.diagnosis.signatures.wandering import log_marginal, log_mean, log_turning, log_wandering, marginal
@@ -88,23 +88,23 @@ def with_shared_event(
     event = shared_event(start)
     if not event:
         return state
-    rival = beside(start, event)
+    rival = searched_with_event(start, event)
     is_likelier = rival is not None and log_evidence(start, rival) > log_evidence(start, state)
     return rival if rival is not None and is_likelier else state
 
 
-def beside(start: SearchState, event: tuple[Found, ...]) -> SearchState | None:
+def searched_with_event(start: SearchState, event: tuple[Detection, ...]) -> SearchState | None:
     """What is found beside an event; None where the search takes it for noise."""
-    state = forward_selection(replace(start, found=event))
-    if not any(f.event for f in state.found):
+    state = forward_selection(replace(start, detections=event))
+    if not any(f.event for f in state.detections):
         return None
     return backward_elimination(with_structures(state))
 
 
-def shared_event(start: SearchState) -> tuple[Found, ...]:
+def shared_event(start: SearchState) -> tuple[Detection, ...]:
     """The most likely event, its sensors the strongest first; empty where there is none."""
-    own = [t for t in start.traces if t.cause.shared_sentence and t.beside is None]
-    every = [course for traces in own for course in courses(start.residuals, traces)]
+    candidates = [t for t in start.traces if t.cause.shared_sentence and t.nuisance is None]
+    every = [course for traces in candidates for course in courses(start.residuals, traces)]
     if not every:
         return ()
     energy, freedom = energies(start.residuals, every)
@@ -112,9 +112,9 @@ def shared_event(start: SearchState) -> tuple[Found, ...]:
     if p_value(energy[best[0]], freedom[best[0]]) * len(every) > SCREEN:
         return ()
     tried = [(every[k], *joined(start, every[k])) for k in best]
-    course, chosen, _ = max(tried, key=lambda one: one[2])
-    event = priced(start, course, chosen, len(every)) if len(chosen) > 1 else ()
-    if not event or family_p_value(start, event) >= LEVEL or otherwise(start, course.of(chosen), len(every)):
+    course, chosen, _ = max(tried, key=lambda candidate: candidate[2])
+    event = with_prior_cost(start, course, chosen, len(every)) if len(chosen) > 1 else ()
+    if not event or family_p_value(start, event) >= LEVEL or has_likelier_rival(start, course.of(chosen), len(every)):
         return ()
     return ranked(start, event)
 
@@ -134,17 +134,17 @@ def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
 
 def energies(residuals: WhitenedResiduals, every: Sequence[Course]) -> tuple[Array, Array]:
     """(C,) T and (C,) int its degrees of freedom of courses, each with a size of every sensor."""
-    found = [energy_of(residuals, course) for course in every]
-    return np.array([energy for energy, _ in found]), np.array([freedom for _, freedom in found])
+    pairs = [energy_of(residuals, course) for course in every]
+    return np.array([energy for energy, _ in pairs]), np.array([freedom for _, freedom in pairs])
 
 
 def energy_of(residuals: WhitenedResiduals, course: Course) -> tuple[float, int]:
     """T and its degrees of freedom of one course."""
     unit = unit_traces(course)
     size, turn = eigh(unit.T @ unit)
-    kept = size > OVERLAP
-    along = (turn.T @ (unit.T @ residuals.z))[kept]
-    return float((along**2 / size[kept]).sum()), int(kept.sum())
+    independent = size > OVERLAP
+    along = (turn.T @ (unit.T @ residuals.z))[independent]
+    return float((along**2 / size[independent]).sum()), int(independent.sum())
 
 
 def unit_traces(course: Course) -> Array:
@@ -162,10 +162,10 @@ def joined(start: SearchState, course: Course) -> tuple[list[int], float]:
     others do, and many together what none does alone.
     """
     unit = unit_traces(course)
-    gram, along = unit.T @ unit, unit.T @ start.residuals.z / noise_beside(start.residuals, course, unit)
+    gram, along = unit.T @ unit, unit.T @ start.residuals.z / noise_given_course(start.residuals, course, unit)
     everyone = frozenset(range(len(along)))
     climbed = [likeliest_set(gram, along, start.sensor_count, begun) for begun in (frozenset[int](), everyone)]
-    best, value = max(climbed, key=lambda found: found[1])
+    best, value = max(climbed, key=lambda result: result[1])
     return [course.numbers[k] for k in sorted(best)], value
 
 
@@ -174,7 +174,7 @@ def likeliest_set(gram: Array, along: Array, m: int, begun: frozenset[int]) -> t
     best, value = begun, log_likely(gram, along, m, begun)
     while True:
         near = [best ^ {k} for k in range(len(along))]
-        values = [log_likely(gram, along, m, one) for one in near]
+        values = [log_likely(gram, along, m, members) for members in near]
         if max(values) <= value:
             return best, value
         value = max(values)
@@ -184,33 +184,33 @@ def likeliest_set(gram: Array, along: Array, m: int, begun: frozenset[int]) -> t
 def log_likely(gram: Array, along: Array, m: int, chosen: frozenset[int]) -> float:
     """ln p of a set of sensors, of m, less what every one that joins must be surer; ``gram`` (k, k), ``along`` (k,) of
     traces of length one."""
-    own = sorted(chosen)
-    power, size = marginal(gram[np.ix_(own, own)], along[own], SIZES)
-    return log_mean(0.5 * (power - size)) - float(np.log(comb(m, len(own)))) - SURE * max(len(own) - 1, 0)
+    members = sorted(chosen)
+    power, size = marginal(gram[np.ix_(members, members)], along[members], SIZES)
+    return log_mean(0.5 * (power - size)) - float(np.log(comb(m, len(members)))) - SURE * max(len(members) - 1, 0)
 
 
-def noise_beside(residuals: WhitenedResiduals, course: Course, unit: Array) -> Array:
+def noise_given_course(residuals: WhitenedResiduals, course: Course, unit: Array) -> Array:
     """(k,) scatter of a course's sensors beside it, standard errors: 1 where the noise is known."""
     size, turn = eigh(unit.T @ unit)
     basis = unit @ (turn[:, size > OVERLAP] / np.sqrt(size[size > OVERLAP]))
-    left, N = (residuals.z - basis @ (basis.T @ residuals.z)) ** 2, residuals.rows
+    remaining, N = (residuals.z - basis @ (basis.T @ residuals.z)) ** 2, residuals.rows
     freedom, sensors = residuals.row_freedom - (basis[:N] ** 2).sum(axis=1), course.traces.sensor[list(course.numbers)]
     of_sensor = residuals.sensor_of_row[:N] == sensors[:, None]
-    ratio = (of_sensor @ left[:N]) / np.maximum(of_sensor @ freedom, 1.0)
+    ratio = (of_sensor @ remaining[:N]) / np.maximum(of_sensor @ freedom, 1.0)
     return np.asarray(np.where(residuals.baseline.unstated[sensors], np.sqrt(ratio), 1.0))
 
 
-def priced(start: SearchState, course: Course, numbers: Sequence[int], moments: int) -> tuple[Scored, ...]:
+def with_prior_cost(start: SearchState, course: Course, numbers: Sequence[int], moments: int) -> tuple[Scored, ...]:
     """Sensors of an event, each scored on what those before it leave; the first pays for the choice of them, and of
     one of so many ``moments``."""
-    basis, found = np.zeros((len(start.residuals.z), 0)), list[Scored]()
+    basis, priced_scores = np.zeros((len(start.residuals.z), 0)), list[Scored]()
     for k in numbers:
-        found.append(rescored(start.residuals, course.scored(k), basis))
-        basis = extended_basis(basis, found[-1].trace)
+        priced_scores.append(rescored(start.residuals, course.scored(k), basis))
+        basis = extended_basis(basis, priced_scores[-1].trace)
     m = start.sensor_count
-    places = moments * comb(m, len(found)) * m
-    first = replace(found[0], places=places, log_evidence=found[0].log_evidence - float(np.log(places)))
-    return (first, *found[1:])
+    places = moments * comb(m, len(priced_scores)) * m
+    first = replace(priced_scores[0], places=places, log_evidence=priced_scores[0].log_evidence - float(np.log(places)))
+    return (first, *priced_scores[1:])
 
 
 def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
@@ -219,7 +219,7 @@ def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
     return family_wise(float(p_value(power, freedom)), event[0].places * start.families)
 
 
-def otherwise(start: SearchState, course: Course, moments: int) -> bool:
+def has_likelier_rival(start: SearchState, course: Course, moments: int) -> bool:
     """Whether something else is likelier than an event of a course's sensors at one of so many ``moments``: zeros that
     wander, each by itself, or the whole block turned at one moment."""
     m, k = start.sensor_count, len(course.numbers)
@@ -228,15 +228,15 @@ def otherwise(start: SearchState, course: Course, moments: int) -> bool:
     return event - float(np.log(m * comb(m, k))) < max(rivals)
 
 
-def beside_others(start: SearchState, event: Sequence[Scored], own: Scored) -> Array:
+def joint_with_others(start: SearchState, event: Sequence[Scored], member: Scored) -> Array:
     """(n, f) orthonormal, dimensionless: the span of what an event does to all sensors but one."""
     attributed = np.zeros((len(start.residuals.z), 0))
     for other in event:
-        attributed = attributed if other is own else extended_basis(attributed, other.trace)
+        attributed = attributed if other is member else extended_basis(attributed, other.trace)
     return attributed
 
 
-def ranked(start: SearchState, event: Sequence[Scored]) -> tuple[Found, ...]:
+def ranked(start: SearchState, event: Sequence[Scored]) -> tuple[Detection, ...]:
     """The event's sensors as findings, with the causes that the same sensors may share instead; empty where one of
     these is likelier."""
     sensors = sorted(s.sensors[0] for s in event)
@@ -245,22 +245,28 @@ def ranked(start: SearchState, event: Sequence[Scored]) -> tuple[Found, ...]:
     rivals = shared_rivals(start, event, sensors)
     if any(log_evidence > whole for _, log_evidence in rivals):
         return ()
-    common = [(found.scored(k), e) for found in (scores_given(start, start.traces, None),) for k, e in found.ranked()]
+    common = [
+        (detections.scored(k), e)
+        for detections in (scores_given(start, start.traces, None),)
+        for k, e in detections.ranked()
+    ]
     common = [(s, e) for s, e in common if not s.sensors]
-    p_family, found = family_p_value(start, event), []
-    for own in event:
-        attributed = beside_others(start, event, own)
-        again = [(rescored(start.residuals, c.scored(c.on(own.sensors).numbers[0]), attributed), e) for c, e in rivals]
-        ranking = sorted([(own, whole), *again, *common], key=lambda pair: -pair[1])
-        found.append(Found(own, p_family, tuple(ranking), event=tuple(sensors)))
-    return tuple(found)
+    p_family, detections = family_p_value(start, event), []
+    for member in event:
+        attributed = joint_with_others(start, event, member)
+        again = [
+            (rescored(start.residuals, c.scored(c.on(member.sensors).numbers[0]), attributed), e) for c, e in rivals
+        ]
+        ranking = sorted([(member, whole), *again, *common], key=lambda pair: -pair[1])
+        detections.append(Detection(member, p_family, tuple(ranking), event=tuple(sensors)))
+    return tuple(detections)
 
 
 def shared_rivals(start: SearchState, event: Sequence[Scored], sensors: Sequence[int]) -> list[tuple[Course, float]]:
     """Every other cause that all sensors of an event may share, at its best shape, with its ln evidence."""
     best: dict[str, tuple[Course, float]] = {}
     for traces in start.traces:
-        if traces.common or traces.cause.between or traces.beside is not None or traces.cause is event[0].cause:
+        if traces.common or traces.cause.between or traces.nuisance is not None or traces.cause is event[0].cause:
             continue
         every = [c.on(sensors) for c in courses(start.residuals, traces)]
         every = [c for c in every if len(c.numbers) == len(sensors)]

@@ -54,10 +54,10 @@ def pattern_traces(residuals: WhitenedResiduals, patterns: Sequence[Signature]) 
     """
     stated = ~residuals.baseline.unstated
     for traces in traces_of(residuals, patterns):
-        asked = range(len(traces.shapes))
-        own = [k for k in asked if stated[traces.sensor[k]]] if traces.cause.between else asked
-        if own:
-            yield traces if len(own) == len(asked) else traces.chosen(list(own))
+        every = range(len(traces.shapes))
+        chosen = [k for k in every if stated[traces.sensor[k]]] if traces.cause.between else every
+        if chosen:
+            yield traces if len(chosen) == len(every) else traces.chosen(list(chosen))
 
 
 def since(baseline: Baseline, history: Sequence[Baseline]) -> Baseline:
@@ -67,17 +67,17 @@ def since(baseline: Baseline, history: Sequence[Baseline]) -> Baseline:
     return replace(baseline, setting=replace(baseline.setting, turn=turn))
 
 
-def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> SearchState:
+def restart_with_known_noise(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> SearchState:
     """The search begun anew with one sensor's variance as it is, known from its own residuals alone."""
-    sensors = [one.sensor for one in scatter]
+    sensors = [entry.sensor for entry in scatter]
     unstated = state.baseline.unstated.copy()
     unstated[sensors] = True
-    known = as_they_scatter(replace(state.baseline, unstated=unstated), [[i] for i in sensors])
+    known = with_residual_scatter(replace(state.baseline, unstated=unstated), [[i] for i in sensors])
     ratio = np.median(known.variance / state.baseline.variance, axis=0)
-    found = [one if one.ratio == 1 else replace(one, ratio=float(ratio[one.sensor])) for one in scatter]
-    excess = (*state.excess, *(s for s in found if isinstance(s, ExcessVariance)))
-    autocorrelated = (*state.autocorrelated, *(s for s in found if isinstance(s, Autocorrelation)))
-    begun = begun_with(with_earlier_scatter(state, sensors), refitted(known))
+    scaled = [entry if entry.ratio == 1 else replace(entry, ratio=float(ratio[entry.sensor])) for entry in scatter]
+    excess = (*state.excess, *(s for s in scaled if isinstance(s, ExcessVariance)))
+    autocorrelated = (*state.autocorrelated, *(s for s in scaled if isinstance(s, Autocorrelation)))
+    begun = restart_from(with_earlier_scatter(state, sensors), refitted(known))
     return replace(begun, excess=excess, autocorrelated=autocorrelated)
 
 
@@ -85,11 +85,11 @@ def with_earlier_scatter(state: SearchState, sensors: Sequence[int]) -> SearchSt
     """The state whose earlier sessions state nothing of the noise of some sensors either: their residuals tell it."""
     kinds = state.baseline.setting.kinds
     each = [[i] for i in sensors]
-    history = (refitted(as_they_scatter(h, each)) if h.setting.kinds == kinds else h for h in state.history)
+    history = (refitted(with_residual_scatter(h, each)) if h.setting.kinds == kinds else h for h in state.history)
     return replace(state, history=tuple(history))
 
 
-def as_they_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], named: Array | None = None) -> Baseline:
+def with_residual_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], named: Array | None = None) -> Baseline:
     """The baseline with the variance of some sensors that of their own residuals (restricted likelihood).
 
     Sensors of one group are off by one factor. ``named`` (R, m, q) are effects, any unit, that count as no noise. Step
@@ -97,7 +97,7 @@ def as_they_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], named: 
     """
     variance = baseline.variance.copy()
     for _ in range(ROUNDS):
-        energy, freedom = left_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
+        energy, freedom = remaining_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
         larger = np.array([energy[list(g)].sum() / max(freedom[list(g)].sum(), 1.0) for g in groups])
         for group, factor in zip(groups, larger, strict=True):
             variance[:, list(group)] *= factor
@@ -106,7 +106,7 @@ def as_they_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], named: 
     return replace(baseline, variance=variance)
 
 
-def left_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> tuple[Array, Array]:
+def remaining_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> tuple[Array, Array]:
     """(m,) energy, dimensionless, and (m,) degrees of freedom of what effects (R, m, q) leave of each sensor."""
     rows, m = residuals.rows, len(residuals.baseline.unstated)
     z, freedom = residuals.z[:rows], residuals.row_freedom
@@ -115,11 +115,11 @@ def left_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> tuple[
         shown = np.linalg.norm(trace, axis=0) > INVISIBLE * raw
         basis = orthonormal(trace[:, shown], NEW_DIRECTION)
         z, freedom = z - basis @ (basis.T @ z), freedom - (basis**2).sum(axis=1)
-    own = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
-    return own @ z**2, own @ freedom
+    of_sensor = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
+    return of_sensor @ z**2, of_sensor @ freedom
 
 
-def begun_with(state: SearchState, baseline: Baseline) -> SearchState:
+def restart_from(state: SearchState, baseline: Baseline) -> SearchState:
     """The search begun anew with another baseline; what the file states of the noise is kept."""
     again = begin(baseline, state.history, state.catalogue)
     return replace(again, stated=state.stated, noise_claims=state.noise_claims)

@@ -91,10 +91,10 @@ def components(setting: Setting) -> list[Component]:
     if setting.d_beta is None or setting.d_alpha is None:
         return [Component(SIZE, size * ~gyro)]
     turns = [setting.through(d[..., None])[..., 0] for d in (setting.d_beta, setting.d_alpha)]
-    found = [Component("β", turns[0]), Component("α", turns[1]), Component(SIZE, size)]
+    directions = [Component("β", turns[0]), Component("α", turns[1]), Component(SIZE, size)]
     if gyro.any() and not gyro.all():
-        found += [Component("β of the gyros", turns[0] * gyro), Component("α of the gyros", turns[1] * gyro)]
-    return found
+        directions += [Component("β of the gyros", turns[0] * gyro), Component("α of the gyros", turns[1] * gyro)]
+    return directions
 
 
 def together(count: int) -> list[list[int]]:
@@ -176,8 +176,8 @@ def applied_course(residuals: WhitenedResiduals, attributed: Array, *, lasting: 
 def covariance_root(kernel: Array) -> Array:
     """L (R, r) with LL' a covariance (R, R), dimensionless, directions of no size left out."""
     size, turn = eigh(kernel)
-    kept = size > FAINT * size[-1]
-    return np.asarray(turn[:, kept] * np.sqrt(size[kept]))
+    positive = size > FAINT * size[-1]
+    return np.asarray(turn[:, positive] * np.sqrt(size[positive]))
 
 
 def evidence(trace: Array, z: Array) -> tuple[float, Array]:

@@ -36,7 +36,7 @@ FEWEST = 6
 SIGNAL = 10.0 ** np.arange(-1, 4.1, 0.5)
 """λ: energy of the course over that of the noise, from hardly visible to a course a hundred sigmas high."""
 
-KEPT_NOISE = 0.1
+LEAST_FREE_NOISE = 0.1
 """Share of a direction's noise that must remain for it to count; less would magnify rounding and model error."""
 
 USUAL = {
@@ -76,17 +76,17 @@ def kernels(residuals: WhitenedResiduals, sensor: int) -> dict[str, list[Array]]
     """(R, R) dimensionless covariances of courses along each order; where there is a stand, also around β together
     with another order, as whatever depends on both is smooth in both."""
     setting, places = residuals.baseline.setting, orders(residuals, sensor)
-    found = {name: along(place) for name, place in places.items()}
+    by_name = {name: along(place) for name, place in places.items()}
     if setting.beta is None or setting.flipped is None:
-        return found
+        return by_name
     turning = [around(setting.beta, length) for length in ROUND]
     same_run = setting.flipped[:, None] == setting.flipped
     if not same_run.all():
-        found["β, each run for itself"] = [kernel * same_run for kernel in turning]
+        by_name["β, each run for itself"] = [kernel * same_run for kernel in turning]
     for name in ("the order measured", "temperature"):
         if name in places:
-            found[f"β and {name}"] = [bending(places[name], LENGTHS[-1]) * kernel for kernel in turning]
-    return found
+            by_name[f"β and {name}"] = [bending(places[name], LENGTHS[-1]) * kernel for kernel in turning]
+    return by_name
 
 
 def along(place: Array) -> list[Array]:
@@ -108,7 +108,7 @@ def around(beta: Array, length: float) -> Array:
     return np.asarray(np.exp(-2 * (np.sin((beta[:, None] - beta) / 2) / length) ** 2))
 
 
-def own_covariance(residuals: WhitenedResiduals, attributed: Array, sensor: int) -> Array:
+def sensor_covariance(residuals: WhitenedResiduals, attributed: Array, sensor: int) -> Array:
     """(R, R) dimensionless covariance of one sensor's whitened residual under noise.
 
     ``attributed`` (n, f) orthonormal traces of the findings.
@@ -121,17 +121,17 @@ def own_covariance(residuals: WhitenedResiduals, attributed: Array, sensor: int)
     return np.asarray(np.diag(known) - used @ used.T)
 
 
-def own_residual(residuals: WhitenedResiduals, attributed: Array, sensor: int) -> tuple[Array, Array]:
-    """(R, n) root of one sensor's `own_covariance`, dimensionless, and (n,) its residual, white under noise.
+def sensor_residual(residuals: WhitenedResiduals, attributed: Array, sensor: int) -> tuple[Array, Array]:
+    """(R, n) root of one sensor's `sensor_covariance`, dimensionless, and (n,) its residual, white under noise.
 
     ``attributed`` (n, f) orthonormal traces of the findings. Directions that hardly show are left out.
     """
     R, m = residuals.baseline.residual.shape
     remaining = residuals.z - attributed @ (attributed.T @ residuals.z)
-    size, turn = eigh(own_covariance(residuals, attributed, sensor))
-    kept = size > KEPT_NOISE
-    y = (turn[:, kept] / np.sqrt(size[kept])).T @ remaining[: R * m].reshape(R, m)[:, sensor]
-    return turn[:, kept] * np.sqrt(size[kept]), y
+    size, turn = eigh(sensor_covariance(residuals, attributed, sensor))
+    free = size > LEAST_FREE_NOISE
+    y = (turn[:, free] / np.sqrt(size[free])).T @ remaining[: R * m].reshape(R, m)[:, sensor]
+    return turn[:, free] * np.sqrt(size[free]), y
 
 
 def autocorrelation(
@@ -142,12 +142,12 @@ def autocorrelation(
     ``attributed`` (n, f) orthonormal traces of the findings, dimensionless, which are projected out; ``known``: whether
     the noise is taken as stated.
     """
-    root, y = own_residual(residuals, attributed, sensor)
+    root, y = sensor_residual(residuals, attributed, sensor)
     if len(y) < FEWEST:
         return None
     tried = kernels(residuals, sensor)
     each = bayes_factors(root.T @ np.concatenate(list(tried.values())) @ root, y, known=known)
-    ends = np.cumsum([len(own) for own in tried.values()])
+    ends = np.cumsum([len(scales) for scales in tried.values()])
     factors = dict(zip(tried, map(log_mean, np.split(each, ends[:-1])), strict=True))
     prior = np.array([USUAL[name] for name in factors])
     together = np.array(list(factors.values())) + np.log(prior / prior.sum())
@@ -158,15 +158,15 @@ def bayes_factors(covariance: Array, y: Array, *, known: bool) -> Array:
     """(K,) ln B of courses of ``covariance`` (K, n, n), dimensionless, against white noise, from y (n,), standard
     errors."""
     scale, energy = np.maximum(np.trace(covariance, axis1=1, axis2=2), 1e-300), float(y @ y)
-    diagonal, beside = tridiagonal(covariance * (len(y) / scale)[:, None, None], y)
+    diagonal, off_diagonal = tridiagonal(covariance * (len(y) / scale)[:, None, None], y)
     largest = max(SIGNAL[-1], energy if known else 0.0)
     signal = np.concatenate([SIGNAL, np.geomspace(SIGNAL[-1], largest, 4)[1:]]) if largest > SIGNAL[-1] else SIGNAL
     pivot = 1 + signal[:, None, None] * diagonal
     for k in range(len(y) - 2, -1, -1):
-        pivot[..., k] -= (signal[:, None] * beside[:, k]) ** 2 / np.maximum(pivot[..., k + 1], 1.0)
+        pivot[..., k] -= (signal[:, None] * off_diagonal[:, k]) ** 2 / np.maximum(pivot[..., k + 1], 1.0)
     pivot = np.maximum(pivot, 1.0)
-    left = energy / pivot[..., 0]
-    fitted = 0.5 * (energy - left) if known else -0.5 * len(y) * np.log(left / energy)
+    scaled = energy / pivot[..., 0]
+    fitted = 0.5 * (energy - scaled) if known else -0.5 * len(y) * np.log(scaled / energy)
     return np.asarray(np.logaddexp.reduce(fitted - 0.5 * np.log(pivot).sum(axis=-1)) - np.log(len(signal)))
 
 

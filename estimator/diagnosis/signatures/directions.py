@@ -17,7 +17,7 @@ ALIKE = 1e-6
 square lies well above rounding."""
 
 
-def whitening(alike: Array, shown: Array, faint: float, beside: Array | None) -> tuple[Array, Array]:
+def whitening(alike: Array, shown: Array, faint: float, group: Array | None) -> tuple[Array, Array]:
     """(S, q, q) orthonormal directions of columns, zero where one does not count, and (S,) int how many do.
 
     Parameters
@@ -25,15 +25,15 @@ def whitening(alike: Array, shown: Array, faint: float, beside: Array | None) ->
     alike : (S, q, q) products of the columns, each of norm one, dimensionless.
     shown : (S, q) bool: columns that count.
     faint : share of the strongest direction that one must have.
-    beside : (S,) int: signatures of one number share all columns but the first; None where they share none.
+    group : (S,) int: signatures of one number share all columns but the first; None where they share none.
     """
-    if beside is None:
+    if group is None:
         return eigen_whitening(alike, shown, faint)
     turn, live = np.zeros_like(alike), np.full(len(alike), alike.shape[-1])
     clear = np.zeros(len(alike), dtype=bool)
-    for number in np.unique(beside):
-        own = beside == number
-        turn[own], clear[own] = whitened_beside(alike[own], faint)
+    for number in np.unique(group):
+        members = group == number
+        turn[members], clear[members] = whitened_jointly(alike[members], faint)
     turn[~clear], live[~clear] = eigen_whitening(alike[~clear], shown[~clear], faint)
     return turn, live
 
@@ -46,16 +46,16 @@ def eigen_whitening(alike: Array, shown: Array, faint: float) -> tuple[Array, Ar
     return turn * inverse[:, None, :], live.sum(axis=1)
 
 
-def whitened_beside(alike: Array, faint: float) -> tuple[Array, Array]:
+def whitened_jointly(alike: Array, faint: float) -> tuple[Array, Array]:
     """(S, q, q) orthonormal directions of S first columns beside others, the same for all and projected out once; and
     (S,) bool whether surely all of them count: no eigenvalue is below one over the inverse's trace, nor above q."""
     S, q, _ = alike.shape
     size, turn = eigh(alike[0, 1:, 1:])
     root = turn / np.sqrt(np.maximum(size, ALIKE**2))
     along = alike[:, 0, 1:] @ root @ root.T
-    left = np.maximum(1.0 - (along * alike[:, 0, 1:]).sum(axis=1), ALIKE**2)
-    found = np.zeros((S, q, q))
-    found[:, 0, 0] = 1 / np.sqrt(left)
-    found[:, 1:, 0] = -along / np.sqrt(left)[:, None]
-    found[:, 1:, 1:] = root
-    return found, (alike[:, 0, 0] > 0) & (faint**2 * q * (found**2).sum(axis=(1, 2)) < 1)
+    independent = np.maximum(1.0 - (along * alike[:, 0, 1:]).sum(axis=1), ALIKE**2)
+    turns = np.zeros((S, q, q))
+    turns[:, 0, 0] = 1 / np.sqrt(independent)
+    turns[:, 1:, 0] = -along / np.sqrt(independent)[:, None]
+    turns[:, 1:, 1:] = root
+    return turns, (alike[:, 0, 0] > 0) & (faint**2 * q * (turns**2).sum(axis=(1, 2)) < 1)

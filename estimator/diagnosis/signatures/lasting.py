@@ -8,7 +8,7 @@ import numpy as np
 from estimator.causes.contract import SensorCause, Setting, Shape, Signature
 from estimator.content import held, once
 from estimator.diagnosis.residuals.whitened import ParameterChange, WhitenedResiduals
-from estimator.diagnosis.signatures.products import Beside, Products
+from estimator.diagnosis.signatures.products import Nuisance, Products
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces, sensors_of
 from estimator.session import Array
 
@@ -24,14 +24,14 @@ NOT_SEEN = RECORDED | {"parameters"}
 def traces_of(residuals: WhitenedResiduals, causes: Iterable[Signature]) -> list[Traces]:
     """Traces of every available cause, in their order."""
     setting = residuals.baseline.setting
-    found = []
+    traces = []
     for cause in causes:
         if not cause.available(setting) or (cause.between and residuals.change is None):
             continue
         shapes = tuple(cause.shapes(setting))
         if shapes:
-            found.extend(_hypotheses(residuals, cause, shapes))
-    return found
+            traces.extend(_hypotheses(residuals, cause, shapes))
+    return traces
 
 
 def _hypotheses(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape, ...]) -> list[Traces]:
@@ -55,7 +55,7 @@ def _traces(
 
     What lasts and this session does not show is not told from how differently the sessions absorbed it.
     """
-    trace = residuals.left_of(white, absorbed_before(residuals, cause, shapes) if lasting else 0.0)
+    trace = residuals.remaining_of(white, absorbed_before(residuals, cause, shapes) if lasting else 0.0)
     raw = lengths(white)
     if lasting and residuals.change is not None:
         trace[residuals.rows :, lengths(trace[: residuals.rows]) <= INVISIBLE * raw] = 0.0
@@ -107,7 +107,7 @@ def absorbed_before(
         if setting.beta is None or not cause.available(setting):
             return None
         if columns_of is None and isinstance(cause, SensorCause):
-            each = [of_one_sensor(absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
+            each = [absorbed_terms(absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
             absorbed = absorbed + np.concatenate(each, axis=1)
         else:
             columns = (columns_of or cause.all_columns)(setting, shapes)
@@ -120,17 +120,21 @@ def absorbed_before(
 def alike(change: ParameterChange, recorded: frozenset[str]) -> tuple[tuple[Setting, Array], ...]:
     """Settings of the history that differ for a cause that looks at nothing ``recorded`` but this, each with what all
     sessions in it absorb: (P, R, m) per m/s² (rad/s). A signature at one's parameters depends on nothing else."""
-    found: dict[Hashable, tuple[Setting, Array]] = {}
+    groups: dict[Hashable, tuple[Setting, Array]] = {}
     for earlier in change.earlier:
         setting = earlier.setting
-        seen = [getattr(setting, one.name) for one in fields(setting) if one.name not in NOT_SEEN - recorded]
+        seen = [
+            getattr(setting, attribute.name)
+            for attribute in fields(setting)
+            if attribute.name not in NOT_SEEN - recorded
+        ]
         key = held(seen)
-        absorbed = found[key][1] + earlier.absorbs if key in found else earlier.absorbs
-        found[key] = setting, absorbed
-    return tuple(found.values())
+        absorbed = groups[key][1] + earlier.absorbs if key in groups else earlier.absorbs
+        groups[key] = setting, absorbed
+    return tuple(groups.values())
 
 
-def of_one_sensor(absorbs: Array, terms: Array) -> Array:
+def absorbed_terms(absorbs: Array, terms: Array) -> Array:
     """(P, S·q) dimensionless: what a session absorbs, (P, R) of one sensor, per m/s², of terms (S, R, q), m/s²."""
     return np.asarray(absorbs @ terms.swapaxes(0, 1).reshape(terms.shape[1], -1))
 
@@ -143,7 +147,7 @@ def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
     """
     assert residuals.change is not None
     N, P = residuals.rows, len(residuals.change.deviation)
-    beside = Beside(residuals.change.inverse_root.reshape(P, -1, 5).swapaxes(0, 1), traces.sensor)
+    nuisance = Nuisance(residuals.change.inverse_root.reshape(P, -1, 5).swapaxes(0, 1), traces.sensor)
     raw = np.concatenate([traces.raw, np.zeros((len(traces.raw), 5))], axis=-1)
-    change = np.concatenate([traces.columns[:, N:], beside.each], axis=-1)
-    return replace(traces, raw=raw, products=traces.products.continued(change, residuals.z[N:]), beside=beside)
+    change = np.concatenate([traces.columns[:, N:], nuisance.each], axis=-1)
+    return replace(traces, raw=raw, products=traces.products.continued(change, residuals.z[N:]), nuisance=nuisance)

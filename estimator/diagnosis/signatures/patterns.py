@@ -29,7 +29,7 @@ def highest(setting: Setting) -> int:
     return min(HIGHEST, (positions - 1) // 2)
 
 
-def one_sensor(setting: Setting, patterns: Array, label: tuple[float, ...]) -> Iterator[Shape]:
+def on_each_sensor(setting: Setting, patterns: Array, label: tuple[float, ...]) -> Iterator[Shape]:
     """Patterns (R, q), m/s² (rad/s) per unit amplitude, placed on every sensor in turn."""
     m = len(setting.kinds)
     for i in range(m):
@@ -46,13 +46,13 @@ class Pattern(Signature):
     equation = ""
     units = ()
     advice = "Look at the residuals there; no cause of the catalogue has this pattern."
-    of_one = ""
+    description = ""
     """What is said in place of the sentence where one is counted."""
 
     def where(self, shape: Shape) -> str:
         """Where the pattern lives, in words."""
-        if self.of_one and shape.nonlinear == (1.0,):
-            return self.of_one
+        if self.description and shape.nonlinear == (1.0,):
+            return self.description
         return self.sentence.format(*(f"{v:g}" for v in shape.nonlinear))
 
 
@@ -63,7 +63,7 @@ class SensorHarmonic(Pattern):
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         for order in range(1, highest(setting) + 1):
-            yield from one_sensor(setting, harmonic(setting, order), (float(order),))
+            yield from on_each_sensor(setting, harmonic(setting, order), (float(order),))
 
 
 class RunHarmonic(Pattern):
@@ -75,7 +75,7 @@ class RunHarmonic(Pattern):
         assert setting.flipped is not None
         sign = np.where(setting.flipped, -1.0, 1.0)[:, None]
         for order in range(1, highest(setting) + 1):
-            yield from one_sensor(setting, sign * harmonic(setting, order), (float(order),))
+            yield from on_each_sensor(setting, sign * harmonic(setting, order), (float(order),))
 
 
 class HarmonicSeries(Pattern):
@@ -86,19 +86,19 @@ class HarmonicSeries(Pattern):
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         orders = range(2, highest(setting) + 1)
         if len(orders) >= 2:
-            yield from one_sensor(setting, np.concatenate([harmonic(setting, k) for k in orders], axis=1), ())
+            yield from on_each_sensor(setting, np.concatenate([harmonic(setting, k) for k in orders], axis=1), ())
 
 
 class SensorPeriodic(Pattern):
     identifier = "sensor-periodic"
     sentence = "a wave of {0} periods over the session"
-    of_one = "a wave of one period over the session"
+    description = "a wave of one period over the session"
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         for place in places_in_session(setting):
             for periods in np.arange(2, setting.rows + 1) / 2:
                 wave = 2 * np.pi * periods * place
-                yield from one_sensor(setting, np.stack([np.sin(wave), np.cos(wave)], axis=-1), (float(periods),))
+                yield from on_each_sensor(setting, np.stack([np.sin(wave), np.cos(wave)], axis=-1), (float(periods),))
 
 
 def places_in_session(setting: Setting) -> list[Array]:
@@ -117,7 +117,7 @@ class SensorTrend(Pattern):
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         if setting.rows >= 12:
             place = np.linspace(-1, 1, setting.rows)
-            yield from one_sensor(setting, np.polynomial.legendre.legvander(place, 6)[:, 1:], ())
+            yield from on_each_sensor(setting, np.polynomial.legendre.legvander(place, 6)[:, 1:], ())
 
 
 class TemperatureCurve(Pattern):
@@ -130,7 +130,7 @@ class TemperatureCurve(Pattern):
         t = setting.temperature
         if len(np.unique(t)) >= 6:
             scaled = 2 * (t - t.min()) / np.ptp(t) - 1
-            yield from one_sensor(setting, np.polynomial.legendre.legvander(scaled, 4)[:, 1:], ())
+            yield from on_each_sensor(setting, np.polynomial.legendre.legvander(scaled, 4)[:, 1:], ())
 
 
 class TemperatureWave(Pattern):
@@ -143,7 +143,7 @@ class TemperatureWave(Pattern):
         t = setting.temperature
         place = np.pi * (t - t.min()) / np.ptp(t)
         for order in range(2, min(10, len(np.unique(t)) // 2) + 1):
-            yield from one_sensor(
+            yield from on_each_sensor(
                 setting, np.stack([np.sin(order * place), np.cos(order * place)], -1), (float(order),)
             )
 
@@ -157,7 +157,7 @@ class TemperatureStep(Pattern):
         assert setting.temperature is not None
         levels = np.unique(setting.temperature)
         for threshold in (levels[1:] + levels[:-1]) / 2 if len(levels) <= 200 else ():
-            yield from one_sensor(setting, (setting.temperature > threshold)[:, None] * 1.0, (float(threshold),))
+            yield from on_each_sensor(setting, (setting.temperature > threshold)[:, None] * 1.0, (float(threshold),))
 
 
 class InputCurve(Pattern):
@@ -206,7 +206,7 @@ class CommonPeriodic(Pattern):
     identifier = "common-periodic"
     needs = frozenset({"stand"})
     sentence = "the applied vector, common to all sensors: a wave of {0} periods over the session"
-    of_one = "the applied vector, common to all sensors: a wave of one period over the session"
+    description = "the applied vector, common to all sensors: a wave of one period over the session"
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         assert setting.d_beta is not None

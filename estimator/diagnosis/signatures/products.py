@@ -23,16 +23,16 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import Array
 
 
-def inner(residuals: WhitenedResiduals, left: Array, right: Array) -> Array:
+def inner(residuals: WhitenedResiduals, first: Array, right: Array) -> Array:
     """(K, a, b) left'right of rows (n, a) and (n, b), any unit, in each of m + 2 parts: m sensors, priors, change."""
     R, m = residuals.baseline.residual.shape
-    own = left[: R * m].reshape(R, m, -1).transpose(1, 2, 0) @ right[: R * m].reshape(R, m, -1).transpose(1, 0, 2)
-    rest = [left[rows].T @ right[rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
-    return np.concatenate([own, np.stack(rest)])
+    readings = first[: R * m].reshape(R, m, -1).transpose(1, 2, 0) @ right[: R * m].reshape(R, m, -1).transpose(1, 0, 2)
+    rest = [first[rows].T @ right[rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
+    return np.concatenate([readings, np.stack(rest)])
 
 
 @dataclass(frozen=True, eq=False)
-class Beside:
+class Nuisance:
     """Columns beside those of S traces, the same for many of them, which show in the last P rows only."""
 
     columns: Array
@@ -55,9 +55,9 @@ class Beside:
         """(S, P, w) standard errors per unit: those of every trace."""
         return np.asarray(self.columns[self.number])
 
-    def at(self, chosen: Array | Sequence[int]) -> "Beside":
+    def at(self, chosen: Array | Sequence[int]) -> "Nuisance":
         """Those beside some of the traces, by number or (S,) bool."""
-        return Beside(self.columns, self.number[chosen])
+        return Nuisance(self.columns, self.number[chosen])
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +74,12 @@ class Products:
         """Of traces ``columns`` (S, n, q), standard errors per unit amplitude."""
         R, m = residuals.baseline.residual.shape
         S, n, q = columns.shape
-        own = columns[:, : R * m].reshape(S, R, m, q)
+        by_sensor = columns[:, : R * m].reshape(S, R, m, q)
         rest = [columns[:, rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
-        square = [np.einsum("srmp,srmq->mspq", own, own), *(np.einsum("snp,snq->spq", x, x)[None] for x in rest)]
+        square = [
+            np.einsum("srmp,srmq->mspq", by_sensor, by_sensor),
+            *(np.einsum("snp,snq->spq", x, x)[None] for x in rest),
+        ]
         rows = columns.swapaxes(0, 1).reshape(n, S * q)
         along = inner(residuals, residuals.z[:, None], rows).reshape(m + 2, S, q)
         return cls(np.concatenate(square), along)
@@ -143,17 +146,17 @@ class Projected:
         known = self.residuals.row_freedom[: self.residuals.baseline.residual.size].reshape(-1, m).sum(axis=0)
         return np.asarray(known - np.trace(self.square[:m], axis1=1, axis2=2))
 
-    def shared(self, columns: Array, beside: Beside | None) -> Array:
+    def shared(self, columns: Array, nuisance: Nuisance | None) -> Array:
         """(K, f, S, q + w) A'X of traces, ``columns`` (S, n, q), standard errors per unit."""
         A, (S, n, q) = self.attributed, columns.shape
-        own = inner(self.residuals, A, columns.swapaxes(0, 1).reshape(n, S * q))
-        own = own.reshape(len(own), A.shape[1], S, q)
-        if beside is None:
-            return own
-        found = np.zeros((*own.shape[:3], q + beside.width))
-        found[..., :q] = own
-        found[-1, ..., q:] = (A[n - beside.rows :].T @ beside.columns)[beside.number].swapaxes(0, 1)
-        return found
+        products = inner(self.residuals, A, columns.swapaxes(0, 1).reshape(n, S * q))
+        products = products.reshape(len(products), A.shape[1], S, q)
+        if nuisance is None:
+            return products
+        extended = np.zeros((*products.shape[:3], q + nuisance.width))
+        extended[..., :q] = products
+        extended[-1, ..., q:] = (A[n - nuisance.rows :].T @ nuisance.columns)[nuisance.number].swapaxes(0, 1)
+        return extended
 
     @cached_property
     def explained(self) -> Array:
@@ -166,15 +169,15 @@ class Projected:
         return inner(self.residuals, self.attributed, self.z[:, None])[..., 0]
 
     def __call__(
-        self, products: Sequence[Products], columns: Sequence[Array], beside: Sequence[Beside | None] | None = None
-    ) -> "Left":
+        self, products: Sequence[Products], columns: Sequence[Array], nuisances: Sequence[Nuisance | None] | None = None
+    ) -> "RemainingProducts":
         """What the findings leave of the products of traces, ``columns`` (S, n, q) each, standard errors per unit."""
-        each = [self.shared(x, b) for x, b in zip(columns, beside or [None] * len(columns), strict=True)]
-        return Left(self, tuple(products), np.concatenate(each, axis=2))
+        each = [self.shared(x, b) for x, b in zip(columns, nuisances or [None] * len(columns), strict=True)]
+        return RemainingProducts(self, tuple(products), np.concatenate(each, axis=2))
 
 
 @dataclass(frozen=True, eq=False)
-class Left:
+class RemainingProducts:
     """What the findings leave of the products of S traces of q amplitudes, worked out as far as it is asked for."""
 
     projected: Projected
@@ -203,10 +206,10 @@ class Left:
         along = before.along - np.einsum("kfsq,f->ksq", C, p.explained) - np.einsum("fsq,kf->ksq", c, p.rest)
         return Products(before.square - cross - np.swapaxes(cross, -1, -2), along)
 
-    def at(self, chosen: Array) -> "Left":
+    def at(self, chosen: Array) -> "RemainingProducts":
         """Of some of the traces, by rising number or (S,) bool."""
         ends = np.cumsum([0, *(p.along.shape[1] for p in self.before)])
         number = np.arange(ends[-1])[chosen]
         of = np.searchsorted(ends, number, side="right") - 1
         before = [self.before[k].at(number[of == k] - ends[k]) for k in np.unique(of)]
-        return Left(self.projected, tuple(before), self.shared[:, :, number])
+        return RemainingProducts(self.projected, tuple(before), self.shared[:, :, number])

@@ -11,7 +11,7 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.session import ACCELEROMETER, Array
 
 
-def scatter_beside(baseline: Baseline, sensor: Array, energy: Array, freedom: Array) -> tuple[Array, Array]:
+def reference_scatter(baseline: Baseline, sensor: Array, energy: Array, freedom: Array) -> tuple[Array, Array]:
     """(S,) energy and (S,) degrees of freedom of the readings that each of S signatures must stand out of.
 
     ``sensor`` (S,) int that each is blamed on, −1 for none; ``energy`` (S, m), dimensionless, and ``freedom`` (S, m)
@@ -19,8 +19,8 @@ def scatter_beside(baseline: Baseline, sensor: Array, energy: Array, freedom: Ar
     contradicts it.
     """
     sharing = sharing_scatter(baseline)[sensor]
-    one = (sharing.sum(axis=-1) < len(baseline.unstated)) | np.isinf(baseline.row_sigma).any()
-    both = np.where(one, shared(baseline, energy, freedom, sharing), pooled(baseline, energy, freedom))
+    is_shared = (sharing.sum(axis=-1) < len(baseline.unstated)) | np.isinf(baseline.row_sigma).any()
+    both = np.where(is_shared, shared(baseline, energy, freedom, sharing), pooled(baseline, energy, freedom))
     return both[0], both[1]
 
 
@@ -31,11 +31,11 @@ def in_unknown_noise(baseline: Baseline, sensor: Array) -> Array:
 
 def shared(baseline: Baseline, energy: Array, freedom: Array, sharing: Array) -> tuple[Array, Array]:
     """(S,) of the scatter of sensors (S, m) that share the estimate of a row's direction, as of one."""
-    one, free = (energy * sharing).sum(axis=-1), (freedom * sharing).sum(axis=-1)
+    total, free = (energy * sharing).sum(axis=-1), (freedom * sharing).sum(axis=-1)
     if baseline.expected_ratio is None:
-        return one, free
+        return total, free
     alone = sharing.sum(axis=-1) == 1
-    return with_the_others(one, free, np.where(alone, sharing @ baseline.expected_ratio, np.nan))
+    return with_the_others(total, free, np.where(alone, sharing @ baseline.expected_ratio, np.nan))
 
 
 def pooled(baseline: Baseline, energy: Array, freedom: Array) -> tuple[Array, Array]:
@@ -48,8 +48,8 @@ def pooled(baseline: Baseline, energy: Array, freedom: Array) -> tuple[Array, Ar
     unstated = baseline.unstated
     each = np.where(unstated, energy / np.maximum(freedom, 1.0), 1.0)
     doubt = (np.where(unstated, each, 0.0) ** 2 / np.maximum(freedom, 1.0)).sum(axis=-1)
-    told = each.sum(axis=-1) ** 2 / np.maximum(doubt, np.finfo(float).tiny)
-    return each.mean(axis=-1) * told, told
+    effective = each.sum(axis=-1) ** 2 / np.maximum(doubt, np.finfo(float).tiny)
+    return each.mean(axis=-1) * effective, effective
 
 
 def sharing_scatter(baseline: Baseline) -> Array:

@@ -22,8 +22,8 @@ from scipy.special import chdtrc, erfc
 
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.directions import ALIKE, whitening
-from estimator.diagnosis.signatures.products import Left, Products, Projected
-from estimator.diagnosis.signatures.scatter import in_unknown_noise, scatter_beside
+from estimator.diagnosis.signatures.products import Products, Projected, RemainingProducts
+from estimator.diagnosis.signatures.scatter import in_unknown_noise, reference_scatter
 from estimator.diagnosis.signatures.traces import INVISIBLE, Group, Scored, Traces, sensors_of
 from estimator.session import Array
 from estimator.significance import equivalent_chi2
@@ -57,7 +57,7 @@ ones that contain them, so that alternatives stay few (docs/diagnosis/study.md, 
 class Fit:
     """S signatures of q amplitudes, each fitted alone to what the findings leave. K parts of the rows."""
 
-    products: Products | Left
+    products: Products | RemainingProducts
     """Of what the findings leave."""
     value: Array
     """(S, q) amplitudes, in the causes' SI units."""
@@ -69,14 +69,16 @@ class Fit:
     """(S, q, q) amplitudes of orthonormal directions of each signature; zero where one does not count."""
 
     @classmethod
-    def of(cls, products: Products | Left, shown: Array, faint: float, beside: Array | None = None) -> "Fit":
+    def of(
+        cls, products: Products | RemainingProducts, shown: Array, faint: float, group: Array | None = None
+    ) -> "Fit":
         """``shown`` (S, q) bool: columns that count; ``faint``: share of the strongest direction that one must have;
-        ``beside`` (S,) int: of which signatures all columns but the first are the same, those of one number."""
+        ``group`` (S,) int: of which signatures all columns but the first are the same, those of one number."""
         whole, along = products.whole
         norms = np.sqrt(np.maximum(np.diagonal(whole, axis1=1, axis2=2), 0.0))
         unit = np.where(shown, 1 / np.where(shown & (norms > 0), norms, 1.0), 0.0)
         alike = whole * unit[:, :, None] * unit[:, None, :]
-        turn, live = whitening(alike, shown, faint, beside)
+        turn, live = whitening(alike, shown, faint, group)
         directions = unit[:, :, None] * turn
         length = (along[:, None, :] @ directions)[:, 0]
         value = (directions @ length[..., None])[..., 0]
@@ -93,30 +95,30 @@ class Fit:
         unknown = in_unknown_noise(baseline, sensor)
         energy, freedom = np.full(len(sensor), np.nan), np.full(len(sensor), np.nan)
         if unknown.any():
-            left = self.at(unknown).left_of_sensors(projected)
-            energy[unknown], freedom[unknown] = scatter_beside(baseline, sensor[unknown], *left)
+            remaining = self.at(unknown).remaining_of_sensors(projected)
+            energy[unknown], freedom[unknown] = reference_scatter(baseline, sensor[unknown], *remaining)
         statistic = equivalent_chi2(self.power, self.freedom, energy, freedom)
         return statistic, np.where(self.freedom > 0, tail_of(np.maximum(self.freedom, 1), statistic), 1.0)
 
-    def left_of_sensors(self, projected: Projected) -> tuple[Array, Array]:
+    def remaining_of_sensors(self, projected: Projected) -> tuple[Array, Array]:
         """(S, m) energy, dimensionless, and (S, m) degrees of freedom that each signature leaves of every sensor."""
-        m, own = len(projected.energy), self.products.parts
-        square, moved = own.square[:m], self.value[..., None]
-        fitted = (np.swapaxes(moved, 1, 2) @ (square @ moved - 2 * own.along[:m, ..., None]))[..., 0, 0]
+        m, parts = len(projected.energy), self.products.parts
+        square, moved = parts.square[:m], self.value[..., None]
+        fitted = (np.swapaxes(moved, 1, 2) @ (square @ moved - 2 * parts.along[:m, ..., None]))[..., 0, 0]
         used = (self.directions * (square @ self.directions)).sum(axis=(-2, -1))
         return np.maximum(projected.energy + fitted.T, 0.0), projected.freedom - used.T
 
 
-def open_beside(raw: Array) -> bool:
+def has_nuisance(raw: Array) -> bool:
     """Whether signatures are one amplitude beside columns left open; ``raw`` (S, q) as in `Traces`."""
     return raw.shape[1] > 1 and bool((raw[:, 0] > 0).any()) and not raw[:, 1:].any()
 
 
 def tail_of(freedom: Array, statistic: Array) -> Array:
     """(S,) p-values of χ² (S,) with degrees of ``freedom`` (S,) int; of one degree it is the normal distribution's."""
-    found, one = np.empty(len(statistic)), freedom == 1
-    found[one], found[~one] = erfc(np.sqrt(statistic[one] / 2)), chdtrc(freedom[~one], statistic[~one])
-    return found
+    tails, single = np.empty(len(statistic)), freedom == 1
+    tails[single], tails[~single] = erfc(np.sqrt(statistic[single] / 2)), chdtrc(freedom[~single], statistic[~single])
+    return tails
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,15 +179,17 @@ class Scores:
 
 def score(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: Array) -> list[Scored]:
     """Score every shape on what the findings leave: ``attributed`` (n, f) orthonormal traces, dimensionless."""
-    found = scores(residuals, traces, attributed)
-    return [found.scored(k) for k in range(len(found.cause))]
+    results = scores(residuals, traces, attributed)
+    return [results.scored(k) for k in range(len(results.cause))]
 
 
 def scores(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: Array) -> Scores:
     """The same as arrays; causes of equally many amplitudes are scored as one."""
     projected = Projected.of(residuals, attributed)
     by_width = sorted((k for k, t in enumerate(traces) if t.shapes), key=lambda k: traces[k].width)
-    parts = [_scored(projected, traces, list(own)) for _, own in groupby(by_width, key=lambda k: traces[k].width)]
+    parts = [
+        _scored(projected, traces, list(members)) for _, members in groupby(by_width, key=lambda k: traces[k].width)
+    ]
     if not parts:
         return Scores(tuple(traces), *(np.zeros(0, dtype=int) for _ in range(7)))
     columns = [np.concatenate(x) for x in zip(*parts, strict=True)]
@@ -195,26 +199,31 @@ def scores(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: A
 
 def _scored(projected: Projected, traces: Sequence[Traces], chosen: Sequence[int]) -> tuple[Array, ...]:
     """The columns of `Scores` of some of the traces, of equally many amplitudes."""
-    own = [traces[k] for k in chosen]
-    cause = np.repeat(chosen, [len(t.shapes) for t in own])
-    shape, sensor = np.concatenate([np.arange(len(t.shapes)) for t in own]), np.concatenate([t.sensor for t in own])
-    raw = np.concatenate([t.raw for t in own])
-    products = projected([t.products for t in own], [t.columns for t in own], [t.beside for t in own])
+    selected = [traces[k] for k in chosen]
+    cause = np.repeat(chosen, [len(t.shapes) for t in selected])
+    shape, sensor = (
+        np.concatenate([np.arange(len(t.shapes)) for t in selected]),
+        np.concatenate([t.sensor for t in selected]),
+    )
+    raw = np.concatenate([t.raw for t in selected])
+    products = projected([t.products for t in selected], [t.columns for t in selected], [t.nuisance for t in selected])
     norms = np.sqrt(np.maximum(np.diagonal(products.whole[0], axis1=1, axis2=2), 0.0))
     shown = norms > np.maximum(INVISIBLE * raw, 1e-300)
-    fit = Fit.of(products, shown, FAINT, sensor if open_beside(raw) else None)
+    fit = Fit.of(products, shown, FAINT, sensor if has_nuisance(raw) else None)
     statistic, p_value = fit.tested(projected, sensor)
-    kept = (shown & (raw > 0)).any(axis=1)
-    asked = np.flatnonzero(kept & (p_value < WORTH))
-    for k in np.unique(cause[asked]):
-        of_cause = asked[cause[asked] == k]
-        kept[of_cause] = within_reason(projected, traces[k], shape[of_cause], fit.value[of_cause])
-    asked = asked[kept[asked]]
-    kept[asked] = shows_itself(projected, [traces[k] for k in cause[asked]], fit.at(asked), raw[asked], sensor[asked])
-    places = np.array([max(t.places, 1) for t in own])[np.searchsorted(chosen, cause)]
+    visible = (shown & (raw > 0)).any(axis=1)
+    tested = np.flatnonzero(visible & (p_value < WORTH))
+    for k in np.unique(cause[tested]):
+        of_cause = tested[cause[tested] == k]
+        visible[of_cause] = within_reason(projected, traces[k], shape[of_cause], fit.value[of_cause])
+    tested = tested[visible[tested]]
+    visible[tested] = is_visible_within(
+        projected, [traces[k] for k in cause[tested]], fit.at(tested), raw[tested], sensor[tested]
+    )
+    places = np.array([max(t.places, 1) for t in selected])[np.searchsorted(chosen, cause)]
     log_evidence = bayes_factor(statistic, fit.freedom) - np.log(places)
-    found = (cause, shape, sensor, statistic, fit.freedom, p_value, log_evidence)
-    return tuple(x[kept] for x in found)
+    columns = (cause, shape, sensor, statistic, fit.freedom, p_value, log_evidence)
+    return tuple(x[visible] for x in columns)
 
 
 def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) -> Scored:
@@ -230,7 +239,7 @@ def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) ->
     return again
 
 
-def shows_itself(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: Array, sensor: Array) -> Array:
+def is_visible_within(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: Array, sensor: Array) -> Array:
     """(S,) bool: whether shapes of causes that act within the session show there, and not only in what changed since
     the history.
 
@@ -239,22 +248,22 @@ def shows_itself(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: 
     """
     if projected.residuals.change is None or not len(sensor):
         return np.ones(len(sensor), dtype=bool)
-    left = fit.products.parts
-    within = Products(left.square[:-1], left.along[:-1])
-    own = np.where(raw > 0, fit.value, 0.0)
-    seen = (own[:, None, :] @ within.whole[0] @ own[..., None])[:, 0, 0]
+    parts = fit.products.parts
+    within = Products(parts.square[:-1], parts.along[:-1])
+    amplitude = np.where(raw > 0, fit.value, 0.0)
+    seen = (amplitude[:, None, :] @ within.whole[0] @ amplitude[..., None])[:, 0, 0]
     exempt = np.array([t.cause.between or t.cause.nameless for t in traces])
     exempt |= (raw > 0).all(axis=1) & (seen < TOO_FAINT**2)
     places = np.array([max(t.places, 1) for t in traces])
-    rest = Fit.of(within, own != 0, ALIKE)
+    rest = Fit.of(within, amplitude != 0, ALIKE)
     return np.asarray(exempt | (rest.tested(projected, sensor)[1] * places < ALONE))
 
 
 def tail(projected: Projected, sensor: int, basis: Array) -> float:
     """p-value of what a signature blamed on a sensor (−1 for none) explains through ``basis`` (n, q), orthonormal and
     orthogonal to the findings."""
-    own = projected([Products.of(projected.residuals, basis[None])], [basis[None]])
-    fit = Fit.of(own, np.ones((1, basis.shape[1]), dtype=bool), ALIKE)
+    remaining = projected([Products.of(projected.residuals, basis[None])], [basis[None]])
+    fit = Fit.of(remaining, np.ones((1, basis.shape[1]), dtype=bool), ALIKE)
     return float(fit.tested(projected, np.array([sensor]))[1][0])
 
 
@@ -266,16 +275,16 @@ def within_reason(projected: Projected, traces: Traces, chosen: Array, amplitude
     explain a small residual by an enormous effect.
     """
     setting, cause = projected.residuals.baseline.setting, traces.cause
-    shapes, kept = [traces.shapes[s] for s in chosen], np.ones(len(chosen), dtype=bool)
+    shapes, plausible = [traces.shapes[s] for s in chosen], np.ones(len(chosen), dtype=bool)
     if cause.bounded:
-        kept[:] = [cause.plausible(s, float(a[0])) for s, a in zip(shapes, amplitude, strict=True)]
+        plausible[:] = [cause.plausible(s, float(a[0])) for s, a in zip(shapes, amplitude, strict=True)]
     if setting.beta is None:
-        return kept
+        return plausible
     norm = setting.norm if traces.common else setting.norm[traces.sensor[chosen], None]
     sensor = traces.sensor[chosen].tolist()
     columns = np.stack([s.columns if i < 0 else s.columns[:, i : i + 1] for s, i in zip(shapes, sensor, strict=True)])
     size = np.abs((columns @ amplitude[:, None, : columns.shape[-1], None])[..., 0]).max(axis=1)
-    return np.asarray(kept & (size < LARGEST * norm).all(axis=1))
+    return np.asarray(plausible & (size < LARGEST * norm).all(axis=1))
 
 
 def bayes_factor(statistic: Array | float, q: Array | int) -> Array:

@@ -18,7 +18,7 @@ that noise reaches B in no more than a share 1/B of all sensors (Markov).
 import numpy as np
 
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.autocorrelation import FEWEST, own_residual
+from estimator.diagnosis.signatures.autocorrelation import FEWEST, sensor_residual
 from estimator.session import Array
 
 STATES = np.array([-1.0, 0.0, 1.0])
@@ -40,7 +40,7 @@ def switching(residuals: WhitenedResiduals, attributed: Array, sensor: int, leas
     ``attributed`` (n, f) orthonormal traces of the findings, dimensionless; ``least``: part of the variance that the
     residuals are whitened by that is known to be noise.
     """
-    root, y = own_residual(residuals, attributed, sensor)
+    root, y = sensor_residual(residuals, attributed, sensor)
     if len(y) < FEWEST:
         return -np.inf
     return likeliest_states(root, y, residuals.baseline.design[:, sensor], least)[0]
@@ -52,8 +52,8 @@ def likeliest_states(root: Array, y: Array, absorbed: Array, least: float = 0.0)
     The search starts from what is left, and from that with a direction that the calibration absorbs put back;
     ``absorbed`` (R, p), of any unit.
     """
-    left = unit(root @ y)
-    starts = [left, *(left + share * unit(column) for column in absorbed.T for share in PUT_BACK)]
+    remaining = unit(root @ y)
+    starts = [remaining, *(remaining + share * unit(column) for column in absorbed.T for share in PUT_BACK)]
     value, states = climbed(root, y, np.unique(np.where(np.array(starts) < 0, 0, 2), axis=0), least)
     best = int(np.argmax(value))
     return float(value[best]), states[best]
@@ -71,11 +71,11 @@ def climbed(root: Array, y: Array, state: Array, least: float) -> tuple[Array, A
     state, best, moving = state.copy(), np.full(len(state), -np.inf), np.arange(len(state))
     while len(moving):
         now = state[moving]
-        s, own = STATES[now], USUAL[now]
+        s, usual = STATES[now], USUAL[now]
         step, moved = STATES - s[..., None], s @ gram
         square = (s * moved).sum(axis=1)[:, None, None] + 2 * step * moved[..., None]
         square += step**2 * np.diagonal(gram)[:, None]
-        prior = own.sum(axis=1)[:, None, None] + USUAL - own[..., None]
+        prior = usual.sum(axis=1)[:, None, None] + USUAL - usual[..., None]
         value = prior + gained(y, (s @ along)[:, None, None] + step * along[:, None], square, least)
         place = value.reshape(len(moving), -1).argmax(axis=1)
         highest = value.reshape(len(moving), -1)[np.arange(len(moving)), place]
@@ -91,5 +91,5 @@ def gained(y: Array, along: Array, square: Array, least: float) -> Array:
     both of any shape and dimensionless."""
     n, energy = len(y), max(float(y @ y), FAINTEST)
     explained = np.where(square > FAINTEST * n, along**2 / np.maximum(square, FAINTEST), 0.0)
-    left = np.maximum(energy - explained, max(least * n, FAINTEST * energy))
-    return np.asarray(0.5 * n * np.log(np.maximum(energy / left, 1.0)) - 0.5 * np.log(n))
+    remaining = np.maximum(energy - explained, max(least * n, FAINTEST * energy))
+    return np.asarray(0.5 * n * np.log(np.maximum(energy / remaining, 1.0)) - 0.5 * np.log(n))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.causes.contract import Setting, Shape, Signature
-from estimator.diagnosis.signatures.products import Beside, Products
+from estimator.diagnosis.signatures.products import Nuisance, Products
 from estimator.session import Array
 
 INVISIBLE = 1e-3
@@ -41,7 +41,7 @@ class Traces:
     """Number of shapes that are visible at all: what the cause's prior is shared among."""
     products: Products
     """Of the columns, those beside them included, with one another and with the residuals."""
-    beside: Beside | None = None
+    nuisance: Nuisance | None = None
     """Columns that are no amplitudes of the cause, but left open; None where there are none."""
 
     @property
@@ -52,16 +52,16 @@ class Traces:
     @property
     def width(self) -> int:
         """Number of amplitudes, and of columns beside them."""
-        return self.columns.shape[-1] + (0 if self.beside is None else self.beside.width)
+        return self.columns.shape[-1] + (0 if self.nuisance is None else self.nuisance.width)
 
     def whole(self, k: int) -> tuple[Shape, Array]:
         """One shape and its trace (n, width), standard errors per unit; what is beside acts on no reading."""
         shape, columns = self.shapes[k], self.columns[k]
-        if self.beside is None:
+        if self.nuisance is None:
             return shape, columns
-        rows = np.zeros((len(columns), self.beside.width))
-        rows[len(columns) - self.beside.rows :] = self.beside.columns[self.beside.number[k]]
-        silent = np.zeros((*shape.columns.shape[:2], self.beside.width))
+        rows = np.zeros((len(columns), self.nuisance.width))
+        rows[len(columns) - self.nuisance.rows :] = self.nuisance.columns[self.nuisance.number[k]]
+        silent = np.zeros((*shape.columns.shape[:2], self.nuisance.width))
         wide = replace(shape, columns=np.concatenate([shape.columns, silent], axis=-1))
         return wide, np.concatenate([columns, rows], axis=1)
 
@@ -69,13 +69,13 @@ class Traces:
         """The shapes on a sensor, and those of no sensor; the prior is still shared among all."""
         return self.chosen(np.flatnonzero(np.isin(self.sensor, [-1, *sensors])).tolist())
 
-    def chosen(self, own: Sequence[int]) -> "Traces":
+    def chosen(self, numbers: Sequence[int]) -> "Traces":
         """Some of the shapes, by number; the prior is still shared among all."""
-        shapes, lasting = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
-        columns, products = self.columns.swapaxes(0, 1)[:, own].swapaxes(0, 1), self.products.at(own)
-        beside = None if self.beside is None else self.beside.at(own)
-        sensor, raw = self.sensor[own], self.raw[own]
-        return Traces(self.cause, shapes, lasting, sensor, columns, raw, self.places, products, beside)
+        shapes, lasting = tuple(self.shapes[k] for k in numbers), tuple(self.lasting[k] for k in numbers)
+        columns, products = self.columns.swapaxes(0, 1)[:, numbers].swapaxes(0, 1), self.products.at(numbers)
+        nuisance = None if self.nuisance is None else self.nuisance.at(numbers)
+        sensor, raw = self.sensor[numbers], self.raw[numbers]
+        return Traces(self.cause, shapes, lasting, sensor, columns, raw, self.places, products, nuisance)
 
 
 @dataclass(frozen=True, eq=False)

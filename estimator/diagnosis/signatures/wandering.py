@@ -35,25 +35,25 @@ def log_wandering(residuals: WhitenedResiduals) -> float:
     """ln evidence of courses of all zeros, each its own, against no effect; the likelier kind of course."""
     variance = residuals.baseline.variance
     rows, m = variance.shape
-    found = []
+    values = []
     for waves in (walk(rows), walking_rate(rows)):
         columns = np.zeros((rows, m, m, waves.shape[1]))
         columns[:, np.arange(m), np.arange(m)] = waves[:, None, :] * np.sqrt(variance)[..., None]
         trace = residuals.trace(columns.reshape(rows, m, -1), 0.0)
-        found.append(log_mean(log_marginal(residuals, trace, SPREADS)))
-    return max(found)
+        values.append(log_mean(log_marginal(residuals, trace, SPREADS)))
+    return max(values)
 
 
 def log_turning(residuals: WhitenedResiduals, sizes: Array) -> float:
     """ln evidence of a block that turned before one of the rows against no effect; ``sizes`` (G,) g."""
-    setting, found = residuals.baseline.setting, []
+    setting, values = residuals.baseline.setting, []
     whole = setting.through(turned(setting.n))
     for row in range(1, setting.rows):
         trace = residuals.trace(whole * (np.arange(setting.rows) >= row)[:, None, None], 0.0)
         size = np.linalg.norm(trace, axis=0)
         seen = size > INVISIBLE * np.linalg.norm(residuals.whitened(whole), axis=0)
-        found.append(log_mean(log_marginal(residuals, trace[:, seen] / size[seen], sizes)) if seen.any() else 0.0)
-    return log_mean(np.array(found))
+        values.append(log_mean(log_marginal(residuals, trace[:, seen] / size[seen], sizes)) if seen.any() else 0.0)
+    return log_mean(np.array(values))
 
 
 def log_marginal(residuals: WhitenedResiduals, trace: Array, sizes: Array) -> Array:

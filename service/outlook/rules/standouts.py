@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from estimator.health.population import standing_out
+from estimator.health.population import outliers
 from service.outlook.populations import Placed, Population
 from service.outlook.populations_store import FarOut, Populations
 from service.outlook.words.standouts import drift_stands_out, lot_stands_out
@@ -31,7 +31,7 @@ def standouts(far: FarOut) -> tuple[Standout, ...]:
 def _units(far: FarOut) -> list[Standout]:
     placed = [(one, population) for population in far.populations for one in population.fast]
     placed.sort(key=lambda pair: -abs(pair[0].z))
-    out = standing_out([one.z for one, _ in placed], among=far.rates)
+    out = outliers([one.z for one, _ in placed], among=far.rates)
     return [_unit(*pair) for pair, is_out in zip(placed, out, strict=True) if is_out]
 
 
@@ -41,7 +41,7 @@ def _unit(one: Placed, population: Population) -> Standout:
 
 def _lots(far: FarOut) -> list[Standout]:
     lots = [(*lot, population) for population in far.populations for lot in population.far_lots]
-    out = standing_out([z for _, z, _ in lots], among=far.lots)
+    out = outliers([z for _, z, _ in lots], among=far.lots)
     return [
         Standout(None, lot_stands_out(lot, population.unit_type, population.parameter))
         for (lot, _, population), is_out in zip(lots, out, strict=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator.calibration import calibrate
-from estimator.calibration.free.completion import ASKED, asked
+from estimator.calibration.free.completion import MOST_CANDIDATES, candidate_directions
 from estimator.errors import ScheduleError
 from tests.estimator.calibration.free_sessions import session, sphere, spread_axes, truth
 from tests.estimator.test_static import RATE, raw
@@ -42,8 +42,8 @@ def test_no_fewer_orientations_would_do():
 def test_of_a_large_block_a_few_axes_that_span_space_are_asked():
     turn = np.linspace(0, np.pi, 60)
     axes = np.vstack([np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]), [0.0, 0.0, 1.0]])
-    chosen = asked(axes)
-    assert chosen.shape == (ASKED, 3)
+    chosen = candidate_directions(axes)
+    assert chosen.shape == (MOST_CANDIDATES, 3)
     assert np.linalg.matrix_rank(chosen) == 3
 
 

@@ -8,8 +8,8 @@ import pytest
 from estimator import read_session
 from estimator.calibration.free import accelerometer_rows, calibrate_free
 from estimator.calibration.free.model import Rows, Unknowns, jacobian, linearise, predicted
-from estimator.calibration.free.optional import around
-from estimator.calibration.free.schedule import sorted_out
+from estimator.calibration.free.optional import starts_around
+from estimator.calibration.free.schedule import classified
 from estimator.calibration.free.solve import search
 from estimator.calibration.free.start import starts
 from tests.builders import arbitrary_orientations
@@ -192,7 +192,7 @@ def test_nothing_is_looked_for_around_a_search_that_has_not_ended():
     document = arbitrary_orientations(3, orientations=12, direction_sigma_deg=1.0)
     document["table"]["A1"][1] = 0.0
     absurd = read_session(document)
-    rows, _ = accelerometer_rows(absurd, sorted_out(absurd)[0], 9.81)
+    rows, _ = accelerometer_rows(absurd, classified(absurd)[0], 9.81)
     found = search(rows, starts(rows)[0], False)
     assert not found.converged
-    assert around(found) == []
+    assert starts_around(found) == []

@@ -62,7 +62,7 @@ def test_sound_sessions_are_called_sound() -> None:
     rng, named = np.random.default_rng(3), 0
     for seed in range(SESSIONS):
         run = replace(QUICK, rates=(float(rng.uniform(2, 20)),), lean=tuple(5e-4 * rng.standard_normal(2)))
-        arms = lever_arms(prepared(turned(run, seed))).found
+        arms = lever_arms(prepared(turned(run, seed))).estimates
         named += any(arm.named or arm.other for arm in arms)
     assert named <= 2, "1 %; the level is 0.3 %"
 
@@ -73,7 +73,7 @@ def test_a_table_out_of_level_is_no_lever_arm_however_coarse_its_rows(row: float
     """Leaning by 2.4°, the sensors feel half a m/s² go round; where a row holds a start its mean angle is not known."""
     for seed in range(3):
         run = Run(lean=(0.03, 0.03), row=row, rates=(rate,), dwell=60.0)
-        arms = lever_arms(prepared(turned(run, seed))).found
+        arms = lever_arms(prepared(turned(run, seed))).estimates
         assert [(arm.named, arm.other) for arm in arms] == [(False, "")] * 2
 
 
@@ -190,7 +190,7 @@ def test_many_turns_are_cut_into_fewer_pieces() -> None:
     made = turned(replace(AWAY, stops=(0.0, 180.0) * 12, dwell=12.0, row=0.5, rates=(20.0,)))
     arms = lever_arms(prepared(made))
     assert len(arms.pieces.time) < 1000
-    assert [arm.named for arm in arms.found] == [True, True]
+    assert [arm.named for arm in arms.estimates] == [True, True]
 
 
 def test_what_no_turn_shows_is_said() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from estimator.health.population import group_standing, spread, standing, standing_out
+from estimator.health.population import group_standing, outliers, spread, standing
 
 
 def test_a_population_that_agrees_has_no_spread_of_its_own() -> None:
@@ -46,12 +46,12 @@ def test_the_furthest_of_all_stands_out_at_the_level_of_all(members: int) -> Non
     """P(the largest of n |z| is beyond) = 1 %."""
     beyond = stats.norm.isf((1 - 0.99 ** (1 / members)) / 2)
     others = [0.0] * (members - 1)
-    assert standing_out([0.999 * beyond, *others])[0] is False
-    assert standing_out([-1.001 * beyond, *others])[0] is True
+    assert outliers([0.999 * beyond, *others])[0] is False
+    assert outliers([-1.001 * beyond, *others])[0] is True
 
 
 def test_of_nobody_nobody_stands_out() -> None:
-    assert standing_out([]) == ()
+    assert outliers([]) == ()
 
 
 def test_a_group_stands_by_its_mean_and_what_its_members_are_known_to() -> None:

@@ -6,7 +6,7 @@ import pytest
 from benchmarks.tails.reweighting import _squares, reweighted
 from estimator.health.fits import PART_KINDS, WALKS, Readings, fits
 from estimator.health.pooled import Prior
-from estimator.health.posterior import weighed
+from estimator.health.posterior import hypotheses_of
 from estimator.health.shapes import Kind, shapes
 from estimator.session import Array
 
@@ -25,7 +25,7 @@ def test_squared_errors_beside_a_jump_are_those_of_the_joint_normal_law() -> Non
     family = shapes(given.time)
     jumps = np.where((PART_KINDS == Kind.JUMP) & (np.arange(len(PART_KINDS)) == 2), 1e18, 0.0)
     found = fits(given, family)
-    square = _squares(found, given, weighed(found, Prior(STILL, STILL, jumps, NEVER)))
+    square = _squares(found, given, hypotheses_of(found, Prior(STILL, STILL, jumps, NEVER)))
     total = 0.6**2 + 0.1**2 + 0.2**2
     assert square[:, 0] == pytest.approx([s**2 - s**4 / total + (s**2 * 0.5 / total) ** 2 for s in (0.1, 0.2)])
 

@@ -6,7 +6,7 @@ from scipy import stats
 
 from benchmarks.stands.__main__ import dated, excursion, found, named, steady, turned
 from benchmarks.stands.fleets import ARCSEC, Fleet, motions_of
-from estimator.health.stand_events import Weighed
+from estimator.health.stand_events import EventTest
 from estimator.health.stands import StandState, stand_states
 
 FLEETS = 10
@@ -58,6 +58,6 @@ def test_several_shifts_of_one_stand_are_told_apart() -> None:
 
 def test_evidence_does_not_underflow() -> None:
     """The p-value of both is zero."""
-    weak, strong = (Weighed(chi2, 40.0, 3, 100) for chi2 in (1e19, 1e22))
+    weak, strong = (EventTest(chi2, 40.0, 3, 100) for chi2 in (1e19, 1e22))
     assert (weak.p_value, strong.p_value) == (0.0, 0.0)
     assert weak.evidence < strong.evidence

@@ -46,7 +46,7 @@ def one_by_one(sets: Sets, j: int, out: set[int]) -> tuple[Array, Array]:
         left = np.eye(len(changes.y))[at] - drag
         others = np.delete(drag, at, axis=1)
         seen.append(left @ changes.y)
-        known.append(left @ (changes.own + changes.origin) @ left.T + changes.scatter**2 * others @ others.T)
+        known.append(left @ (changes.current + changes.origin) @ left.T + changes.scatter**2 * others @ others.T)
     weights = np.exp(np.array(logs) - max(logs))
     weights /= weights.sum()
     weights = np.where(weights > 1e-4, weights, 0.0) / weights[weights > 1e-4].sum()

@@ -6,7 +6,7 @@ import pytest
 from estimator import diagnose
 from estimator.diagnosis.explanation.gain import score
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.prediction import FOLDS, predicted, unaided
+from estimator.diagnosis.residuals.prediction import FOLDS, predicted, predicted_without_effects
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import change, found, scene, with_readings
 
@@ -23,9 +23,8 @@ def test_a_wrong_cause_gains_nothing() -> None:
     where = scene(ACCELEROMETER, 0)
     baseline = baseline_of(where.measured(1))
     wrong = change("stand-drift", where)[..., None]
-    assert (
-        score(baseline, predicted(baseline, [[wrong]] * FOLDS)).log_score < score(baseline, unaided(baseline)).log_score
-    )
+    with_wrong = predicted(baseline, [[wrong]] * FOLDS)
+    assert score(baseline, with_wrong).log_score < score(baseline, predicted_without_effects(baseline)).log_score
 
 
 def test_without_a_finding_before_is_after() -> None:
@@ -44,7 +43,7 @@ def test_excess_noise_costs_its_width_and_pays_by_its_honesty() -> None:
 def test_unknown_directions_do_not_count_as_readings() -> None:
     where = scene("orientations", 0)
     baselines = [baseline_of(where.measured(seed)) for seed in range(8)]
-    scores = [score(one, unaided(one)).chi2_per_dof for one in baselines]
+    scores = [score(one, predicted_without_effects(one)).chi2_per_dof for one in baselines]
     assert abs(np.mean(scores) - 1) < 0.15
 
 

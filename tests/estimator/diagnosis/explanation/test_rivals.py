@@ -19,13 +19,13 @@ def named(identifiers: tuple[str, ...], hidden: str, size: float) -> SearchState
     begun = start(identifiers, size * effect(hidden))
     best = strongest(begun, begun.traces)
     assert best is not None
-    return replace(begun, found=(best,))
+    return replace(begun, detections=(best,))
 
 
 @pytest.mark.parametrize("size", [0.15, 0.3, 1.0])
 def test_what_lies_five_standard_errors_away_is_no_alternative(size: float) -> None:
     state = named(("cubic-nonlinearity", "odd-quadratic", "bias-jump", "bias-ramp"), "cubic-nonlinearity", size)
-    (found,) = state.found
+    (found,) = state.detections
     others = alternatives(state, found)
     assert all(s.now < DISTINGUISHED for s in separations(state, found, others))
 
@@ -33,7 +33,7 @@ def test_what_lies_five_standard_errors_away_is_no_alternative(size: float) -> N
 @pytest.mark.parametrize(("unnamed", "listed"), [(0.004, False), (0.02, True), (0.6, True)])
 def test_a_course_of_no_name_is_an_alternative_while_it_is_likely(unnamed: float, listed: bool) -> None:
     state = named(("bias-ramp",), "bias-ramp", 1.0)
-    state = replace(state, found=(replace(state.found[0], unnamed=unnamed),))
+    state = replace(state, detections=(replace(state.detections[0], unnamed=unnamed),))
     (finding,) = findings(state, amplitudes(state), [None])
     assert (UNEXPLAINED in finding.alternatives) == listed
 

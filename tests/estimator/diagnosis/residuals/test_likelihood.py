@@ -11,7 +11,7 @@ from estimator.diagnosis.residuals.baseline import Baseline, block_columns
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.confirmation import beside_effects
+from estimator.diagnosis.selection.confirmation import with_free_effects
 from estimator.session import Array
 from tests.estimator.diagnosis.selection.small import candidate, effect, measured, start
 
@@ -39,12 +39,12 @@ def test_it_is_the_density_of_what_no_parameter_moves(factor: float) -> None:
 
 def test_a_named_effect_is_known_but_for_its_size() -> None:
     state = start(("bias-jump",), effect("bias-jump"))
-    state = replace(state, found=(candidate(state, "bias-jump"),))
-    before = beside_effects(state)
+    state = replace(state, detections=(candidate(state, "bias-jump"),))
+    before = with_free_effects(state)
     after = replace(before, variance=before.variance * [1.0, 3.0, 1.0, 1.0])
     found = log_likelihood_ratio(WhitenedResiduals.of(after), WhitenedResiduals.of(before))
     plain = [replace(state.baseline, variance=b.variance) for b in (after, before)]
-    columns = state.found[0].best.shape.columns
+    columns = state.detections[0].best.shape.columns
     assert found == pytest.approx(
         by_definition(plain[0], columns) - by_definition(plain[1], columns), rel=1e-4, abs=1e-3
     )

@@ -12,7 +12,7 @@ from estimator import CalibrationSession, Diagnosis, diagnose
 from estimator.causes.fixture import RemountRotation
 from estimator.diagnosis.residuals.common_start import baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.turns import in_the_frame_of, turned_baseline, turns_between
+from estimator.diagnosis.residuals.turns import in_frame_of, turned_baseline, turns_between
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.parameters import SensorParameters
 from estimator.session import ACCELEROMETER, Array
@@ -101,7 +101,7 @@ def test_the_extended_calibration_has_the_axes_of_before_the_turn() -> None:
 
 def test_sessions_of_one_mounting_share_the_turn_of_the_latest() -> None:
     now = baseline_of(measured(1, TURN))
-    found = in_the_frame_of(now, [baseline_of(measured(k, np.zeros(3))) for k in (2, 3)])
+    found = in_frame_of(now, [baseline_of(measured(k, np.zeros(3))) for k in (2, 3)])
     assert [f.sits_otherwise for f in found] == [False, False]
     assert found[0].turn == pytest.approx(found[1].turn)
 

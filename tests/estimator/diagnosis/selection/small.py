@@ -7,7 +7,7 @@ import numpy as np
 from estimator import CalibrationSession
 from estimator.causes import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.signatures.scores import score
 from estimator.session import Array
@@ -53,16 +53,16 @@ def start(
 
 def candidate(
     state: SearchState, identifier: str, sensors: tuple[int, ...] = (SENSOR,), *, open_change: bool = False
-) -> Found:
+) -> Detection:
     """A cause at its best shape, as if it had been selected; with the sensor's change since the history left open."""
     traces = [
         t for t in state.traces if t.cause.identifier == identifier and (t.width > len(t.cause.units)) == open_change
     ]
     own = [s for s in score(state.residuals, traces, state.attributed()) if s.sensors == sensors]
     best = max(own, key=lambda s: s.log_evidence)
-    return Found(best, best.p_value, ((best, best.log_evidence),))
+    return Detection(best, best.p_value, ((best, best.log_evidence),))
 
 
 def names(state: SearchState) -> list[tuple[str, tuple[int, ...]]]:
     """What was found: causes with their sensors, in order."""
-    return sorted(f.best.group for f in state.found)
+    return sorted(f.best.group for f in state.detections)

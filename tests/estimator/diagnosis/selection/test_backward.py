@@ -30,7 +30,7 @@ WARMTH = effect("bias-temperature")
 def selected(state: SearchState, *identifiers: str) -> SearchState:
     """The search as if these causes had been selected one after another."""
     for identifier in identifiers:
-        state = replace(state, found=(*state.found, candidate(state, identifier)))
+        state = replace(state, detections=(*state.detections, candidate(state, identifier)))
     return state
 
 
@@ -43,13 +43,13 @@ def test_what_is_not_significant_beside_the_rest_goes() -> None:
 def test_the_weakest_of_two_that_explain_the_same_goes_first() -> None:
     state = start(("odd-quadratic", "cubic-nonlinearity", "bias-ramp"), effect("cubic-nonlinearity"))
     left = backward_elimination(selected(state, "cubic-nonlinearity", "odd-quadratic"))
-    assert len(left.found) == 1
+    assert len(left.detections) == 1
 
 
 def test_what_is_significant_beside_the_rest_stays() -> None:
     state = start(("cubic-nonlinearity", "bias-ramp"), effect("cubic-nonlinearity") + effect("bias-ramp"))
     both = selected(state, "cubic-nonlinearity", "bias-ramp")
-    assert backward_elimination(both).found == both.found
+    assert backward_elimination(both).detections == both.detections
 
 
 def since_half_the_history() -> SearchState:
@@ -67,15 +67,15 @@ def test_drift_without_another_effect_on_the_sensor_stays() -> None:
     moved = on_sensor(np.full(ROWS, 40.0))
     state = start(("sensor-drift", "bias-temperature"), moved, (measured(0.0, 11), measured(0.0, 12)))
     alone = selected(state, "sensor-drift")
-    assert without_needless_drift(alone).found == alone.found
+    assert without_needless_drift(alone).detections == alone.detections
 
 
 def test_drift_of_another_sensor_stays() -> None:
     history = (measured(WARMTH, 11), measured(0.0, 12))
     state = start(("sensor-drift", "bias-temperature"), WARMTH + on_sensor(np.full(ROWS, 40.0), 3), history)
-    state = replace(state, found=(candidate(state, "sensor-drift", (3,)),))
+    state = replace(state, detections=(candidate(state, "sensor-drift", (3,)),))
     both = selected(state, "bias-temperature")
-    assert without_needless_drift(both).found == both.found
+    assert without_needless_drift(both).detections == both.detections
 
 
 def test_names_that_patch_up_a_course_are_withdrawn() -> None:
@@ -98,7 +98,7 @@ def test_a_single_name_that_a_course_explains_better_goes() -> None:
 
 def test_a_course_beside_a_name_that_it_does_not_beat_is_hardly_likely() -> None:
     alone = selected(start(("bias-jump",), effect("bias-jump")), "bias-jump")
-    (kept,) = without_names_on_courses(alone).found
+    (kept,) = without_names_on_courses(alone).detections
     assert 0 < kept.unnamed < 0.005
 
 
@@ -106,7 +106,7 @@ def test_a_course_beside_a_name_that_it_does_not_beat_is_hardly_likely() -> None
 def test_a_course_on_one_sensor_leaves_the_names_of_others(sensor: int) -> None:
     state = start(("bias-jump", "reading-outlier", "bias-ramp"), WALK + effect("bias-ramp", sensor))
     state = selected(state, "bias-jump", "reading-outlier")
-    state = replace(state, found=(*state.found, candidate(state, "bias-ramp", (sensor,))))
+    state = replace(state, detections=(*state.detections, candidate(state, "bias-ramp", (sensor,))))
     assert names(without_names_on_courses(state)) == [("bias-ramp", (sensor,))]
 
 

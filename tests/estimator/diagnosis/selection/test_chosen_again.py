@@ -14,14 +14,14 @@ from tests.estimator.diagnosis.selection.small import ROWS, candidate, effect, n
 def test_a_true_cause_predicts_and_stays(identifier: str) -> None:
     state = start((identifier,), effect(identifier))
     place = () if identifier.startswith("beta") else (1,)
-    named = replace(state, found=(candidate(state, identifier, place),))
+    named = replace(state, detections=(candidate(state, identifier, place),))
     assert names(without_unpredictive(named)) == names(named)
 
 
 def test_a_name_that_predicts_worse_goes() -> None:
     """Noise alone: the jump that happens to fit best fits the rows it was chosen on."""
     state = start(("bias-jump",), 0.0)
-    named = replace(state, found=(candidate(state, "bias-jump"),))
+    named = replace(state, detections=(candidate(state, "bias-jump"),))
     assert names(without_unpredictive(named)) == []
 
 

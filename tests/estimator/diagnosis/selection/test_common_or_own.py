@@ -8,8 +8,13 @@ import pytest
 from estimator.causes import cause
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.acceptance import held
-from estimator.diagnosis.selection.common_or_own import common_or_own, in_parity_space, settled, weighed
+from estimator.diagnosis.selection.acceptance import fitting_causes
+from estimator.diagnosis.selection.common_or_own import (
+    in_parity_space,
+    penalised_log_evidence,
+    with_likelier_vector_course,
+    with_residual_noise,
+)
 from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.start import begin
 from estimator.session import Array
@@ -34,14 +39,14 @@ def swaying(size: float) -> Array:
 
 def test_an_error_of_the_stand_that_no_cause_describes_gets_no_name() -> None:
     begun = start(OWN, swaying(2e-4))
-    left = common_or_own(begun, held(begun), held)
-    assert not left.found
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
+    assert not left.detections
     assert [course.components for course in left.courses] == [("α",)]
 
 
 def test_the_course_is_the_one_that_was_there() -> None:
     begun = start(OWN, swaying(2e-4))
-    (course,) = common_or_own(begun, held(begun), held).courses
+    (course,) = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes).courses
     beta, flipped = begun.baseline.setting.beta, begun.baseline.setting.flipped
     true = 2e-4 * np.cos(2 * beta + 0.3) * (1 + flipped)
     assert np.corrcoef(course.value[:, 0], true)[0, 1] > 0.9
@@ -49,7 +54,7 @@ def test_the_course_is_the_one_that_was_there() -> None:
 
 def test_a_cause_of_one_sensor_beside_it_is_still_named() -> None:
     begun = start(OWN, swaying(2e-4) + effect("cubic-nonlinearity"))
-    left = common_or_own(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert names(left) == [("cubic-nonlinearity", (SENSOR,))]
     assert left.courses
 
@@ -57,14 +62,14 @@ def test_a_cause_of_one_sensor_beside_it_is_still_named() -> None:
 @pytest.mark.parametrize("known", ["beta-second-harmonic", "stand-drift", "axis-wobble", "alpha-shift"])
 def test_an_error_of_the_stand_that_a_cause_describes_keeps_its_name(known: str) -> None:
     begun = start((*OWN, known), effect(known))
-    left = common_or_own(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert names(left) == [(known, ())]
     assert not left.courses
 
 
 def test_two_true_causes_of_two_sensors_keep_their_names() -> None:
     begun = start(OWN, effect("cubic-nonlinearity") + effect("bias-ramp", 3))
-    left = common_or_own(begun, held(begun), held)
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
     assert names(left) == [("bias-ramp", (3,)), ("cubic-nonlinearity", (SENSOR,))]
 
 
@@ -78,18 +83,18 @@ def test_nothing_of_a_course_shows_in_parity_space() -> None:
 def test_a_further_name_is_paid_for() -> None:
     state = start(OWN, effect("cubic-nonlinearity") + effect("bias-ramp", 3))
     first = candidate(state, "cubic-nonlinearity")
-    one = replace(state, found=(first,))
-    both = replace(one, found=(first, candidate(one, "bias-ramp", (3,))))
-    assert weighed(both) == pytest.approx(joint_log_evidence(both) - np.log(100))
-    assert weighed(one) == pytest.approx(joint_log_evidence(one))
+    one = replace(state, detections=(first,))
+    both = replace(one, detections=(first, candidate(one, "bias-ramp", (3,))))
+    assert penalised_log_evidence(both) == pytest.approx(joint_log_evidence(both) - np.log(100))
+    assert penalised_log_evidence(one) == pytest.approx(joint_log_evidence(one))
 
 
 def test_noise_that_no_file_states_is_what_the_names_leave() -> None:
     added = effect("beta-second-harmonic")
     unstated = replace(measured(added), standard_errors=np.full((ROWS, 4), np.nan))
     begun = begin(baseline_of(unstated), (), [cause("beta-second-harmonic")])
-    named = replace(begun, found=(candidate(begun, "beta-second-harmonic", ()),))
-    known, seen = settled(begun, named, begun.baseline.unstated)
+    named = replace(begun, detections=(candidate(begun, "beta-second-harmonic", ()),))
+    known, seen = with_residual_noise(begun, named, begun.baseline.unstated)
     true = baseline_of(measured(0.0)).variance
     assert np.median(begun.baseline.variance / true) > 1.5
     assert np.median(known.baseline.variance / true) == pytest.approx(1, abs=0.3)
@@ -101,6 +106,6 @@ def test_a_turn_of_the_block_since_the_history_is_common() -> None:
     turn = np.cross(np.array([2e-4, -1e-4, 1e-4]), setting.n)
     added = setting.through(turn[..., None])[..., 0] * setting.parameters.scale
     begun = start(("sensor-drift", *OWN), added, (measured(0.0, 11), measured(0.0, 12)))
-    left = common_or_own(begun, held(begun), held)
-    assert not left.found
+    left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)
+    assert not left.detections
     assert left.courses

@@ -68,7 +68,7 @@ def test_scatter_is_attributed_once_and_needs_a_stated_noise(attributed: str) ->
 
 def test_a_finding_takes_its_energy_and_its_degree_of_freedom_out_of_the_scatter() -> None:
     state = start(FEW, effect("cubic-nonlinearity"))
-    named = replace(state, found=(candidate(state, "cubic-nonlinearity"),))
+    named = replace(state, detections=(candidate(state, "cubic-nonlinearity"),))
     (before, freedom), (after, less) = sensor_scatter(state), sensor_scatter(named)
     assert before[SENSOR] - after[SENSOR] > 400
     assert freedom.sum() - less.sum() == pytest.approx(1.0, abs=1e-6)

@@ -11,8 +11,8 @@ from estimator.diagnosis.selection.forward import (
     forward_selection,
     holds_pattern,
     log_evidence_of_two,
+    repeated_too_often,
     scatter_or_cause,
-    too_often,
     with_structures,
 )
 from estimator.diagnosis.selection.ranking import strongest
@@ -101,14 +101,14 @@ def test_a_cause_likelier_than_a_course_is_named() -> None:
 
 def test_a_cause_named_more_often_than_it_can_act_is_too_often() -> None:
     found = candidate(start(("bias-jump",), JUMPS), "bias-jump")
-    assert too_often([found] * 2) == frozenset()
-    assert too_often([found] * 3) == {("bias-jump", (SENSOR,))}
+    assert repeated_too_often([found] * 2) == frozenset()
+    assert repeated_too_often([found] * 3) == {("bias-jump", (SENSOR,))}
 
 
 def test_a_cause_named_too_often_is_refuted_and_the_others_stay() -> None:
     state = start(("bias-jump", "cubic-nonlinearity"), JUMPS + effect("cubic-nonlinearity", 2))
     for _ in range(2):
-        state = replace(state, found=(*state.found, candidate(state, "bias-jump")))
+        state = replace(state, detections=(*state.detections, candidate(state, "bias-jump")))
     state = forward_selection(state)
     assert state.refuted == {("bias-jump", (SENSOR,))}
     assert names(state) == [("cubic-nonlinearity", (2,))]
@@ -118,8 +118,8 @@ def test_a_cause_that_acts_once_is_not_named_twice_on_a_sensor() -> None:
     state = start(FEW, CUBIC)
     found = candidate(state, "cubic-nonlinearity")
     elsewhere = replace(found, best=replace(found.best, trace=candidate(state, "bias-ramp", (3,)).best.trace))
-    state = forward_selection(replace(state, found=(elsewhere,)))
-    assert (state.found, state.refuted) == ((elsewhere,), frozenset())
+    state = forward_selection(replace(state, detections=(elsewhere,)))
+    assert (state.detections, state.refuted) == ((elsewhere,), frozenset())
 
 
 def test_a_second_cause_counts_in_the_evidence_of_two() -> None:

@@ -42,7 +42,7 @@ def searched(identifier: str, course: Array, freedom: float = np.inf) -> SearchS
 def found(identifier: str, course: Array, freedom: float = np.inf) -> SearchState:
     """When the cause is named."""
     state = searched(identifier, course, freedom)
-    return replace(state, found=(candidate(state, identifier),))
+    return replace(state, detections=(candidate(state, identifier),))
 
 
 SPIKE = 6.5 * (np.arange(ROWS) == 9)
@@ -54,7 +54,7 @@ def test_a_lone_reading_among_normal_errors_is_an_outlier() -> None:
 
 def test_the_same_reading_among_heavy_tails_is_none_and_a_note_says_so() -> None:
     state = without_names_of_tails(found("reading-outlier", SPIKE, HEAVY))
-    assert state.found == ()
+    assert state.detections == ()
     assert "no cause" in notes(state)[0]
 
 

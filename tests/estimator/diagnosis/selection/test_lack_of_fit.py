@@ -20,7 +20,7 @@ NOISE = np.random.default_rng(4).standard_normal(ROWS)
 
 def test_the_nearest_cause_goes_where_what_it_leaves_is_structure() -> None:
     state = start(("scale-asymmetry",), effect("cross-coupling") + effect("scale-asymmetry"))
-    named = with_structures(replace(state, found=(candidate(state, "scale-asymmetry"),)))
+    named = with_structures(replace(state, detections=(candidate(state, "scale-asymmetry"),)))
     left = without_misfits(named)
     assert names(left) == []
     assert left.structures or left.autocorrelated
@@ -28,13 +28,13 @@ def test_the_nearest_cause_goes_where_what_it_leaves_is_structure() -> None:
 
 def test_a_cause_that_fits_stays() -> None:
     state = start(("scale-asymmetry",), effect("scale-asymmetry"))
-    named = with_structures(replace(state, found=(candidate(state, "scale-asymmetry"),)))
+    named = with_structures(replace(state, detections=(candidate(state, "scale-asymmetry"),)))
     assert names(without_misfits(named)) == [("scale-asymmetry", (SENSOR,))]
 
 
 def test_structure_on_another_sensor_is_none_of_its_business() -> None:
     state = start(("scale-asymmetry",), effect("scale-asymmetry") + effect("cross-coupling", 3))
-    named = with_structures(replace(state, found=(candidate(state, "scale-asymmetry"),)))
+    named = with_structures(replace(state, detections=(candidate(state, "scale-asymmetry"),)))
     left = without_misfits(named)
     assert names(left) == [("scale-asymmetry", (SENSOR,))]
     assert {s.best.sensors for s in left.structures} == {(3,)}
@@ -69,7 +69,7 @@ def test_rows_in_which_most_sensors_stand_out_are_no_matter_of_the_sensors() -> 
     everywhere = sum((on_sensor(far, sensor) for sensor in range(4)), np.zeros((ROWS, 4)))
     state = start(("reading-outlier",), everywhere)
     found = tuple(candidate(state, "reading-outlier", (sensor,)) for sensor in range(4))
-    left = without_common_rows(replace(state, found=found))
+    left = without_common_rows(replace(state, detections=found))
     assert names(left) == []
     assert len(left.structures) == 4
-    assert without_common_rows(replace(state, found=found[:1])).found == found[:1]
+    assert without_common_rows(replace(state, detections=found[:1])).detections == found[:1]

@@ -14,7 +14,7 @@ from benchmarks.study.other_noise import Hidden, Wish, beside_gyros, in_logs, in
 from estimator import diagnose, read_session
 from estimator.causes import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.acceptance import whatever_the_scale
+from estimator.diagnosis.selection.acceptance import under_free_scale
 from estimator.diagnosis.selection.noise_claim import doubted, pure_error, without_names_in_no_noise
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.signatures.noise import NoiseClaim
@@ -86,11 +86,11 @@ def test_gyros_whose_effects_passed_for_noise_are_believed_again_beside_accelero
     session = stated(Scene(World(schedule, truth_of(schedule)), noise).measured(1), 3.0, slice(0, 4))
     ramp = 20 * noise * np.linspace(-1, 1, len(session.readings))[:, None] * [0, 0, 0, 0, 1, -1, 0, 0]
     begun = begin(baseline_of(replace(session, readings=session.readings + ramp)), [], [cause("bias-ramp")])
-    found = whatever_the_scale(begun, doubted(begun))
+    found = under_free_scale(begun, doubted(begun))
     assert found is not None
     assert [claim.kind for claim in found.noise_claims] == [ACCELEROMETER]
     assert found.baseline.unstated.tolist() == [True] * 4 + [False] * 4
-    assert sorted(i for f in found.found for i in f.best.sensors) == [4, 5]
+    assert sorted(i for f in found.detections for i in f.best.sensors) == [4, 5]
 
 
 def test_one_noisy_sensor_is_excess_noise_and_no_wrong_claim() -> None:
@@ -185,7 +185,7 @@ def test_no_cause_is_told_from_scatter_that_is_no_noise(ratio: float, kept: int)
     state = start(("bias-ramp",), effect("bias-ramp") + effect("bias-ramp", 3))
     named = tuple(candidate(state, "bias-ramp", (sensor,)) for sensor in (SENSOR, 3))
     claim = NoiseClaim(ACCELEROMETER, (SENSOR,), ratio, 20.0)
-    assert len(without_names_in_no_noise(replace(state, found=named, noise_claims=(claim,))).found) == kept
+    assert len(without_names_in_no_noise(replace(state, detections=named, noise_claims=(claim,))).detections) == kept
 
 
 def test_what_a_prior_in_place_of_the_switch_would_cost_is_what_the_page_says() -> None:

@@ -50,8 +50,8 @@ def test_on_a_sensor_that_is_plainly_a_course_nothing_is_named(log_evidence: flo
 
 def test_a_finding_is_chosen_anew_on_its_own_sensor_or_as_common_to_all() -> None:
     state = start(FEW, CUBIC + 2 * effect("cubic-nonlinearity", 2))
-    state = replace(state, found=(candidate(state, "bias-ramp", (SENSOR,)),))
-    again = strongest(state, state.traces, without=state.found[0])
+    state = replace(state, detections=(candidate(state, "bias-ramp", (SENSOR,)),))
+    again = strongest(state, state.traces, without=state.detections[0])
     assert again is not None
     assert again.best.sensors in ((), (SENSOR,))
 
@@ -73,7 +73,7 @@ def test_one_sensor_alone_has_no_company() -> None:
 def test_what_explains_the_same_adds_no_evidence() -> None:
     state = start(FEW, CUBIC)
     found = candidate(state, "cubic-nonlinearity")
-    once, twice = (joint_log_evidence(replace(state, found=(found,) * times)) for times in (1, 2))
+    once, twice = (joint_log_evidence(replace(state, detections=(found,) * times)) for times in (1, 2))
     assert once == pytest.approx(found.best.log_evidence)
     assert twice < once
 
@@ -81,7 +81,8 @@ def test_what_explains_the_same_adds_no_evidence() -> None:
 def test_evidence_of_structures_counts_too() -> None:
     state = start(FEW, CUBIC)
     found = candidate(state, "cubic-nonlinearity")
-    assert joint_log_evidence(replace(state, structures=(found,))) == joint_log_evidence(replace(state, found=(found,)))
+    as_structure, as_cause = replace(state, structures=(found,)), replace(state, detections=(found,))
+    assert joint_log_evidence(as_structure) == joint_log_evidence(as_cause)
 
 
 def test_a_basis_grows_by_what_is_new_only() -> None:

@@ -28,7 +28,7 @@ def patched(
     """A search that selected these causes on these sensors so far."""
     state = start(identifiers, added)
     for identifier, sensors in chosen:
-        state = replace(state, found=(*state.found, candidate(state, identifier, sensors)))
+        state = replace(state, detections=(*state.detections, candidate(state, identifier, sensors)))
     return state
 
 
@@ -60,7 +60,7 @@ def test_a_single_cause_of_the_stand_is_no_pair() -> None:
 
 def test_a_right_pair_stays() -> None:
     state = patched(COMMON, effect("alpha-shift") + effect("stand-drift"), (("alpha-shift", ()), ("stand-drift", ())))
-    assert best_common_pair(state).found == state.found
+    assert best_common_pair(state).detections == state.detections
 
 
 def test_a_name_on_structure_outside_the_catalogue_is_withdrawn() -> None:
@@ -71,7 +71,7 @@ def test_a_name_on_structure_outside_the_catalogue_is_withdrawn() -> None:
 
 def test_a_true_name_is_not_withdrawn() -> None:
     state = patched(("cubic-nonlinearity",), effect("cubic-nonlinearity"), (("cubic-nonlinearity", (SENSOR,)),))
-    assert structures_or_names(with_structures(state)).found == state.found
+    assert structures_or_names(with_structures(state)).detections == state.detections
 
 
 def test_a_true_name_on_another_sensor_stays_where_one_is_withdrawn() -> None:
@@ -83,7 +83,7 @@ def test_a_true_name_on_another_sensor_stays_where_one_is_withdrawn() -> None:
 
 def test_structure_takes_the_place_of_a_name_on_its_own_sensor_only() -> None:
     state = patched(("bias-jump",), HARMONIC + np.roll(HARMONIC, 2, axis=1), (("bias-jump", (SENSOR,)),))
-    rival = without_names(state, state.found)
+    rival = without_names(state, state.detections)
     assert (3,) not in {s.best.sensors for s in rival.structures}
     assert rival.patterns is state.patterns
 
@@ -91,7 +91,7 @@ def test_structure_takes_the_place_of_a_name_on_its_own_sensor_only() -> None:
 def test_what_structure_may_replace_is_everything_each_sensor_and_each_name() -> None:
     chosen = (("bias-jump", (0,)), ("bias-ramp", (0,)), ("bias-ramp", (1,)))
     state = patched(("bias-jump", "bias-ramp"), HARMONIC, chosen)
-    a, b, c = state.found
+    a, b, c = state.detections
     assert groups(state) == [(a, b, c), (a, b), (c,), (a,), (b,)]
 
 

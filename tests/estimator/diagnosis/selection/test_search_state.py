@@ -15,7 +15,7 @@ def found() -> SearchState:
     """Two causes found and one pattern."""
     state = start(FEW, effect("cubic-nonlinearity"))
     names = tuple(candidate(state, name) for name in FEW[:2])
-    return replace(state, found=names, structures=(candidate(state, "beta-eccentricity", ()),))
+    return replace(state, detections=names, structures=(candidate(state, "beta-eccentricity", ()),))
 
 
 def test_findings_and_structures_span_as_many_directions_as_they_have_amplitudes() -> None:
@@ -26,27 +26,27 @@ def test_findings_and_structures_span_as_many_directions_as_they_have_amplitudes
 
 def test_the_unit_of_an_amplitude_does_not_matter() -> None:
     state = found()
-    small = tuple(replace(f, best=replace(f.best, trace=1e-8 * f.best.trace)) for f in state.found)
-    one, other = state.attributed(), replace(state, found=small).attributed()
+    small = tuple(replace(f, best=replace(f.best, trace=1e-8 * f.best.trace)) for f in state.detections)
+    one, other = state.attributed(), replace(state, detections=small).attributed()
     assert np.allclose(one @ one.T, other @ other.T)
 
 
 def test_one_finding_can_be_left_out() -> None:
     state = found()
-    own = state.found[0].best.trace[:, 0]
-    rest = state.attributed(without=state.found[0])
+    own = state.detections[0].best.trace[:, 0]
+    rest = state.attributed(without=state.detections[0])
     assert rest.shape[1] == 3
     assert np.linalg.norm(own - rest @ (rest.T @ own)) > 0.1 * np.linalg.norm(own)
 
 
 def test_the_same_trace_twice_is_one_direction() -> None:
     state = found()
-    assert replace(state, found=state.found * 2).attributed().shape[1] == 4
+    assert replace(state, detections=state.detections * 2).attributed().shape[1] == 4
 
 
 def test_what_remains_is_orthogonal_to_every_finding() -> None:
     state = found()
-    for f in (*state.found, *state.structures):
+    for f in (*state.detections, *state.structures):
         trace = f.best.trace / np.linalg.norm(f.best.trace, axis=0)
         assert np.abs(trace.T @ state.remaining).max() < 1e-6
 

@@ -7,7 +7,7 @@ import pytest
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.signatures.scatter import in_unknown_noise, scatter_beside, sharing_scatter
+from estimator.diagnosis.signatures.scatter import in_unknown_noise, reference_scatter, sharing_scatter
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene
 
@@ -24,7 +24,7 @@ def blind(ratio: float | None) -> Baseline:
 def scatter(baseline: Baseline, size: float = 1.0) -> tuple[float, float]:
     """Energy and degrees of freedom about a signature of one sensor that explains nothing."""
     rows = np.full((1, 6), 48.0)
-    (energy,), (freedom,) = scatter_beside(baseline, np.array([2]), rows * size**2, rows)
+    (energy,), (freedom,) = reference_scatter(baseline, np.array([2]), rows * size**2, rows)
     return energy, freedom
 
 
@@ -55,7 +55,7 @@ def along_all(unstated: list[bool], size: list[float]) -> tuple[float, float]:
     """Variance and degrees of freedom of the scatter of six sensors, as a signature common to all meets it."""
     fitted = replace(baseline_of(WHERE.measured(1)), unstated=np.array(unstated))
     rows = np.full((1, 6), 48.0)
-    (energy,), (freedom,) = scatter_beside(fitted, np.array([-1]), rows * np.square(size), rows)
+    (energy,), (freedom,) = reference_scatter(fitted, np.array([-1]), rows * np.square(size), rows)
     return energy / freedom, freedom
 
 
