@@ -14,6 +14,7 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
+from estimator.groups.joint_fit import JointFit
 from estimator.groups.layout import EVERY, Hypothesis
 from estimator.groups.library import library
 from estimator.groups.scores import LEFT, batch, shrinkage
@@ -95,12 +96,10 @@ class Moments:
             F = _cleared(F - gain @ F[:, own], F)
         if not shared:
             return Given(self, U, F, F.sum(axis=0))
-        own = np.concatenate([self.slots[k] for k in shared])
-        whole = F.sum(axis=0)
-        covariance = inverse(whole[np.ix_(own, own)])
-        value = covariance @ U[:, own].sum(axis=0)
-        left = whole - whole[:, own] @ covariance @ whole[own]
-        return Given(self, U - F[:, :, own] @ value, F, _cleared(left, self.F.sum(axis=0)))
+        at = np.concatenate([self.slots[k] for k in shared])
+        fit, cross = JointFit(U[:, at], F[:, at[:, None], at]), F[:, :, at]
+        left = F.sum(axis=0) - fit.absorbs(cross)
+        return Given(self, U - fit.explains(cross), F, _cleared(left, self.F.sum(axis=0)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.evidence import ALPHA, log_bayes, log_sum
+from estimator.groups.joint_fit import predictive
 from estimator.groups.library import library
 from estimator.groups.pictures import Pictured, drawn, left_without, pooled_picture
 from estimator.groups.results import EmpiricalTerm
@@ -201,16 +202,6 @@ def gain(terms: Learned, held: Sequence[Library]) -> float:
     """Log predictive density of the sessions left out that the terms gain."""
     U, F = (x.sum(axis=0) for x in moments(held, terms.keys))
     return predictive(terms.value, terms.covariance, U, F)
-
-
-def predictive(value: Array, covariance: Array, U: Array, F: Array) -> float:
-    """ln p(U | amplitude ~ N(value, covariance)) − ln p(U | none), (a,) and (a, a)."""
-    size = np.sqrt(np.maximum(np.diagonal(F), 1e-300))
-    V, a, u, f = covariance * size[:, None] * size, value * size, U / size, F / size[:, None] / size
-    off = u - f @ a
-    grown = np.eye(len(a)) + V @ f
-    better = a @ u - 0.5 * a @ f @ a
-    return float(better + 0.5 * off @ np.linalg.solve(grown, V) @ off - 0.5 * np.linalg.slogdet(grown)[1])
 
 
 def shown(subject: str, terms: Learned, whole: Sequence[Library]) -> EmpiricalTerm:
