@@ -45,12 +45,10 @@ def gain_of(
         return None
     every = pooled(selection.layout, model, selection.scale).fit
     fit, later = JointFit(every.U[:first], every.F[:first]), JointFit(every.U[first:], every.F[first:])
-    value = fit.amplitude
     parts = [p.statistics for p in selection.layout.parts[first:]]
     square = sum(float(p.whole.sum()) for p in parts)
     freedom = sum(float(p.whole_freedom.sum()) for p in parts)
-    removed = float(2 * value @ later.U.sum(axis=0) - value @ later.F.sum(axis=0) @ value)
-    removed *= float(np.mean(selection.scale[first:]))
+    removed = fit.reduces(later) * float(np.mean(selection.scale[first:]))
     return GroupGain(
         fitted=first,
         held_out=n - first,

@@ -53,6 +53,11 @@ class JointFit:
         """Log predictive density of other sessions that the amplitudes gain."""
         return predictive(self.amplitude, self.covariance, others.U.sum(axis=0), others.F.sum(axis=0))
 
+    def reduces(self, others: "JointFit") -> float:
+        """By how much the amplitudes reduce the χ² of other sessions."""
+        a = self.amplitude
+        return float(2 * a @ others.U.sum(axis=0) - a @ others.F.sum(axis=0) @ a)
+
 
 def predictive(value: Array, covariance: Array, U: Array, F: Array) -> float:
     """ln p(U | amplitude ~ N(value, covariance)) − ln p(U | none), (a,) and (a, a)."""
