@@ -27,7 +27,6 @@ from estimator.groups.layout import Hypothesis
 from estimator.groups.place import Key, Moments, key_of
 from estimator.groups.scores import batch
 from estimator.groups.selection import ENOUGH, Found
-from estimator.least_squares import inverse
 
 OUTSIDE = 0.2
 """π over 1 − π: one effect in six is in no catalogue."""
@@ -210,13 +209,7 @@ def held(moments: Moments, names: Sequence[Found], chain: Sequence[Key]) -> tupl
 
 def beyond_the_catalogue(moments: Moments) -> list[Key]:
     """The terms that no single cause of the catalogue describes as well."""
-    whole = moments.F.sum(axis=0)
-    size = np.diagonal(whole)
-    left = [size]
-    for cause in moments.causes:
-        at = moments.slots[cause]
-        across = whole[:, at]
-        left.append(size - ((across @ inverse(whole[np.ix_(at, at)])) * across).sum(axis=1))
-    own = [moments.slots[k] for k in moments.terms]
-    spanned = [np.all([(x[at] <= SPANNED * size[at]) for x in left], axis=1) for at in own]
-    return [k for k, every in zip(moments.terms, spanned, strict=True) if not every.any()]
+    size = np.diagonal(moments.F.sum(axis=0))
+    left = [size, *(np.diagonal(moments.given(shared=[cause]).whole) for cause in moments.causes)]
+    clear = np.array(left) > SPANNED * size
+    return [k for k in moments.terms if clear[:, moments.slots[k]].any(axis=1).all()]

@@ -9,8 +9,8 @@ from estimator.causes.catalogue import UNEXPLAINED, cause
 from estimator.diagnosis.explanation.naming import sentence
 from estimator.diagnosis.explanation.rivals import CREDIBLE, DISTINGUISHED
 from estimator.groups.evidence import SINCE, VARYING, log_sum
-from estimator.groups.layout import EVERY, TYPE, Hypothesis, Layout
-from estimator.groups.pool import Place, Pool, columns_in, extended, without
+from estimator.groups.layout import EVERY, TYPE, Hypothesis
+from estimator.groups.pool import Model, Place, Pool, columns_in, pooled
 from estimator.groups.random_effects import Mean, mean_of
 from estimator.groups.results import GroupFinding, GroupStructure, Rival, SessionAmplitude
 from estimator.groups.selection import Found, Selection, concerns
@@ -31,15 +31,14 @@ class Near:
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """A finding in every session that has it, what else acts there left free. n sessions, w amplitudes."""
+    """A finding in the n sessions that have it. w amplitudes."""
 
     found: Found
     sessions: tuple[int, ...]
     amplitude: Array
-    """(n, w) SI: its own of every session where it differs, else that of the pool."""
-    information: tuple[Array, ...]
-    """(E, E) 1/SI² of each."""
-    layout: Layout
+    """(n, w) SI, of every session where they differ; else (1, w) of all."""
+    pool: Pool
+    """With the finding alone in the joint fit: what else acts is left free in every session."""
 
     @classmethod
     def of(cls, selection: Selection, found: Found, base: Pool) -> "Signature":
@@ -48,28 +47,24 @@ class Signature:
         U, F = base.moments[w].U[:, k], base.moments[w].F[:, k]
         shared = inverse(F[found.since :].sum(axis=0)) @ U[found.since :].sum(axis=0)
         parts = selection.layout.parts
-        own = [s for s in range(found.since, len(parts)) if columns_in(parts[s], found.place) is not None]
-        each = [inverse(F[s]) @ U[s] if found.form == VARYING else shared for s in own]
-        given = tuple(_given(selection, base, s) for s in own)
-        return cls(found, tuple(own), np.array(each), given, selection.layout)
+        acts = tuple(s for s in range(found.since, len(parts)) if columns_in(parts[s], found.place) is not None)
+        amplitude = [inverse(F[s]) @ U[s] for s in acts] if found.form == VARYING else [shared]
+        model = Model(absorbed=base.model.absorbed).with_shared(found.place, found.since)
+        for other in base.model.shared:
+            model = model.with_absorbed(range(other.since, len(parts)), other.place)
+        return cls(found, acts, np.array(amplitude), pooled(selection.layout, model, selection.scale))
 
     def separation(self, rival: Place) -> float:
         """Norm of what is left of it after the best fit of a rival, of one amplitude or of one in every session."""
-        a, b = self.found.place[0], rival[0]
-        own, both, other = np.zeros((a, a)), np.zeros((a, b)), np.zeros((b, b))
-        square = 0.0
-        for s, amplitude, F in zip(self.sessions, self.amplitude, self.information, strict=True):
-            mine = columns_in(self.layout.parts[s], self.found.place)
-            theirs = columns_in(self.layout.parts[s], rival)
-            if mine is None:
-                continue
-            f_own = F[np.ix_(mine, mine)]
-            f_both = F[np.ix_(mine, theirs)] if theirs is not None else np.zeros((a, b))
-            f_other = F[np.ix_(theirs, theirs)] if theirs is not None else np.zeros((b, b))
-            square += _left(amplitude, f_own, f_both, f_other) if self.found.form == VARYING else 0.0
-            own, both, other = own + f_own, both + f_both, other + f_other
+        w, k = rival
+        moments, at = self.pool.moments[w], list(self.sessions)
+        information = (self.pool.fit.F[at], moments.cross[at, k], moments.F[at, k])
         if self.found.form != VARYING:
-            square = _left(self.amplitude[0], own, both, other)
+            information = tuple(x.sum(axis=0, keepdims=True) for x in information)
+        square = sum(
+            a @ (f - cross.T @ inverse(other) @ cross) @ a
+            for a, f, cross, other in zip(self.amplitude, *information, strict=True)
+        )
         return float(np.sqrt(max(square, 0.0)))
 
 
@@ -93,22 +88,6 @@ def near(selection: Selection, found: Found, scale: Scale) -> list[Near]:
         if apart < DISTINGUISHED:
             kept.append(Near(place, hypothesis, float(p), apart))
     return kept
-
-
-def _given(selection: Selection, base: Pool, session: int) -> Array:
-    """(E, E) information of a session, what else acts there left free."""
-    part, model = selection.layout.parts[session], base.model
-    U, E, F = extended(part, float(selection.scale[session]))
-    places = [p for j, p in model.absorbed if j == session] + [s.place for s in model.shared if session >= s.since]
-    free = [c for p in places if (c := columns_in(part, p)) is not None]
-    if free:
-        return without(U, E, F, np.unique(np.concatenate(free)).tolist())[2]
-    return F(*np.ix_(range(len(U)), range(len(U))))
-
-
-def _left(amplitude: Array, own: Array, both: Array, other: Array) -> float:
-    """Squared norm of a signature at an amplitude, less its best fit by another."""
-    return float(amplitude @ (own - both @ inverse(other) @ both.T) @ amplitude)
 
 
 DIFFERENT = 0.01

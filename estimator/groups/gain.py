@@ -17,13 +17,12 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.evidence import VARYING
 from estimator.groups.fixed import added_by, fixed
-from estimator.groups.pool import Model, columns_in, extended, joint_columns
+from estimator.groups.joint_fit import JointFit, predictive
+from estimator.groups.pool import Model, pooled
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding, GroupGain, Moved
 from estimator.groups.selection import Found, Selection
-from estimator.groups.terms import predictive
-from estimator.least_squares import inverse
-from estimator.session import Array, CalibrationSession
+from estimator.session import CalibrationSession
 
 FIRST = 2 / 3
 """Part of the sessions that fix the amplitudes."""
@@ -44,36 +43,20 @@ def gain_of(
     first = max(int(np.ceil(FIRST * n)), 1 + max((s.since for s in model.shared), default=0))
     if not model.shared or first >= n:
         return None
-    each = [_joint(selection, model, k) for k in range(n)]
-    U, F = np.array([u for u, _ in each]), np.array([f for _, f in each])
-    covariance = inverse(F[:first].sum(axis=0))
-    value = covariance @ U[:first].sum(axis=0)
-    later_U, later_F = U[first:].sum(axis=0), F[first:].sum(axis=0)
+    every = pooled(selection.layout, model, selection.scale).fit
+    fit, later = JointFit(every.U[:first], every.F[:first]), JointFit(every.U[first:], every.F[first:])
     parts = [p.statistics for p in selection.layout.parts[first:]]
     square = sum(float(p.whole.sum()) for p in parts)
     freedom = sum(float(p.whole_freedom.sum()) for p in parts)
-    removed = float(2 * value @ later_U - value @ later_F @ value) * float(np.mean(selection.scale[first:]))
+    removed = fit.reduces(later) * float(np.mean(selection.scale[first:]))
     return GroupGain(
         fitted=first,
         held_out=n - first,
-        log_score=predictive(value, covariance, later_U, later_F),
+        log_score=fit.predicts(later),
         chi2_per_dof_before=square / freedom,
         chi2_per_dof_after=(square - removed) / freedom,
         moved=moved(findings, sessions[-1]) if sessions else (),
     )
-
-
-def _joint(selection: Selection, model: Model, k: int) -> tuple[Array, Array]:
-    """(a,) score and (a, a) information of the shared findings in one session."""
-    part = selection.layout.parts[k]
-    U, _, F = extended(part, float(selection.scale[k]))
-    a = sum(s.place[0] for s in model.shared)
-    own_U, own_F = np.zeros(a), np.zeros((a, a))
-    if any(j == k and columns_in(part, p) is not None for j, p in model.absorbed):
-        return own_U, own_F
-    where, joint = joint_columns(part, model, k)
-    own_U[where], own_F[np.ix_(where, where)] = U[joint], F(*np.ix_(joint, joint))
-    return own_U, own_F
 
 
 def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tuple[Moved, ...]:

@@ -18,13 +18,13 @@ from estimator.diagnosis.results import Rival
 from estimator.groups.evidence import log_sum
 from estimator.groups.findings import Estimated, estimated, finding_of
 from estimator.groups.gain import names_that_predict
+from estimator.groups.joint_fit import predictive
 from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import UNIT, Layout
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding
 from estimator.groups.selection import select
 from estimator.groups.statistics import SessionStatistics
-from estimator.groups.terms import predictive
 from estimator.session import CalibrationSession
 
 SURE = 0.9

@@ -6,6 +6,7 @@ elsewhere is left free in each session, so that what is asked here does not hang
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
+from estimator.groups.joint_fit import JointFit
 from estimator.groups.layout import EVERY, Hypothesis
 from estimator.groups.library import library
 from estimator.groups.scores import LEFT, batch, shrinkage
@@ -85,6 +87,11 @@ class Moments:
     estimated: Array
     """(n,) degrees of freedom from which the noise of each session is estimated; infinite where it is as stated."""
 
+    @cached_property
+    def whole(self) -> Array:
+        """(D, D) information of the pool."""
+        return np.asarray(self.F.sum(axis=0))
+
     def given(self, shared: Sequence[Key] = (), free: Sequence[Key] = ()) -> "Given":
         """The same with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
         U, F = self.U, self.F
@@ -93,14 +100,12 @@ class Moments:
             gain = np.array([f[:, own] @ inverse(f[np.ix_(own, own)]) for f in F])
             U = U - (gain @ U[:, own, None])[..., 0]
             F = _cleared(F - gain @ F[:, own], F)
+        whole = F.sum(axis=0) if free else self.whole
         if not shared:
-            return Given(self, U, F, F.sum(axis=0))
-        own = np.concatenate([self.slots[k] for k in shared])
-        whole = F.sum(axis=0)
-        covariance = inverse(whole[np.ix_(own, own)])
-        value = covariance @ U[:, own].sum(axis=0)
-        left = whole - whole[:, own] @ covariance @ whole[own]
-        return Given(self, U - F[:, :, own] @ value, F, _cleared(left, self.F.sum(axis=0)))
+            return Given(self, U, F, whole)
+        at = np.concatenate([self.slots[k] for k in shared])
+        fit, cross = JointFit(U[:, at], F[:, at[:, None], at]), F[:, :, at]
+        return Given(self, U - fit.explains(cross), F, _cleared(whole - fit.absorbs(cross), self.whole))
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +127,7 @@ class Given:
             F = self.F[:, at[:, :, None], at[:, None, :]]
             U = as_normal(self.U[:, at], F, self.of.estimated)
             whole = self.whole[at[:, :, None], at[:, None, :]]
-            alone = self.of.F.sum(axis=0)[at, at]
+            alone = self.of.whole[at, at]
             gone = (np.diagonal(whole, axis1=1, axis2=2) <= LEFT * alone).all(axis=1)
             total = np.where(gone[:, None], 0.0, U.sum(axis=0))
             forms, _ = weighed_forms(U, F, total, np.where(gone[:, None, None], 0.0, whole), np.ones(len(own), bool))

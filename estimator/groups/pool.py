@@ -1,19 +1,18 @@
 """The sessions of a group added up: score and information of every hypothesis, given what was found before.
 
-What is found enters in one of two ways. An amplitude that all sessions share is fitted jointly: with A its columns,
-U|A = U − F_cA·â and F|A = F − F_cA·F_AA⁻¹·F_Ac over the pool. One that differs from session to session is *absorbed*
-in each session by itself, as is what acts in one session only.
+What is found enters in one of two ways. An amplitude that all sessions share is fitted jointly (`joint_fit`). One that
+differs from session to session is *absorbed* in each session by itself, as is what acts in one session only.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.groups.joint_fit import JointFit
 from estimator.groups.layout import Layout, Part
 from estimator.groups.scores import LEFT
-from estimator.least_squares import given, inverse
+from estimator.least_squares import given
 from estimator.session import Array
 
 Place = tuple[int, int]
@@ -76,16 +75,8 @@ class Pool:
     scale: Array
     """(n,) by which the variance of each session is larger than it says."""
     moments: dict[int, Moments]
-    amplitude: Array = field(default_factory=lambda: np.zeros(0))
-    """(a,) SI, of the joint fit."""
-    information: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    """(a, a) 1/SI²."""
-
-    @property
-    def slices(self) -> list[slice]:
-        """Of the joint fit's amplitudes, finding after finding."""
-        ends = np.cumsum([0, *(s.place[0] for s in self.model.shared)])
-        return [slice(int(a), int(b)) for a, b in pairwise(ends)]
+    fit: JointFit
+    """Of what the model shares."""
 
 
 def extended(part: Part, scale: float) -> tuple[Array, Array, Among]:
@@ -134,7 +125,7 @@ def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -
         w: (np.zeros((n, H, w)), np.zeros((n, H, w)), np.zeros((n, H, w, w)), np.zeros((n, H, w, a)))
         for w, H in ((w, len(table)) for w, table in layout.hypotheses.items())
     }
-    joint_U, joint_F = np.zeros(a), np.zeros((a, a))
+    fit = JointFit(np.zeros((n, a)), np.zeros((n, a, a)))
     for k, part in enumerate(layout.parts):
         U, E, F = extended(part, float(scale[k]))
         free = [c for j, place in model.absorbed if j == k and (c := columns_in(part, place)) is not None]
@@ -142,8 +133,7 @@ def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -
             U, E, left = without(U, E, F, np.unique(np.concatenate(free)).tolist())
             F = among(left)
         where, joint = joint_columns(part, model, k)
-        joint_U[where] += U[joint]
-        joint_F[np.ix_(where, where)] += F(*np.ix_(joint, joint))
+        fit.U[k, where], fit.F[k][np.ix_(where, where)] = U[joint], F(*np.ix_(joint, joint))
         for w, numbers in part.hypotheses.items():
             c = part.columns[w]
             all_U, all_E, all_F, cross = empty[w]
@@ -153,14 +143,11 @@ def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -
                 cross[k][numbers[:, None, None], np.arange(w)[None, :, None], np.array(where)[None, None, :]] = F(
                     c[:, :, None], np.array(joint)[None, None, :]
                 )
-    covariance = inverse(joint_F)
-    amplitude = covariance @ joint_U
     moments = {}
     for w, (all_U, all_E, all_F, cross) in empty.items():
-        taken, whole = cross @ amplitude, cross.sum(axis=0)
-        lost = whole @ covariance @ np.swapaxes(whole, -1, -2)
-        moments[w] = Moments(all_U - taken, all_E - taken, all_F, cross, lost)
-    return Pool(layout, model, scale, moments, amplitude, joint_F)
+        explained = fit.explains(cross)
+        moments[w] = Moments(all_U - explained, all_E - explained, all_F, cross, fit.absorbs(cross))
+    return Pool(layout, model, scale, moments, fit)
 
 
 def joint_columns(part: Part, model: Model, session: int) -> tuple[list[int], list[int]]:

@@ -4,12 +4,8 @@ Theory
 ------
 Forward selection on the pooled score: the term with the largest gain, all amplitudes refitted. The e-value over the
 whole library, the mean of its terms' (as of causes), must reach 1/α for every term that is taken. Then each is tried
-without: one that the others make needless is dropped. The amplitudes and their covariance V from the sessions that
-fitted are the prior with which the others are predicted:
-
-    ln p(U | term) − ln p(U | none) = ½·cᵀ(V⁻¹ + F)⁻¹c − ½·âᵀV⁻¹â − ½·ln|I + V·F|,   c = V⁻¹â + U.
-
-A term is shown where that is above zero. It describes; it names no physical cause.
+without: one that the others make needless is dropped. A term is shown where the sessions that took no part are
+predicted better with the amplitudes of the others (`JointFit.predicts`). It describes; it names no physical cause.
 """
 
 from collections.abc import Sequence
@@ -24,6 +20,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.evidence import ALPHA, log_bayes, log_sum
+from estimator.groups.joint_fit import JointFit
 from estimator.groups.library import library
 from estimator.groups.pictures import Pictured, drawn, left_without, pooled_picture
 from estimator.groups.results import EmpiricalTerm
@@ -86,14 +83,21 @@ class Library:
 
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """Terms of one place with their amplitudes."""
+    """Terms of one place with the fit of their a amplitudes."""
 
     sensor: str
     keys: tuple[Key, ...]
-    value: Array
-    """(a,) SI."""
-    covariance: Array
-    """(a, a) SI²."""
+    fit: JointFit
+
+    @property
+    def value(self) -> Array:
+        """(a,) SI."""
+        return self.fit.amplitude
+
+    @property
+    def covariance(self) -> Array:
+        """(a, a) SI²."""
+        return self.fit.covariance
 
     def predicted(self, of: Library) -> Array:
         """(R, m) m/s² (rad/s): what the terms add in a session."""
@@ -150,8 +154,8 @@ def confirmed(sensor: str, fit: Sequence[Library], held: Sequence[Library], chos
     return chosen if chosen and gain(fitted(sensor, fit, chosen), held) > 0 else ()
 
 
-def moments(whole: Sequence[Library], keys: Sequence[Key]) -> tuple[Array, Array]:
-    """(n, a) scores and (n, a, a) information of some terms in every session."""
+def joint_fit(whole: Sequence[Library], keys: Sequence[Key]) -> JointFit:
+    """Some terms fitted together to all sessions."""
     widths = [len(k) for k in keys]
     U, F = np.zeros((len(whole), sum(widths))), np.zeros((len(whole), sum(widths), sum(widths)))
     for n, one in enumerate(whole):
@@ -166,7 +170,7 @@ def moments(whole: Sequence[Library], keys: Sequence[Key]) -> tuple[Array, Array
             start += width
         x = one.trace[:, own]
         U[n, places], F[n][np.ix_(places, places)] = x.T @ one.z, x.T @ x
-    return U, F
+    return JointFit(U, F)
 
 
 def evidence(whole: Sequence[Library], keys: Sequence[Key], given: Sequence[Key]) -> Array:
@@ -174,9 +178,9 @@ def evidence(whole: Sequence[Library], keys: Sequence[Key], given: Sequence[Key]
     found = []
     known = sum(len(k) for k in given)
     for key in keys:
-        U, F = moments(whole, [*given, key])
-        first = F[np.argmax(F[:, known:, known:].sum(axis=(1, 2)) > 0)][known:, known:]
-        score, left = conditional(U.sum(axis=0), F.sum(axis=0), range(known), 1e-3)
+        fit = joint_fit(whole, [*given, key])
+        first = fit.F[np.argmax(fit.F[:, known:, known:].sum(axis=(1, 2)) > 0)][known:, known:]
+        score, left = conditional(fit.U.sum(axis=0), fit.F.sum(axis=0), range(known), 1e-3)
         found.append(log_bayes(score[None, known:], left[None, known:, known:], first[None])[0])
     return np.array(found)
 
@@ -192,25 +196,12 @@ def strongest(whole: Sequence[Library], every: Sequence[Key], chosen: tuple[Key,
 
 def fitted(sensor: str, whole: Sequence[Library], keys: tuple[Key, ...]) -> Learned:
     """The amplitudes of some terms in the pool of sessions."""
-    U, F = moments(whole, keys)
-    covariance = inverse(F.sum(axis=0))
-    return Learned(sensor, keys, covariance @ U.sum(axis=0), covariance)
+    return Learned(sensor, keys, joint_fit(whole, keys))
 
 
 def gain(terms: Learned, held: Sequence[Library]) -> float:
     """Log predictive density of the sessions left out that the terms gain."""
-    U, F = (x.sum(axis=0) for x in moments(held, terms.keys))
-    return predictive(terms.value, terms.covariance, U, F)
-
-
-def predictive(value: Array, covariance: Array, U: Array, F: Array) -> float:
-    """ln p(U | amplitude ~ N(value, covariance)) − ln p(U | none), (a,) and (a, a)."""
-    size = np.sqrt(np.maximum(np.diagonal(F), 1e-300))
-    V, a, u, f = covariance * size[:, None] * size, value * size, U / size, F / size[:, None] / size
-    off = u - f @ a
-    grown = np.eye(len(a)) + V @ f
-    better = a @ u - 0.5 * a @ f @ a
-    return float(better + 0.5 * off @ np.linalg.solve(grown, V) @ off - 0.5 * np.linalg.slogdet(grown)[1])
+    return terms.fit.predicts(joint_fit(held, terms.keys))
 
 
 def shown(subject: str, terms: Learned, whole: Sequence[Library]) -> EmpiricalTerm:
@@ -218,8 +209,7 @@ def shown(subject: str, terms: Learned, whole: Sequence[Library]) -> EmpiricalTe
     held = [x for k, x in enumerate(whole) if k % HELD_OUT == HELD_OUT - 1]
     known = {words: (unit, variable) for x in whole for words, unit, variable in x.keys}
     units = tuple(known[key][0] for key in terms.keys for _ in key)
-    U, F = moments(held, terms.keys)
-    removed = float(sum(2 * terms.value @ u - terms.value @ f @ terms.value for u, f in zip(U, F, strict=True)))
+    removed = terms.fit.reduces(joint_fit(held, terms.keys))
     excess = float(sum(x.z @ x.z - x.residuals.freedom for x in held))
     nearest, apart = nearest_cause(terms, whole)
     return EmpiricalTerm(

@@ -24,6 +24,10 @@ DISTINGUISHED = 5.0
 """Separation, standard errors, at which two causes are distinguished: a likelihood ratio of e^12.5, beyond what the
 choice among a catalogue and its shapes can make up."""
 
+NOTICEABLE = 0.1
+"""Expected separation, standard errors, below which a measurement is not proposed: 2500 of it would be needed, and
+where the rival absorbs everything what is left is rounding."""
+
 SHOWN = 8
 """Lines of the ranking that people see."""
 
@@ -80,11 +84,11 @@ def separations(state: SearchState, detection: Detection, others: Sequence[Score
 
 def proposal(baseline: Baseline, named: Scored, amplitude: Array, rival: Scored) -> tuple[str, float | None]:
     """The first proposed measurement that distinguishes two causes, else the best of them; in words, with what to
-    expect. ``amplitude`` (q,) of the named one, SI."""
+    expect; nothing where no proposal brings a `NOTICEABLE` separation. ``amplitude`` (q,) of the named one, SI."""
     best: tuple[str, float | None] = ("", None)
     for words, planned in proposals(baseline):
         expected = expected_separation(planned, named, amplitude, rival)
-        if expected is not None and (best[1] is None or expected > best[1]):
+        if expected is not None and expected >= NOTICEABLE and expected > (best[1] or 0.0):
             best = (words, expected)
         if expected is not None and expected >= DISTINGUISHED:
             break

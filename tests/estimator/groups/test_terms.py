@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from estimator import diagnose_group
-from estimator.groups.terms import learn, libraries, predictive
+from estimator.groups.joint_fit import predictive
+from estimator.groups.terms import learn, libraries
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
 

@@ -45,3 +45,10 @@ def test_scatter_in_excess_may_be_something_else(doubtful: bool) -> None:
     assert cause is not None
     finding = excess_finding(state, cause, ExcessVariance(SENSOR, 9.0, 19.0, 50.0, 1e-20, doubtful=doubtful))
     assert (UNEXPLAINED in finding.alternatives) == doubtful
+
+
+def test_no_measurement_is_proposed_where_the_rival_absorbs_everything() -> None:
+    state = named(("cubic-nonlinearity",), "cubic-nonlinearity", 1.0)
+    (found,) = state.found
+    (same,) = separations(state, found, [found.best])
+    assert (same.measurement, same.then) == ("", None)
