@@ -23,6 +23,7 @@ from service.pages.unit import api as units
 from service.pages.unit import remarks_api as remarks
 from service.pages.uploads import api as uploads
 from service.pages.usable import api as usable
+from service.papers.onboard import api as onboard
 from service.people import api as people
 from service.people import view_api as views
 from service.people.admission import ADMITTED
@@ -34,11 +35,11 @@ from service.work import api as work
 PREFIX = API
 """The version of the contract is part of every address."""
 ROUTERS = (
-    groups.router, remarks.attachments_router, sessions.router, records.router, papers.router, papers.printing_router,
-    diagnoses.router, events.router, usable.router, papers.labels_router, units.router, unit_types.router,
-    models.router, plans.router, stands.router, uploads.templates_router, uploads.layouts_router, uploads.router,
-    flags.router, views.router, remarks.router, webhooks.router, feeds.router, fleet.router, work.router,
-    people.router,
+    groups.router, remarks.attachments_router, sessions.router, records.router, papers.router, onboard.router,
+    papers.printing_router, diagnoses.router, events.router, usable.router, papers.labels_router, units.router,
+    unit_types.router, models.router, plans.router, stands.router, uploads.templates_router, uploads.layouts_router,
+    uploads.router, flags.router, views.router, remarks.router, webhooks.router, feeds.router, fleet.router,
+    work.router, people.router,
 )  # fmt: skip
 """Of every resource, in the order in which addresses are tried."""
 

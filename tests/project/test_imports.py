@@ -38,7 +38,7 @@ HOMES = {
     "sqlalchemy": r"service\.storage\b|service\.\w+\.(\w+_)?(store|tables)$|migrations\b",
     "alembic": r"service\.storage\b|migrations\b",
     "fastapi": r"service\.(web|pages|app)\b|service\.\w+\.(\w+_)?(api|pages|dependencies|admission|forms)$"
-    r"|service\.uploads\.(arriving|received|layout)\b",
+    r"|service\.uploads\.(arriving|received|layout)\b|service\.papers\.onboard\.api$",
     "starlette": r"service\.(web|pages)\b|service\.people\.admission$|service\.uploads\.(arriving|layout)\b",
     "typer": r"service\.(cli|commands)\b",
     "pyhanko": r"service\.papers\.seal\b",

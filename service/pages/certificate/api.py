@@ -1,4 +1,4 @@
-"""Certificates, corrections, exports and labels over HTTP."""
+"""Certificates, corrections and labels over HTTP."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -13,8 +13,6 @@ from service.papers.changes import Signing
 from service.papers.correction import correction_document
 from service.papers.desk import HandedOut, hand_out, hand_out_approved, sign
 from service.papers.label import Label, label_of, label_pdf, label_svg
-from service.papers.onboard import FORMS, System
-from service.papers.onboard.stored import given_of
 from service.papers.records import NOT_STATED, Signature
 from service.papers.schemas import CorrectionDocument, NewSignature
 from service.papers.signatures import Papers, papers_of
@@ -33,8 +31,6 @@ PDF, XML = "application/pdf", "application/xml"
 """Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
 """How OpenAPI describes a file."""
-PLAIN = "text/plain; charset=utf-8"
-TEXT_FILE: dict[int | str, dict[str, Any]] = {200: {"content": {"text/plain": {"schema": {"type": "string"}}}}}
 FILES: dict[int | str, dict[str, Any]] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
 Format = Annotated[
     Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
@@ -110,18 +106,6 @@ def _file(paper: HandedOut, format: str) -> Response:
 def read_correction(id: SessionId, storage: StorageOf) -> CorrectionDocument:
     """The correction for firmware: formula, numbers of every sensor, matrix and a worked example, imu-correction/1."""
     return CorrectionDocument.model_validate(correction_document(storage, id))
-
-
-@router.get("/{id}/export", responses={**TEXT_FILE, **errors(404, 409, 422)}, response_class=Response)
-def read_export(
-    id: SessionId,
-    storage: StorageOf,
-    system: Annotated[System, Query(description="PX4, ArduPilot, Kalibr or ROS 2.", examples=["px4"])],
-) -> Response:
-    """The correction as another system's parameters, with what that system cannot hold."""
-    given, form = given_of(storage, id), FORMS[system]
-    name = f"{given.unit}-{given.session[:8]}-{system}.{form.ending}"
-    return as_file(form.written(given).encode(), PLAIN, name)
 
 
 MOST = 25

@@ -144,5 +144,15 @@ def test_in_service_only_what_has_the_size_of_gravity_is_a_rest() -> None:
     assert rests_of(shaken, known) is None
 
 
+def test_in_service_what_shakes_is_no_rest() -> None:
+    """On the sum of its axes by 0.25 m/s², twice a second: steady, and of gravity's size on average."""
+    session = read_session(builders.raw_log(still=600))
+    flown = replace(session, programme=IN_SERVICE, position=None)
+    shake = 0.25 * np.sin(2 * np.pi * 2.0 * INTERVAL * np.arange(len(flown.readings)))
+    scales = np.array([sensor.nominal_scale for sensor in flown.sensors])
+    shaken = replace(flown, readings=flown.readings + np.outer(shake, scales))
+    assert rests_of(shaken, calibrate(session)) is None
+
+
 def test_an_averaged_session_holds_no_rests() -> None:
     assert rests_of(read_session(builders.accelerometer_block())) is None

@@ -60,6 +60,18 @@ def test_two_sigma_hold_the_amplitude(spread: float) -> None:
     assert 0.905 < np.mean(inside) < 0.99
 
 
+def test_the_mean_is_weighed_over_spreads_that_a_half_cauchy_makes_likely() -> None:
+    """Gelman 2006: τ has the prior 1/(1 + τ²) in one session's sigma; integrated here on a fine grid of its own."""
+    own = np.array([0.0, 1.5, 4.0])  # of sigma 1 each: at a given τ the mean is theirs, ± √((1 + τ²)/3)
+    mean = mean_of(own[:, None], np.ones((3, 1, 1)))
+    tau2 = (0.002 * np.arange(50_000)) ** 2
+    variance = 1 + tau2
+    likelihood = variance**-1.0 * np.exp(-((own - own.mean()) ** 2).sum() / (2 * variance))  # restricted: n − 1 = 2
+    share = likelihood / (1 + tau2)
+    expected = np.sqrt((share * variance / 3).sum() / share.sum())
+    assert (mean.value[0], mean.sigma[0]) == pytest.approx((own.mean(), expected), rel=0.02)
+
+
 def test_sessions_that_differ_are_told_from_sessions_that_do_not() -> None:
     F = np.ones((10, 1, 1))
     alike = mean_of(np.full((10, 1), 3.0) + 0.5 * (-1.0) ** np.arange(10)[:, None], F)

@@ -79,6 +79,12 @@ def test_one_sensor_alone_is_never_believed_more_than_stated(energy: float, clai
     assert contradicted(with_its_flip(averaged(SESSION)), scatter, freedom) == claims
 
 
+def test_a_kind_of_which_half_scatter_more_than_stated_is_not_believed() -> None:
+    freedom = np.full(6, 10.5)
+    scatter = np.array([60.0, 60.0, 60.0, 10.5, 10.5, 10.5])
+    assert contradicted(with_its_flip(averaged(SESSION)), scatter, freedom) == [[0, 1, 2, 3, 4, 5]]
+
+
 ALIKE = [c for c in lasting_causes() if isinstance(c, SensorCause) and c.alike]
 
 

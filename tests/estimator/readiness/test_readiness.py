@@ -28,6 +28,15 @@ def test_a_cold_unit_is_told_how_long_to_wait() -> None:
     assert found.wait[0] <= still_to_wait <= found.wait[2]
 
 
+def test_the_time_to_wait_is_given_with_nine_tenths_of_its_chance() -> None:
+    """Over many records the true time lies inside nine times in ten: within what half of it would hold, five."""
+    settling = 400 * (1 - np.exp(-clock(30) / 1200))
+    still_to_wait = 1200 * np.log(400 * np.exp(-1800 / 1200) * (1 - np.exp(-5760 / 1200)) / 12.5)
+    waits = [judged(record(np.outer(settling, [0, 1, 0, 0]), white=3.0, seed=seed)).wait for seed in range(24)]
+    inside = [wait is not None and wait[0] <= still_to_wait <= wait[2] for wait in waits]
+    assert sum(inside) >= 19
+
+
 def test_a_steady_drift_is_not_waited_for() -> None:
     found = judged(record(np.outer(clock(60), [0.1, 0, 0, 0])))
     assert (found.state, found.wait) == (State.NOT_WARM, None)

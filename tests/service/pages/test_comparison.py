@@ -9,8 +9,10 @@ import pytest
 
 from estimator.results import Calibration
 from service.pages.session.comparison import compare, in_common
+from service.records.changes import record_service
+from service.sessions.store import Sessions
 from service.storage import Storage
-from service.units.records import Service
+from service.units.records import NewService, Service
 from service.uploads.receive import upload
 from tests.builders import accelerometer_block, true_sensors
 from tests.conftest import Holding
@@ -43,7 +45,20 @@ def test_the_change_is_the_difference_and_less_uncertain_on_one_stand(storage: S
     assert abs(difference - 90 * MICRO_G) < 4 * (a3.uncertainty or 0)
     parts = [c.sensor("A3").bias.repeatability or 0 for c in (found.before, found.after)]
     assert found.own["A3", "bias"] == pytest.approx(np.hypot(*parts))
+    scale = [c.sensor("A3").scale.repeatability or 0 for c in (found.before, found.after)]
+    assert found.own["A3", "scale"] == pytest.approx(np.hypot(*scale) / (found.before.sensor("A3").scale.value or 0))
     assert all(own <= (decisions[key].uncertainty or 0) * (1 + 1e-9) for key, own in found.own.items())
+
+
+@pytest.mark.parametrize(("at", "between"), [(0, 0), (1, 1)], ids=["at the first session", "at the second"])
+def test_a_service_lies_between_the_sessions_until_the_second_begins(storage: Storage, at: int, between: int) -> None:
+    for content in FAILED:
+        upload(storage, content, "a.json", NOW)
+    with storage.database.reading() as store:
+        begins = Sessions(store).get((FIRST, SECOND)[at]).started_at
+    record_service(storage, "BA-017", NewService("repair", begins), NOW)
+    with storage.database.reading() as store:
+        assert len(compare(store, FIRST, SECOND, 2.0).services) == between
 
 
 def diagonal_session(seed: int) -> bytes:

@@ -137,6 +137,12 @@ def test_a_unit_that_drifts_unlike_the_others_is_named() -> None:
     ]
 
 
+@pytest.mark.parametrize("value", [0.24, -0.24])
+def test_a_drift_matters_upwards_and_downwards(value: float) -> None:
+    [population] = populations([*rates_of(20), replace(rates_of(1)[0], serial="W", value=value)])
+    assert [(one.serial, one.value) for one in population.fast] == [("W", value)]
+
+
 def test_a_lot_that_drifts_unlike_the_others_is_named() -> None:
     lot = [replace(rate, serial=f"X{i}", lot="L9", value=0.09) for i, rate in enumerate(rates_of(8))]
     assert [s.text for s in found_in([*rates_of(24), *lot])] == [
