@@ -16,8 +16,7 @@ from typer.exceptions import TyperException
 
 from service.commands.catalogue import CATALOGUE
 from service.commands.examples import help_of
-from service.commands.exits import FAILED, say
-from service.commands.speech import choose, said
+from service.commands.speech import FAILED, choose, said, say
 from service.errors import ServiceError
 from service.languages.language import Language
 
@@ -61,7 +60,8 @@ class Commands(TyperGroup):
 @cache
 def _command(name: str) -> Any:
     module, _, member = CATALOGUE[name].home.partition(".")
-    found = getattr(import_module(f"service.commands.{module}"), member)
+    loaded = import_module(f"service.commands.{module}")
+    found = getattr(loaded, member) if member else loaded.command_of(name)
     if not isinstance(found, typer.Typer):
         single = typer.Typer(add_completion=False)
         single.command(name)(found)

@@ -9,10 +9,9 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.console import screen
-from service.commands.exits import FAILED, say
-from service.commands.listing import AsLines, FormOf, Listing, rows_of, table_of
+from service.commands.console import AsLines, FormOf, Listing, rows_of, screen, table_of
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
+from service.commands.speech import FAILED, say
 from service.errors import ConflictError
 from service.kit.person import COMMAND_LINE as WHO
 from service.kit.person import Account, Role, Token

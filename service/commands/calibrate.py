@@ -1,12 +1,31 @@
-"""`imu-health calibrate`: session files to calibrations, without a server."""
+"""`imu-health calibrate`: session files to calibrations, without a server.
 
+People read tables in µg, ppm, arcsec, °/h, and how model and readings agree in words.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
-from estimator import Calibration, CalibrationSession, calibrate
-from service.commands.console import AsJson, Files, for_each, print_json, screen
-from service.commands.tables import calibration_view
-from service.ingest import read_file
+from rich.columns import Columns
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
 
+from estimator import calibrate
+from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
+from service.commands.console import AsJson, Files, for_each, print_json, screen
+from service.commands.speech import said
+from service.ingest import read_file
+from service.kit.coverage import coverage_in_words
+from service.kit.measures import COVERAGE, UNKNOWN, deviation_measure, in_measure, measured, number
+from service.kit.names import method_name
+from service.sessions.words.fit import fit_in_words
+
+UNSEEN = "not observable"
+"""In the place of a value that the session does not show."""
 Result = tuple[CalibrationSession, Calibration]
 
 
@@ -26,3 +45,100 @@ def _print_json(result: Result) -> None:
 
 def _print_table(result: Result) -> None:
     screen().print(calibration_view(*result))
+
+
+def calibration_view(session: CalibrationSession, calibration: Calibration) -> RenderableType:
+    """The whole calibration of one session; ± is U, the stand's errors included."""
+    return Group(_heading(session, calibration), _parameters(session, calibration), *_notes(calibration), Text(""))
+
+
+def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
+    place = f" on {session.stand.id}" if session.stand else ""
+    when = f", {session.started_at}" if session.started_at else ""
+    coverage = coverage_in_words(calibration, COVERAGE)
+    return Text.assemble(
+        (session.unit, "bold"), f"{when}{place}: {method_name(calibration.method)}; ± is U, {coverage}, all sources"
+    )
+
+
+def _parameters(session: CalibrationSession, calibration: Calibration) -> RenderableType:
+    """Two tables of one row a sensor: beside each other where there is room, else one below the other."""
+    if session.programme not in CALIBRATIONS:
+        return _axes_of_block(calibration)
+    numbers = _table("sensor", "scale, off nominal", "bias", "quadratic")
+    axes = _table("sensor", "axis, block axes", "±")
+    for declared, sensor in zip(session.sensors, calibration.sensors, strict=True):
+        numbers.add_row(escape(sensor.name), *_numbers(declared, sensor))
+        axes.add_row(escape(sensor.name), *_axis(sensor))
+    return Columns([numbers, axes], padding=(0, 3))
+
+
+def _axes_of_block(calibration: Calibration) -> RenderableType:
+    """One table of one row an axis of the block, for sessions on a turntable."""
+    table = _table("axis", "scale, off 1", "bias", "misalignment")
+    for sensor in calibration.sensors:
+        off = _off_nominal(sensor.scale, 1.0)
+        own = {"scale": off, "bias": sensor.bias, "misalignment": sensor.misalignment or off}
+        cells = (_cell(sensor, name, estimate) for name, estimate in own.items())
+        table.add_row(escape(sensor.name), *cells)
+    return table
+
+
+def _cell(sensor: SensorCalibration, parameter: str, estimate: Estimate) -> str:
+    """Empty where the session does not speak of the parameter."""
+    if parameter not in sensor.observable:
+        return ""
+    if estimate.value is None:
+        return UNSEEN
+    return measured(estimate.value, _expanded(estimate), deviation_measure(sensor.kind, parameter, estimate.value))
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for place, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if place else "left", no_wrap=True)
+    return table
+
+
+def _numbers(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
+    off = _off_nominal(sensor.scale, declared.nominal_scale)
+    for parameter, estimate in (("scale", off), ("bias", sensor.bias), ("quadratic", sensor.quadratic)):
+        unit = deviation_measure(sensor.kind, parameter, estimate.value or 0.0)
+        yield UNSEEN if estimate.value is None else measured(estimate.value, _expanded(estimate), unit)
+
+
+def _axis(sensor: SensorCalibration) -> tuple[str, str]:
+    if sensor.axis is None:
+        return UNSEEN, ""
+    if sensor.axis_sigma is None:
+        return " ".join(number(x, 6) for x in sensor.axis), UNKNOWN
+    expanded = sensor.factor("axis") * sensor.axis_sigma
+    unit = deviation_measure(sensor.kind, "axis", expanded)
+    return " ".join(number(x, 6) for x in sensor.axis), f"{number(in_measure(expanded, unit), 1)} {unit.label}"
+
+
+def _expanded(estimate: Estimate) -> float | None:
+    """U; None where nothing tells the noise."""
+    return None if estimate.sigma is None else estimate.factor() * estimate.sigma
+
+
+def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
+    """The scale factor relative to the nominal one."""
+    if scale.value is None:
+        return scale
+    return replace(scale, value=scale.value / nominal - 1, sigma=None if scale.sigma is None else scale.sigma / nominal)
+
+
+def _notes(calibration: Calibration) -> Iterator[Text]:
+    """Sentences: how model and readings agree, and what this session cannot see."""
+    fit = fit_in_words(calibration)
+    yield Text(f"{said(fit.headline)} {said(fit.detail)}")
+    sensors: dict[str, list[str]] = {}
+    for sensor in calibration.sensors:
+        unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)
+        sensors.setdefault(unseen, []).append(sensor.name)
+    for unseen, names in sensors.items():
+        if unseen:
+            yield Text(f"{', '.join(names)}: this session does not observe {unseen}.", "yellow")
+    for warning in fit.warnings:
+        yield Text(said(warning), "yellow")

@@ -12,7 +12,7 @@ class Entry:
     """One command."""
 
     home: str
-    """Module below `service.commands`, and in it the function, or the commands of its own."""
+    """Module below `service.commands`, and in it the function or the group; none where the module has a table."""
     says: str
     """The first paragraph of its help."""
 
@@ -28,7 +28,7 @@ CATALOGUE = {
         "Say what the simulation gets wrong: the cause with its size, what else it could be, and what cannot be seen.",
     ),
     "template": Entry(
-        "template.write_template",
+        "documents.write_template",
         "Write a workbook to fill in: sensors, stand and schedule are there; `imu-health upload` takes it as it is.",
     ),
     "upload": Entry(
@@ -36,56 +36,54 @@ CATALOGUE = {
         "Upload session files and print the verdict of each; a file that is already there is stored once.",
     ),
     "fleet": Entry(
-        "report.fleet",
+        "fleet.fleet",
         "Show every unit with its condition, the worst first; some of them by stand, type, due date or flag.",
     ),
     "history": Entry(
-        "history.history",
+        "fleet.history",
         "Show the parameters of a unit through time, each beside its reference and its tolerance.",
     ),
-    "report": Entry("report.report", "Write the fleet's condition as a file for other programs."),
+    "report": Entry("documents.report", "Write the fleet's condition as a file for other programs."),
     "usable": Entry(
-        "usable.usable",
+        "api",
         "Say whether a unit may be used: exit code 0 for yes, 1 for no, for a unit nobody knows, and in doubt.",
     ),
-    "flags": Entry(
-        "flags.flags", "Show what somebody must look after; give it to somebody, acknowledge or resolve it."
-    ),
-    "views": Entry("views.views", "List the views of the pages that were saved under a name, with their addresses."),
+    "flags": Entry("api", "Show what somebody must look after; give it to somebody, acknowledge or resolve it."),
+    "views": Entry("api", "List the views of the pages that were saved under a name, with their addresses."),
     "models": Entry(
-        "models.models",
+        "long_work",
         "Show accepted causes and what they moved; accept what sessions show together, or withdraw it.",
     ),
     "service": Entry(
-        "events.record",
+        "api",
         "Record a service: a break, after which the unit's next session is its new reference.",
     ),
     "session": Entry(
-        "records.session",
+        "api",
         "Withdraw a session, accept it again, or choose it as the reference of its time.",
     ),
     "withdraw-service": Entry(
-        "records.withdraw_service",
+        "api",
         "Take a service back: it stays on record and is no break any more.",
     ),
-    "note": Entry("events.write_note", "Write a note on a unit's history, or on a session."),
+    "note": Entry("api", "Write a note on a unit's history, or on a session."),
     "attach": Entry(
-        "events.attach_files",
+        "api",
         "Attach files to a unit or a session: photographs, protocols. They are kept as they are and never opened.",
     ),
-    "certificate": Entry("certificate.certificate", "Write the certificate of a session."),
+    "certificate": Entry("documents.certificate", "Write the certificate of a session."),
     "sign": Entry(
         "sign.sign",
         "Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password.",
     ),
     "seal": Entry("sign.seal", "The laboratory's electronic seal."),
-    "customer": Entry("papers.customer", "Record for whom a unit is calibrated; its certificates name them."),
+    "customer": Entry("api", "Record for whom a unit is calibrated; its certificates name them."),
     "stand-certificate": Entry(
-        "papers.stand_certificate",
+        "api",
         "Record the certificate of a stand's own calibration, which every session on it hangs on.",
     ),
-    "correction": Entry("certificate.correction", "Write the correction that firmware applies to readings, as JSON."),
-    "export": Entry("certificate.export", "Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."),
+    "correction": Entry("documents.correction", "Write the correction that firmware applies to readings, as JSON."),
+    "export": Entry("documents.export", "Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."),
     "simulate": Entry(
         "simulate.simulate_files",
         "Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.",
@@ -95,12 +93,12 @@ CATALOGUE = {
         "Plan a session: elevation, positions, expected uncertainty of every parameter, and what it cannot see.",
     ),
     "ready": Entry(
-        "ready.ready",
+        "plan.ready",
         "Say whether a unit is warm and still enough to be measured, by the first minutes of a record: exit code 0 for "
         "ready, 1 for not yet.",
     ),
     "missing": Entry(
-        "missing.missing_positions",
+        "plan.missing_positions",
         "Say which positions a session still lacks while it is measured: settings of the stand, or orientations to "
         "add.",
     ),
@@ -112,12 +110,12 @@ CATALOGUE = {
         "recalibrate.recalibrate_units",
         "Compute stored sessions again under the model in force; what was computed before stays readable.",
     ),
-    "jobs": Entry("jobs.jobs", "Show work that takes long: ask for it, look how far it has come, cancel it."),
+    "jobs": Entry("long_work", "Show work that takes long: ask for it, look how far it has come, cancel it."),
     "user": Entry("accounts.user", "Make and change accounts."),
     "token": Entry("accounts.token", "Make and revoke tokens."),
     "audit": Entry("accounts.audit", "Read and check the audit trail."),
     "open": Entry(
-        "open_page.open_page",
+        "api",
         "Open the page of a unit or a session in the browser, and print its address; without one the fleet.",
     ),
     "doctor": Entry(
@@ -126,11 +124,11 @@ CATALOGUE = {
     ),
     "db": Entry("database.database", "Bring the database's schema up or down."),
     "backup": Entry(
-        "backup.backup",
+        "database.backup",
         "Write all that is stored into one file, while the service runs: `imu-health backup FILE`.",
     ),
     "restore": Entry(
-        "backup.restore_backup",
+        "database.restore_backup",
         "Put a backup into an empty database, of either kind, and an empty data folder. Everybody must sign in again.",
     ),
 }

@@ -1,23 +1,47 @@
-"""What commands share: options, where they write, and one bad file not stopping the others."""
+"""What commands share: options, one bad file not stopping the others, and how an answer is printed.
+
+A list is a table on a terminal, one JSON object a line in a pipe, or what `--format` says.
+"""
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 import typer
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
 
-from estimator.errors import Problem, SessionError
-from service.commands.exits import UNUSABLE, say
-from service.commands.speech import problems_said
+from estimator.errors import SessionError
+from service.commands.speech import UNUSABLE, problems_said, say
 from service.errors import RefusedError
 
 T = TypeVar("T")
 
+
+class Form(StrEnum):
+    """What a list is printed as."""
+
+    TABLE = "table"
+    JSON = "json"
+    JSONL = "jsonl"
+
+
+FormOf = Annotated[
+    Form | None,
+    typer.Option(
+        "--format",
+        help="table; json: one document; jsonl: one object a line.",
+        show_default="table on a terminal, jsonl in a pipe",
+    ),
+]
+AsLines = Annotated[bool, typer.Option("--json", help="The same as --format jsonl.")]
 Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Session files.", show_default=False)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON: one object; with several files one a line.")]
 Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU_HEALTH_SERVER")]
@@ -48,9 +72,22 @@ def deliver(content: bytes, out: Path | None) -> None:
         out.write_bytes(content)
 
 
-def problem_line(file: Path, problems: Iterable[Problem]) -> str:
+def say_unusable(file: Path, fault: SessionError | RefusedError | OSError) -> None:
     """Everything wrong with a file on one line: the file, then each field, row and what to do."""
-    return f"{file}: {problems_said(problems)}"
+    if isinstance(fault, OSError):
+        say(f"{file}: file: {fault.strerror or fault}; check the name and that it can be read")
+    else:
+        say(f"{file}: {problems_said(fault.problems)}")
+
+
+@contextmanager
+def usable(file: Path) -> Iterator[None]:
+    """Exit code 2 with one line where a file cannot be used."""
+    try:
+        yield
+    except (SessionError, RefusedError, OSError) as fault:
+        say_unusable(file, fault)
+        raise typer.Exit(UNUSABLE) from fault
 
 
 def for_each(
@@ -62,11 +99,8 @@ def for_each(
         for file in files:
             try:
                 show(work(file))
-            except (SessionError, RefusedError) as fault:
-                say(problem_line(file, fault.problems))
-                unusable += 1
-            except OSError as fault:
-                say(f"{file}: file: {fault.strerror or fault}; check the name and that it can be read")
+            except (SessionError, RefusedError, OSError) as fault:
+                say_unusable(file, fault)
                 unusable += 1
             advance()
     if unusable:
@@ -98,3 +132,45 @@ def progress(total: int, doing: str, *, quiet: bool = False, is_long: bool = Fal
     with bar:
         task = bar.add_task(doing, total=total if several else None)
         yield lambda: bar.advance(task)
+
+
+@dataclass(frozen=True)
+class Listing:
+    """How somebody wants a list."""
+
+    chosen: Form | None
+    as_lines: bool = False
+
+    @property
+    def form(self) -> Form:
+        """What was chosen by hand; else what suits whoever reads."""
+        if self.chosen is not None:
+            return self.chosen
+        return Form.JSONL if self.as_lines or not sys.stdout.isatty() else Form.TABLE
+
+    def show(self, rows: Sequence[Any], view: Callable[[], RenderableType]) -> None:
+        """Prints the rows as they were answered, or the view of them."""
+        if self.form is Form.TABLE:
+            screen().print(view())
+        elif self.form is Form.JSON:
+            print_json(list(rows))
+        else:
+            for row in rows:
+                print_json(row)
+
+
+def rows_of(records: Sequence[Any]) -> list[dict[str, Any]]:
+    """Records as JSON has them, moments in ISO 8601."""
+    return [{name: _plain(value) for name, value in asdict(record).items()} for record in records]
+
+
+def _plain(value: Any) -> Any:
+    return value.isoformat() if isinstance(value, datetime) else value
+
+
+def table_of(*headings: str, right: Sequence[str] = ()) -> Table:
+    """An empty table without lines; numbers stand to the right."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for heading in headings:
+        table.add_column(heading, justify="right" if heading in right else "left", overflow="fold")
+    return table

@@ -1,20 +1,26 @@
-"""`imu-health db`: the schema's revisions."""
+"""`imu-health db`, `backup`, `restore`: the schema's revisions, and one file with all that is stored."""
 
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from estimator.wording import counted
-from service.commands.exits import FAILED, many, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
+from service.commands.speech import FAILED, many, say
+from service.kit.person import COMMAND_LINE as WHO
+from service.opening import open_database
 from service.settings import Settings
 from service.storage import Files
-from service.storage.backup import write_backup
+from service.storage.audit import Audit
+from service.storage.backup import Restored, restore, verified, write_backup
+from service.storage.backup.doors import Doors
+from service.storage.backup.manifest import Manifest
 from service.storage.losses import Loss, losses
-from service.storage.schema import downgrade, upgrade
+from service.storage.schema import downgrade, head_revision, upgrade
 
 database = typer.Typer(
     name="db", add_completion=False, help="Bring the database's schema up or down.", no_args_is_help=True
@@ -48,7 +54,7 @@ def downgrade_schema(
     settings = settings_from(database_url=database_url, data_folder=data_folder)
     found = losses(settings.database, revision)
     for loss in found:
-        say(_told(loss))
+        say(_lost_rows(loss))
     if found and not yes:
         _ask()
     if found and not no_backup:
@@ -72,8 +78,94 @@ def _write_backup(settings: Settings, target: Path | None) -> None:
     say(f"Backup: {file}" + (f", without {counted(len(lost), 'uploaded file')}, missing or damaged." if lost else "."))
 
 
-def _told(loss: Loss) -> str:
+def _lost_rows(loss: Loss) -> str:
     """What would be gone of a table."""
     parts = [many(loss.rows, "row")] if loss.rows else []
     parts += [f"{column} of {many(rows, 'row')}" for column, rows in loss.values]
     return f"Will be deleted from {loss.table}: {', '.join(parts)}"
+
+
+File = Annotated[Path, typer.Argument(metavar="FILE", help="The backup.", show_default=False)]
+
+
+class WritesByDefault(TyperGroup):
+    """`backup FILE` is `backup write FILE`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> Any:
+        """The first word is a command, or what to write."""
+        if args and args[0] != "--help" and args[0] not in self.commands:
+            args = ["write", *args]
+        return super().parse_args(ctx, args)
+
+
+backup = typer.Typer(
+    name="backup",
+    cls=WritesByDefault,
+    add_completion=False,
+    no_args_is_help=True,
+    help="Write all that is stored into one file, while the service runs: `imu-health backup FILE`.",
+)
+
+
+@backup.command("write")
+def write(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+    """Write database and uploaded files into one file; it is there whole or not at all. The same as `backup FILE`."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    manifest = write_backup(settings.database, Files(settings.files), file, datetime.now(UTC))
+    typer.echo(f"{file}: {_contents(manifest)}.")
+    if manifest.lost:
+        lost, one = counted(len(manifest.lost), "uploaded file"), len(manifest.lost) == 1
+        say(f"{lost} {'is' if one else 'are'} missing or damaged and not in it: {', '.join(manifest.lost)}.")
+        raise typer.Exit(FAILED)
+
+
+@backup.command("verify")
+def verify(file: File) -> None:
+    """Read a backup from end to end and compare every part with its hash."""
+    manifest = verified(file)
+    typer.echo(f"{file} is whole: {_contents(manifest)}, made {manifest.made_at:%Y-%m-%d %H:%M} UTC.")
+
+
+def restore_backup(
+    file: File,
+    revoke_tokens: Annotated[
+        bool, typer.Option("--revoke-tokens", help="Let no token in that the backup brings back.")
+    ] = False,
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Put a backup into an empty database, of either kind, and an empty data folder. Everybody must sign in again."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    now = datetime.now(UTC)
+    restored = restore(file, settings.database, settings.files, now, revoke_tokens=revoke_tokens)
+    _write_down(settings.database, restored, now)
+    typer.echo(f"Restored {_contents(restored.manifest)}.")
+    _say_who_is_in(restored.doors)
+
+
+def _write_down(url: str, restored: Restored, now: datetime) -> None:
+    """In the audit trail, which a schema of an earlier version may not have room for yet."""
+    if restored.manifest.revision != head_revision():
+        return
+    database = open_database(url)
+    with database.writing() as store:
+        details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.doors)}
+        Audit(store).write(now, WHO, "restore", "backup", details)
+    database.close()
+
+
+def _say_who_is_in(doors: Doors) -> None:
+    if doors.browsers:
+        say(f"{counted(doors.browsers, 'signed-in browser')} {'was' if doors.browsers == 1 else 'were'} signed out.")
+    if doors.tokens and doors.revoked:
+        say(f"{counted(doors.tokens, 'token')} {'was' if doors.tokens == 1 else 'were'} revoked: make new ones.")
+    elif doors.tokens:
+        say(
+            f"{counted(doors.tokens, 'token')} {'holds' if doors.tokens == 1 else 'hold'} again, revoked since the "
+            "backup or not: look at `imu-health token list`. --revoke-tokens would have revoked them all."
+        )
+
+
+def _contents(manifest: Manifest) -> str:
+    rows = sum(table.rows for table in manifest.tables)
+    return f"{many(rows, 'row')}, {many(len(manifest.files), 'file')}, schema {manifest.revision}"

@@ -1,21 +1,43 @@
-"""`imu-health diagnose`: what the simulation gets wrong about session files, without a server."""
+"""`imu-health diagnose`: what the simulation gets wrong about session files, without a server.
 
-from collections.abc import Callable
+People read the cause and what to do first, then its size, rivals, gain and limits.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
 
-from estimator import CalibrationSession, diagnose
+from estimator import diagnose
 from estimator.diagnosis import Diagnosis
-from estimator.errors import SessionError
-from estimator.session import DIAGNOSED
-from service.commands.console import AsJson, Files, for_each, print_json, problem_line, screen
-from service.commands.diagnosis_tables import diagnosis_view
-from service.commands.exits import UNUSABLE, say
+from estimator.diagnosis.results import Gain, Limit, Score, Structure
+from estimator.session import DIAGNOSED, CalibrationSession
+from estimator.wording import counted
+from service.commands.console import AsJson, Files, for_each, print_json, screen, usable
+from service.commands.speech import said
 from service.diagnosis.document import inapplicable_to_dict
+from service.diagnosis.records import state_of
+from service.diagnosis.words.diagnosis import NOT_APPLICABLE, errors_of, nothing_of, what_to_do
+from service.diagnosis.words.finding import FindingView, finding_view, standard_errors
+from service.diagnosis.words.limits import blind_causes
+from service.diagnosis.words.structures import told
 from service.ingest import read_file
+from service.kit.measures import number
+from service.sessions.records import DiagnosisState
 
+COLOURS = {
+    DiagnosisState.NOTHING: "green",
+    DiagnosisState.NAMED: "dark_orange",
+    DiagnosisState.UNDECIDED: "blue",
+    DiagnosisState.UNEXPLAINED: "magenta",
+}
+NEXT = slice(1, 3)
+"""Lines of the ranking that are shown beside the named cause."""
 Result = tuple[CalibrationSession, Diagnosis | None]
 """None of a programme in which no causes are looked for."""
 History = Annotated[
@@ -33,13 +55,8 @@ def diagnose_files(files: Files, as_json: AsJson = False, history: History = Non
 
 def _earlier(file: Path) -> CalibrationSession:
     """A session of the history; without it the answer would be another one, so it must be readable."""
-    try:
+    with usable(file):
         return read_file(file)
-    except SessionError as fault:
-        say(problem_line(file, fault.problems))
-    except OSError as fault:
-        say(f"{file}: file: {fault.strerror or fault}; check the name and that it can be read")
-    raise typer.Exit(UNUSABLE)
 
 
 def _diagnosed(file: Path, earlier: list[CalibrationSession]) -> Result:
@@ -54,3 +71,79 @@ def _print_json(result: Result) -> None:
 
 def _print_view(result: Result) -> None:
     screen().print(diagnosis_view(*result))
+
+
+def diagnosis_view(session: CalibrationSession, diagnosis: Diagnosis | None) -> RenderableType:
+    """The whole diagnosis of one session; None of a programme in which no causes are looked for."""
+    when = f", {session.started_at}" if session.started_at else ""
+    heading = Text.assemble((session.unit, "bold"), when)
+    told = [Text(said(NOT_APPLICABLE), "yellow")] if diagnosis is None else _told(diagnosis)
+    return Group(heading, *told, Text(""))
+
+
+def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
+    state = state_of(diagnosis)
+    for finding in diagnosis.findings:
+        yield from _finding(finding_view(finding, (), diagnosis.findings), COLOURS[state])
+    for structure in diagnosis.structures:
+        yield Text(said(_structure(structure)), COLOURS[DiagnosisState.UNEXPLAINED])
+    if state is DiagnosisState.UNEXPLAINED:
+        yield Text(f"  What to do: {said(what_to_do(diagnosis))}")
+    if not diagnosis.findings and not diagnosis.structures:
+        yield Text(said(nothing_of(diagnosis)), COLOURS[state])
+    else:
+        yield from (Text(said(sentence), "yellow") for sentence in errors_of(diagnosis))
+    yield from (Text(said(note)) for note in diagnosis.notes)
+    if diagnosis.findings:
+        yield Text(_gain(diagnosis.gain))
+    yield from _unseen(diagnosis.limits)
+
+
+def _finding(finding: FindingView, colour: str) -> Iterator[RenderableType]:
+    """The name or the choice, then the evidence."""
+    yield Text(said(finding.statement), f"bold {colour}")
+    if finding.doubtful and not finding.lone:
+        yield _choices(finding)
+    else:
+        yield Text(f"  {'If it comes back' if finding.lone else 'What to do'}: {said(finding.advice)}")
+    size = ", ".join(finding.amplitudes)
+    parts = [f"size {size}" if size else "", finding.shape, finding.evidence, finding.since]
+    yield Text("  " + "; ".join(part.rstrip(".") for part in parts if part))
+    if len(finding.ranking) > 1 and (finding.lone or not finding.doubtful):
+        others = ", ".join(f"{bar.name} {bar.percent}" for bar in finding.ranking[NEXT])
+        yield Text(f"  Next in the ranking: {others}", "dim")
+
+
+def _choices(finding: FindingView) -> Table:
+    table = Table(box=None, pad_edge=True, header_style="bold", padding=(0, 2, 0, 0))
+    for heading in ("cause", "share", "distance now", "what would distinguish it from the first"):
+        table.add_column(heading)
+    for choice in finding.choices:
+        table.add_row(escape(choice.name), choice.share, choice.now or "–", choice.measurement or "–")
+    return table
+
+
+def _structure(structure: Structure) -> str:
+    return f"{told([structure]).rstrip('.')} ({standard_errors(structure.strength)})"
+
+
+def _gain(gain: Gain) -> str:
+    lines = [_scores(f"Predicting {gain.held_out} held out of the estimation", gain.before, gain.after)]
+    if gain.session is not None:
+        started = gain.session.started_at or "no stated date"
+        lines.append(_scores(f"Predicting the session before ({started})", gain.session.before, gain.session.after))
+    return "\n".join(lines)
+
+
+def _scores(what: str, before: Score, after: Score) -> str:
+    chi2 = " → ".join(number(score.chi2_per_dof, 2) for score in (before, after))
+    log = " → ".join(number(score.log_score, 2) for score in (before, after))
+    return f"  {what}: χ² per degree of freedom {chi2}, log score {log}"
+
+
+def _unseen(limits: Sequence[Limit]) -> Iterator[Text]:
+    """What this session cannot see, by reason; and how many limits --json states."""
+    for row in blind_causes(limits):
+        yield Text(f"  Not seen ({row.reason}): {row.causes}", "dim")
+    seen = sum(bool(limit.amplitude) for limit in limits)
+    yield Text(f"  Smallest effects that would have been found: {counted(seen, 'cause')}, see --json", "dim")

@@ -1,23 +1,209 @@
 """`imu-health doctor`: what the service needs, looked at from this machine, and what to do where something lacks."""
 
+import difflib
 import os
-from collections.abc import Iterator
-from dataclasses import asdict
-from datetime import UTC, datetime
+import platform
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime, timedelta
+from enum import StrEnum
+from importlib.metadata import PackageNotFoundError, requires, version
+from pathlib import Path
 from typing import Annotated
 
 import typer
+from packaging.requirements import Requirement
 from pydantic import ValidationError
 from rich.markup import escape
 
 from service.commands.console import print_json, screen
-from service.commands.examine import Finding, State, contradictions, database, folders, program, variables
-from service.commands.exits import FAILED
 from service.commands.options import DatabaseUrl, DataFolder
+from service.commands.speech import FAILED
 from service.errors import ServiceError
-from service.settings import Settings
+from service.kit.limits import limits_of
+from service.opening import open_database
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
+from service.settings import PREFIX, VERSION, Settings, retired
+from service.storage import Database
+from service.storage.audit import Audit
+from service.storage.engine import shown_url
+from service.storage.space import space_at
+from service.storage.writable import require_writable
+from service.web.hosts import hosts_of
+
+ELSEWHERE = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")
+"""Variables that are read by commands and tests, not by the service."""
+APART = timedelta(seconds=5)
+"""More than a busy machine takes to answer; due dates and tokens are kept to the second."""
+SQLITE = "sqlite:///"
+
+
+class State(StrEnum):
+    """How well a matter stands."""
+
+    OK = "ok"
+    WARN = "warn"
+    """The service works; somebody should know."""
+    FAIL = "fail"
+    """Something cannot be done until it is put right."""
+
 
 COLOURS = {State.OK: "green", State.WARN: "yellow", State.FAIL: "red"}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One line."""
+
+    what: str
+    state: State
+    text: str
+    remedy: str = ""
+    """What to do; empty where nothing is to be done."""
+
+
+def program() -> Iterator[Finding]:
+    """Python, this program, and the libraries that it needs."""
+    yield Finding("python", State.OK, f"{platform.python_version()} at {sys.executable}, imu-health {VERSION}")
+    extras: dict[str, list[str]] = {}
+    missing = []
+    for wanted in map(Requirement, requires("imu-health") or ()):
+        extra = re.search(r"extra == [\"']([\w-]+)[\"']", str(wanted.marker or ""))
+        if extra is None or extra[1] != "test":
+            fault = _lacking(wanted)
+            if fault and extra is None:
+                missing.append(fault)
+            elif fault and extra is not None:
+                extras.setdefault(extra[1], []).append(fault)
+    if missing:
+        yield Finding("libraries", State.FAIL, "; ".join(missing), "Install again: pip install -r requirements.lock")
+    else:
+        yield Finding("libraries", State.OK, "all there, none too old")
+    for name, faults in extras.items():
+        yield Finding(f"extra {name}", State.OK, f"not installed ({'; '.join(faults)}); needed only for what it adds")
+
+
+def _lacking(wanted: Requirement) -> str:
+    """Why a library will not do; empty where it will."""
+    try:
+        found = version(wanted.name)
+    except PackageNotFoundError:
+        return f"{wanted.name} is missing"
+    return (
+        ""
+        if wanted.specifier.contains(found, prereleases=True)
+        else f"{wanted.name} is {found}, not {wanted.specifier}"
+    )
+
+
+def variables(environment: Mapping[str, str]) -> Iterator[Finding]:
+    """Variables of the environment that nothing reads, most often because they are misspelt."""
+    known = {*(f"{PREFIX}{name.upper()}" for name in Settings.model_fields), *ELSEWHERE}
+    known |= retired(environment).keys()  # a failure of its own, with what stands in their place
+    unknown = sorted(name for name in environment if name.upper().startswith(PREFIX) and name.upper() not in known)
+    for name in unknown:
+        close = difflib.get_close_matches(name.upper(), known, 1)
+        remedy = f"Did you mean {close[0]}?" if close else "Remove it, or look its name up on the page of settings."
+        yield Finding("settings", State.WARN, f"{name} is no setting and has no effect", remedy)
+    if not unknown:
+        yield Finding("settings", State.OK, "every variable is known")
+
+
+def contradictions(settings: Settings) -> Iterator[Finding]:
+    """Settings that do not go together."""
+    if settings.sign_in == "off" and not settings.is_local:
+        yield Finding("sign-in", State.WARN, f"nobody signs in, and {settings.host} may be reached from elsewhere",
+                      "Set IMU_HEALTH_SIGN_IN=required.")  # fmt: skip
+    if hosts_of(settings).any_address:
+        yield Finding("address", State.WARN, "the service answers to addresses in digits only",
+                      "Name it with IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS.")  # fmt: skip
+    if settings.oidc_issuer and not settings.oidc_client_id:
+        yield Finding("sign-in elsewhere", State.FAIL, "an OpenID provider is named, but not how it knows this service",
+                      "Set IMU_HEALTH_OIDC_CLIENT_ID.")  # fmt: skip
+    for name in ("oidc_client_secret_file", "seal_key_file", "seal_password_file"):
+        path: Path | None = getattr(settings, name)
+        if path is not None and not os.access(path, os.R_OK):
+            yield Finding(
+                "secrets", State.FAIL, f"{path} cannot be read", f"Correct {PREFIX}{name.upper()}, or the file."
+            )
+    if settings.seal_password_file and not settings.seal_key_file:
+        yield Finding("seal", State.WARN, "a password is given, but no key that it opens",
+                      "Set IMU_HEALTH_SEAL_KEY_FILE.")  # fmt: skip
+
+
+def folders(settings: Settings) -> Iterator[Finding]:
+    """Whether uploads can be kept, and how much room there is."""
+    try:
+        require_writable(settings.files)
+    except ServiceError as fault:
+        yield Finding("folder", State.FAIL, str(fault))
+        return
+    yield Finding("folder", State.OK, f"{settings.files} can be written")
+    space = space_at(settings.files, limits_of(settings).free)
+    free = f"{space.free / 2**30:.1f} GiB free"
+    if space.too_little:
+        yield Finding("disk", State.FAIL, space.too_little, "Make room, or move the data folder.")
+    elif space.free < 4 * space.least:
+        yield Finding("disk", State.WARN, f"{free}; uploads stop at {space.least / 2**20:.0f} MiB", "Make room soon.")
+    else:
+        yield Finding("disk", State.OK, free)
+
+
+def database(settings: Settings, now: datetime) -> Iterator[Finding]:
+    """Whether the database answers, is at the newest migration, and agrees about the time."""
+    where = shown_url(settings.database)
+    if settings.database.startswith(SQLITE) and not Path(settings.database.removeprefix(SQLITE)).exists():
+        yield Finding("database", State.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
+        return
+    opened = open_database(settings.database)
+    try:
+        opened.require_ready()
+        yield Finding("database", State.OK, f"{where} answers and is at the newest migration")
+        yield from _clock(opened, now)
+        yield from _waiting(opened, settings)
+    except ServiceError as fault:
+        yield Finding("database", State.FAIL, f"{where}: {fault}", _remedy(str(fault)))
+    finally:
+        opened.close()
+
+
+def _remedy(fault: str) -> str:
+    return "" if "run" in fault else "Start it, or correct IMU_HEALTH_DATABASE_URL."
+
+
+def _clock(opened: Database, now: datetime) -> Iterator[Finding]:
+    """This machine's clock against the server's, and against what is stored already."""
+    remedy = "Set the clocks of both machines, best by NTP."
+    server = opened.server_time()
+    with opened.reading() as store:
+        lines = Audit(store).page(1)
+    if server is not None and abs(server - now) > APART:
+        yield Finding("clock", State.FAIL, f"{abs(server - now).total_seconds():.0f} s apart from the database", remedy)
+    elif lines and lines[0].at - now > APART:
+        text = f"the audit trail's last line is of {lines[0].at:%Y-%m-%d %H:%M:%S} UTC, later than this clock says"
+        yield Finding("clock", State.FAIL, text, remedy)
+    else:
+        yield Finding("clock", State.OK, f"{now:%Y-%m-%d %H:%M:%S} UTC, as the database has it")
+
+
+def _waiting(opened: Database, settings: Settings) -> Iterator[Finding]:
+    """Processes that work beside the requests, and what waits for them."""
+    with opened.reading() as store:
+        waiting = WorkQueue(store, WorkKind.DIAGNOSIS).count()
+    workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
+    text = f"{workers} beside the requests, {waiting} diagnoses waiting"
+    if workers == 0:
+        yield Finding(
+            "workers", State.WARN, text, "Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."
+        )
+    elif workers > cores:
+        yield Finding("workers", State.WARN, f"{text}; the machine has {cores} cores",
+                      "Set IMU_HEALTH_DIAGNOSIS_WORKERS to fewer.")  # fmt: skip
+    else:
+        yield Finding("workers", State.OK, text)
 
 
 def doctor(

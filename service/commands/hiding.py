@@ -14,7 +14,7 @@ from estimator.causes import CATALOGUE, Cause, find
 from estimator.errors import SessionError
 from estimator.hiding import Hidden, TooWeakError, UnhideableError, hide, hide_any
 from estimator.session import CALIBRATIONS, GYROSCOPE, TWO_AXIS_STAND, CalibrationSession
-from service.commands.exits import UNUSABLE, say
+from service.commands.speech import UNUSABLE, say
 
 ANY = "random"
 """As the cause: one that the seed draws."""

@@ -9,11 +9,9 @@ from rich.table import Table
 from rich.text import Text
 
 from estimator import calibrate
-from estimator.errors import SessionError
 from estimator.parity import ParityAccumulator, ParityResult
 from estimator.parity.results import Sight
-from service.commands.console import AsJson, print_json, problem_line, screen
-from service.commands.exits import UNUSABLE, say
+from service.commands.console import AsJson, print_json, screen, usable
 from service.ingest.stream import open_recording, session_in
 from service.judging.in_service_words import found_in_words
 from service.kit.measures import COVERAGE, in_words
@@ -42,10 +40,9 @@ def parity(
 
 def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> ParityResult:
     """Exit code 2 with one line when either file cannot be used."""
-    place = reference
-    try:
+    with usable(reference):
         calibration = calibrate(session_in(reference))
-        place = file
+    with usable(file):
         recording = open_recording(file)
         head = recording.head
         accumulator = ParityAccumulator(
@@ -60,12 +57,6 @@ def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> Par
         for chunk in recording.chunks:
             accumulator.add(chunk)
         return accumulator.result(motion=motion, false_alarm=false_alarm)
-    except SessionError as fault:
-        say(problem_line(place, fault.problems))
-        raise typer.Exit(UNUSABLE) from fault
-    except OSError as fault:
-        say(f"{place}: file: {fault.strerror or fault}; check the name and that it can be read")
-        raise typer.Exit(UNUSABLE) from fault
 
 
 def parity_view(result: ParityResult) -> RenderableType:

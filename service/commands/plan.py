@@ -1,27 +1,38 @@
-"""`imu-health plan`: what a session would tell, before it is measured."""
+"""`imu-health plan`, `missing` and `ready`: what a session would tell before it is measured, what it still lacks while
+it is, and whether its unit is warm and still enough for it.
+"""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, TypeVar
+from urllib.parse import urlencode
 
 import numpy as np
 import typer
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from rich.console import Group, RenderableType
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.errors import Problem, SessionError
-from estimator.planning import OrientationRank, Plan, plan, proposed_orientations, rank_of_orientations
+from estimator.planning import OrientationRank, Plan, missing, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
-from service.commands.console import AsJson, print_json, problem_line, screen
-from service.commands.exits import UNUSABLE, say
+from service.client import connect
+from service.commands.console import AsJson, print_json, screen, usable
+from service.commands.speech import FAILED
 from service.ingest import read_file
 from service.kit.measures import number
 from service.planning.question import PlanQuestion
+from service.planning.ready import ReadyQuestion
+from service.planning.rules import judged_by_defaults
+from service.planning.words.missing import missing_in_words
 from service.planning.words.plan import UNSEEN, blind, headline, seen, sigma_in_words, tolerance_in_words, unobserved
+from service.planning.words.readiness import headline as readiness_headline
+from service.planning.words.readiness import reasons
 
+Question = TypeVar("Question", bound=BaseModel)
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """In the order of the table."""
 MOST_ORIENTATIONS = 200
@@ -66,26 +77,17 @@ def plan_session(
 
     A SESSION in arbitrary orientations is answered with the rank of its orientations and what to add.
     """
-    question = asked(
-        kind=kind, sensors=sensors, elevation=alpha, positions=positions, runs=runs, minutes=minutes, noise=noise,
-        **dict(map(amount, tolerance or ())),
+    question = checked(
+        PlanQuestion, kind=kind, sensors=sensors, elevation=alpha, positions=positions, runs=runs, minutes=minutes,
+        noise=noise, **dict(map(amount, tolerance or ())),
     )  # fmt: skip
-    try:
+    with usable(file or Path("plan")):
         like = question.cone() if file is None else read_file(file)
         if orientations is not None or like.programme == ARBITRARY_ORIENTATIONS:
             _show(ranked(like, orientations), as_json)
         else:
             sigma = question.sigma(like) if file is None or noise is not None else input_noise(like)
             _show(plan(like, question.request(head_kind(like)), sigma=sigma), as_json)
-    except (SessionError, OSError) as fault:
-        say(_line(file, fault))
-        raise typer.Exit(UNUSABLE) from fault
-
-
-def _line(file: Path | None, fault: SessionError | OSError) -> str:
-    if isinstance(fault, SessionError):
-        return problem_line(file or Path("plan"), fault.problems)
-    return f"{file}: file: {fault.strerror or fault}; check the name and that it can be read"
 
 
 def _show(found: Plan | OrientationRank, as_json: bool) -> None:
@@ -95,10 +97,10 @@ def _show(found: Plan | OrientationRank, as_json: bool) -> None:
         screen().print(plan_view(found) if isinstance(found, Plan) else orientation_view(found))
 
 
-def asked(**options: object) -> PlanQuestion:
-    """The question; a usage error that names the option where it makes no sense."""
+def checked(model: type[Question], /, **options: object) -> Question:
+    """The options that were given as a question; a usage error that names each that makes no sense."""
     try:
-        return PlanQuestion.model_validate({k: v for k, v in options.items() if v is not None})
+        return model.model_validate({name: value for name, value in options.items() if value is not None})
     except ValidationError as fault:
         faults = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in fault.errors())
         raise typer.BadParameter(faults) from fault
@@ -188,3 +190,97 @@ def orientation_view(found: OrientationRank) -> RenderableType:
         for direction in directions:
             table.add_row(name, *(number(float(x), 3) for x in direction))
     return Group(*lines, Text(""), table)
+
+
+def missing_positions(
+    file: Annotated[Path, typer.Argument(metavar="SESSION", help="The session file as it is so far.")],
+    *,
+    positions: Annotated[
+        int | None,
+        typer.Option("--positions", "-n", min=2, max=360, help="Positions a run.", show_default="by the steps so far"),
+    ] = None,
+    runs: Annotated[str, typer.Option(help="both, or direct where the block is not flipped.")] = "both",
+    as_json: AsJson = False,
+) -> None:
+    """Say which positions a session still lacks while it is measured: settings of the stand, or orientations to add."""
+    if runs not in ("both", "direct"):
+        raise typer.BadParameter(f"--runs is {runs}; give both or direct")
+    with usable(file):
+        found = missing(read_file(file), positions, both_runs=runs == "both")
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        screen().print(*missing_in_words(found), sep="\n", highlight=False)
+
+
+def ready(
+    file: Annotated[Path, typer.Argument(metavar="SESSION", help="The first rows, or the first minutes of a raw log.")],
+    *,
+    duration: Annotated[
+        float | None,
+        typer.Option(help="Minutes that the measurement will take.", show_default="as the type's last session, or 96"),
+    ] = None,
+    bias: Annotated[
+        float | None, typer.Option(help="Tolerance of the bias, µg (°/h).", show_default="50, 0.05")
+    ] = None,
+    scale: Annotated[float | None, typer.Option(help="Tolerance of the scale factor, ppm.", show_default="100")] = None,
+    coefficient: Annotated[
+        float | None,
+        typer.Option(
+            help="Temperature coefficient of the zeros at most, µg/K (°/h/K): then the thermometer is judged too.",
+            show_default=False,
+        ),
+    ] = None,
+    unit_type: Annotated[
+        str | None,
+        typer.Option("--type", help="Unit type by whose tolerances is judged; asks --server.", show_default=False),
+    ] = None,
+    server: Annotated[
+        str | None,
+        typer.Option(help="Service that knows the unit and its type.", envvar="IMU_HEALTH_SERVER", show_default=False),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Say whether a unit is warm and still enough to be measured, by the first minutes of a record: exit code 0 for
+    ready, 1 for not yet.
+
+    Leave the block in one position and record: imu-health ready first-minutes.json --duration 96. What is judged is the
+    drift to come while the programme lasts, against a quarter of the tolerances. Nothing is stored.
+    """
+    question = checked(
+        ReadyQuestion, minutes=duration, unit_type=unit_type, bias=bias, scale=scale, coefficient=coefficient
+    )
+    if unit_type is not None and server is None:
+        raise typer.BadParameter("--type is known to a service: give its address with --server")
+    document = _here(file, question) if server is None else _there(file, question, server)
+    _show_readiness(document, as_json)
+    if not document["ready"]:
+        raise typer.Exit(FAILED)
+
+
+def _here(file: Path, asked: ReadyQuestion) -> dict[str, Any]:
+    """On this machine, by default tolerances."""
+    with usable(file):
+        answer = judged_by_defaults(read_file(file, part=True), asked)
+    said = [readiness_headline(answer.found), *reasons(answer.found, answer.kind)]
+    return {**answer.found.to_dict(), "unit_type": None, "said": said}
+
+
+def _there(file: Path, asked: ReadyQuestion, server: str) -> dict[str, Any]:
+    """By the service, which knows the unit."""
+    query = urlencode(asked.model_dump(exclude_none=True))
+    with usable(file):
+        content = file.read_bytes()
+        with connect(server) as client:
+            return dict(client.answer("POST", f"/plan/ready?{query}", files={"file": (file.name, content)}).json())
+
+
+def _show_readiness(document: dict[str, Any], as_json: bool) -> None:
+    if as_json:
+        print_json(document)
+        return
+    colour = "green" if document["ready"] else "bold red"
+    first, *others = document["said"]
+    screen().print(
+        f"[bold]{escape(document['unit'])}[/]  [{colour}]{escape(first)}[/]", *map(escape, others), sep="\n  "
+    )

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from service.commands.console import AsJson, print_json, progress, screen
-from service.commands.exits import FAILED, many, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
+from service.commands.speech import FAILED, many, say
 from service.models.store import Models
 from service.opening import open_storage
 from service.records.many import Outcome, Run, by_workers, can_share, one_by_one, units_behind

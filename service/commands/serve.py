@@ -7,8 +7,8 @@ import typer
 
 from service.app import create_app, utc_now
 from service.commands.console import progress
-from service.commands.exits import say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
+from service.commands.speech import say
 from service.demo.fill import FILES, fill, is_wanted
 from service.kit.log import write_log
 from service.opening import open_database

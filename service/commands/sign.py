@@ -10,9 +10,9 @@ import typer
 from rich.markup import escape
 
 from service.client import connect
-from service.commands.certificate import Session
 from service.commands.console import DEFAULT_SERVER, Server, screen
-from service.commands.exits import say
+from service.commands.documents import Session
+from service.commands.speech import say
 from service.errors import ConflictError
 from service.papers.changes import NOT_ISSUED
 from service.papers.records import Meaning

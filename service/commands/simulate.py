@@ -18,6 +18,7 @@ from estimator.results import ARCSEC
 from estimator.session import (
     ACCELEROMETER,
     ARBITRARY_ORIENTATIONS,
+    GYROSCOPE,
     IN_SERVICE,
     RATE_TABLE,
     ROTATION_ALIGNMENT,
@@ -41,11 +42,22 @@ from service.commands.hiding import (
     warmed,
     write_answer,
 )
-from service.commands.simulated_block import Alpha, Block, Noise, check_block, noise_of
-from service.demo.blocks import norms_of, schedule_of
+from service.demo.blocks import MICRO_G, norms_of, schedule_of
 from service.demo.changes import ELEMENT, MICRO, Change, step_of
-from service.demo.other_programmes import alignment, orientations, rate_table, recording, turntable_truth
+from service.demo.other_programmes import RATE_NOISE, alignment, orientations, rate_table, recording, turntable_truth
 
+USUAL_NOISE = {ACCELEROMETER: 2.5, GYROSCOPE: 0.3}
+"""One sigma of an averaged reading, unless another is asked for: µg; pulses."""
+Block = Annotated[
+    str, typer.Option(help=f"What they are, {ACCELEROMETER} or {GYROSCOPE}: on a stand, gyros count pulses.")
+]
+Alpha = Annotated[
+    float, typer.Option(min=1, max=89, help="Elevation of the head's axis, degrees; of gyros χ, to the Earth's axis.")
+]
+Noise = Annotated[
+    float | None,
+    typer.Option(min=0, help="One sigma of an averaged reading, µg; of gyros pulses.", show_default="2.5; 0.3"),
+]
 FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
 """Fixed, so that the same seed gives the same files wherever the clock is past them."""
 INTERVAL = timedelta(days=60)
@@ -303,3 +315,18 @@ def _sensors(simulated: Simulated, truth: SensorParameters) -> dict[str, Any]:
         ],
         **errors,
     }
+
+
+def check_block(block: str, programme: str) -> None:
+    """A usage error where a programme is not simulated of such a block."""
+    if block not in USUAL_NOISE:
+        raise typer.BadParameter(f"--block is {block}; give {ACCELEROMETER} or {GYROSCOPE}")
+    if block == GYROSCOPE and programme != TWO_AXIS_STAND:
+        raise typer.BadParameter(f"--block {block}: {programme} does not show it; {TWO_AXIS_STAND} does")
+
+
+def noise_of(schedule: CalibrationSession, noise: float | None) -> Array:
+    """(m,) one sigma of an averaged reading, reading units: ``noise`` is µg, of a block of pulse gyros pulses."""
+    own = USUAL_NOISE[schedule.block] if noise is None else noise
+    found = [MICRO_G * own * s.nominal_scale if s.kind == ACCELEROMETER else RATE_NOISE for s in schedule.sensors]
+    return np.array(found) if schedule.count_time is None else np.full(len(found), own)

@@ -1,4 +1,4 @@
-"""The language in which commands say verdicts, findings and refusals: the system's, or the one of `--lang`.
+"""What a command says and how it ends: its exit code, a line that says why, and the language of both.
 
 Helps, headings and what a command says of itself stay English. JSON never depends on the language.
 """
@@ -8,9 +8,27 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import typer
+
 from estimator.errors import Problem
 from estimator.on_demand import function_on_demand
 from service.languages.language import Language, of_environment
+
+FAILED = 1
+"""Exit code where what was asked for could not be done."""
+UNUSABLE = 2
+"""Exit code where a file cannot be used."""
+
+
+def many(number: int, thing: str) -> str:
+    """``1 row``, ``12,000 rows``."""
+    return f"{number:,} {thing}{'' if number == 1 else 's'}"
+
+
+def say(line: str) -> None:
+    """One line on standard error."""
+    typer.echo(" ".join(line.split()), err=True)
+
 
 if TYPE_CHECKING:
     from service.languages.catalogue import catalogue_of

@@ -1,18 +1,139 @@
-"""`imu-health upload`: session files to a running service."""
+"""`imu-health upload`: session files to a running service; a large one is sent as it is read, and followed until it is
+stored. Long work is followed by a bar on standard error, which can be left while the work goes on.
+"""
 
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from time import sleep
+from typing import IO, Annotated, Any
 
 import typer
+from rich.console import Console
 from rich.markup import escape
+from rich.progress import (
+    BarColumn,
+    DownloadColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
-from service.client import connect
+from estimator.errors import Problem
+from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
-from service.commands.sending import Sending
-from service.commands.speech import said
+from service.commands.speech import said, say
+from service.errors import RefusedError, ServiceError
+from service.jobs.records import KILOBYTE, OPEN, JobKind, JobState
 from service.sessions.decision import Verdict
 from service.sessions.words.conditions import Condition, condition_of
+
+LOOK_EVERY = 1.0
+"""Seconds between two looks at a job that is followed."""
+Moved = Callable[[int, int | None, str], None]
+"""How much is done, of how much where that is known, and what it is."""
+
+
+@dataclass(frozen=True)
+class Sending:
+    """How files are sent."""
+
+    client: Client
+    stated: dict[str, str]
+    """What is said of each."""
+    wait: bool
+    quiet: bool
+
+    def sent(self, file: Path) -> dict[str, Any]:
+        """The receipt; of a large file that nobody waits for its job. RefusedError where it cannot be used."""
+        if not are_large((file,)):
+            return self.client.send(file.name, file.read_bytes(), self.stated)
+        size, counts = file.stat().st_size, DownloadColumn()
+        with file.open("rb") as content, bar(file.name, quiet=self.quiet, counts=counts) as moved:
+            watched: Any = _Watched(content, size, f"sending {file.name}", moved)
+            answer = self.client.send(file.name, watched, self.stated, later=True)
+        if "verdict" in answer or not self.wait:
+            return answer
+        return self._became(followed(self.client, answer["id"], quiet=self.quiet))
+
+    def _became(self, job: dict[str, Any]) -> dict[str, Any]:
+        """The receipt of the session that a file became."""
+        if job["problems"]:
+            found = tuple(Problem(one["field"], one["message"], one["row"]) for one in job["problems"])
+            raise RefusedError(f"{job['subject']} cannot be used.", found)
+        if job["state"] != JobState.DONE:
+            reasons = " ".join(one["reason"] for one in job["failures"])
+            raise ServiceError(f"Job {job['id']} is {job['state']}. {reasons}".strip())
+        receipt: dict[str, Any] = self.client.get(f"/uploads/{job['upload']}").json()["session"]
+        return receipt | {"created": True, "url": f"{self.client.server}/api/v1/sessions/{receipt['id']}"}
+
+
+@dataclass(frozen=True)
+class _Watched:
+    """A file that says how much of it was taken."""
+
+    file: IO[bytes]
+    size: int
+    doing: str
+    moved: Moved
+
+    def read(self, size: int = -1) -> bytes:
+        """The next part."""
+        part = self.file.read(size)
+        self.moved(self.file.tell(), self.size, self.doing)
+        return part
+
+    def fileno(self) -> int:
+        """By which its length is told."""
+        return self.file.fileno()
+
+    def seek(self, place: int) -> int:
+        """To its beginning, where it is sent."""
+        return self.file.seek(place)
+
+
+def followed(client: Client, id: int, *, quiet: bool) -> dict[str, Any]:
+    """The job once it has ended. Whoever breaks off is told that it goes on, and how to find it again."""
+    job: dict[str, Any] = client.get(f"/jobs/{id}").json()
+    is_upload = job["kind"] == JobKind.UPLOAD
+    size = KILOBYTE if is_upload else 1
+    try:
+        with bar(f"job {id}", quiet=quiet, counts=DownloadColumn() if is_upload else MofNCompleteColumn()) as moved:
+            while job["state"] in OPEN:
+                moved(size * job["done"], size * job["total"] if job["done"] else None, _doing(job))
+                sleep(LOOK_EVERY)
+                job = client.get(f"/jobs/{id}").json()
+    except KeyboardInterrupt:
+        say(f"Job {id} goes on without you: imu-health jobs show {id} --wait, or imu-health jobs cancel {id}")
+        raise
+    return job
+
+
+def _doing(job: dict[str, Any]) -> str:
+    if job["kind"] != JobKind.UPLOAD:
+        return f"job {job['id']}"
+    again = f", time {job['times'] + 1}" if job["times"] else ""
+    return f"job {job['id']}: reading {job['subject']}{again}"
+
+
+@contextmanager
+def bar(doing: str, *, quiet: bool, counts: ProgressColumn) -> Iterator[Moved]:
+    """A bar, on a terminal only; yields what moves it on."""
+    is_shown = not quiet and sys.stderr.isatty() and sys.stdout.isatty()
+    columns = (TextColumn("{task.description}"), BarColumn(), counts, TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True, disable=not is_shown) as progress:
+        task = progress.add_task(doing, total=None)
+
+        def moved(done: int, total: int | None, now: str) -> None:
+            progress.update(task, completed=done, total=total, description=now)
+
+        yield moved
+
 
 COLOURS = {
     Verdict.PASS: "green",

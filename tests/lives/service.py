@@ -17,7 +17,7 @@ from tests.patience import until
 
 READY = "imu-health is ready: open "
 forking = multiprocessing.get_context("forkserver")
-forking.set_forkserver_preload(["service.cli", "service.commands.serve", "service.commands.backup"])
+forking.set_forkserver_preload(["service.cli", "service.commands.serve", "service.commands.database"])
 """Every start would load the program anew otherwise, a second and more of work."""
 QUIET = {
     WATCHED: "yes",

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from estimator import calibrate
 from estimator.reading import read_session
-from service.commands.tables import calibration_view
+from service.commands.calibrate import calibration_view
 from tests.builders import accelerometer_block, arbitrary_orientations, gyro_block
 from tests.service.cli.conftest import Run, write
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from service.commands.examine import State, database, variables
+from service.commands.doctor import State, database, variables
 from service.records.unit_changes import add_note
 from service.settings import Settings
 from service.storage import Storage

@@ -1,0 +1,291 @@
+"""Commands that only ask a running service: records, services, notes, flags, customers, saved views, whether a unit may
+be used. Each is a row of one table at the end of this file; those that need more than one call are functions.
+"""
+
+import re
+import webbrowser
+from datetime import datetime
+from http import HTTPStatus
+from itertools import takewhile
+from typing import Annotated
+
+import typer
+from rich.markup import escape
+
+from service.client import Client, connect
+from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
+from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, Listing, Server, screen
+from service.commands.speech import said
+from service.errors import ServiceError
+from service.flags.records import FlagState
+
+COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
+"""Red asks for somebody."""
+SESSION_ID = re.compile("[0-9a-f]{20}")
+"""What a session's id looks like; a serial number may look like one as well."""
+
+By = Annotated[str, typer.Option("--by", help="Your name.")]
+Why = Annotated[str, typer.Option("--why", help="Why.")]
+WhyHandled = Annotated[str, typer.Option("--why", help="Why; what was found or done.")]
+Unit = Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")]
+SessionId = Annotated[str, typer.Argument(metavar="SESSION", help="The session's id.")]
+FlagId = Annotated[int, typer.Argument(metavar="FLAG", help="Number of the flag.")]
+At = Annotated[datetime | None, typer.Option(help="When, UTC.", show_default="now")]
+DAYS = ["%Y-%m-%d"]
+"""How a day is written."""
+
+
+def is_session(client: Client, name: str) -> bool:
+    """Whether a stored session has this id; anything else is taken for a unit's serial number."""
+    if not SESSION_ID.fullmatch(name):
+        return False
+    try:
+        client.get(f"/sessions/{name}")
+    except ServiceError as fault:
+        if fault.status != HTTPStatus.NOT_FOUND:
+            raise
+        return False
+    return True
+
+
+def open_page(
+    what: Annotated[
+        str | None,
+        typer.Argument(metavar="[UNIT|SESSION]", help="Serial number, or id of a session.", show_default="fleet"),
+    ] = None,
+    server: Server = DEFAULT_SERVER,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Print the address alone.")] = True,
+) -> None:
+    """Open the page of a unit or a session in the browser, and print its address; without one the fleet."""
+    with connect(server) as client:
+        if what is None:
+            client.get("/me")
+            page = "/"
+        elif is_session(client, what):
+            page = f"/sessions/{what}"
+        else:
+            page = in_address("/units/{unit}", {"unit": what})
+            client.get(page)
+    address = server.rstrip("/") + page
+    typer.echo(address)
+    if browser:
+        webbrowser.open(address)
+
+
+def choose_reference(id: SessionId, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
+    """Choose and approve a session as what all others of its time are judged against."""
+    with connect(server) as client:
+        unit = client.get(f"/sessions/{id}").json()["unit"]
+        _show_session(client.post(f"/units/{unit}/reference", {"session": id, "by": by, "why": why}))
+
+
+def attach_files(
+    files: Files,
+    to: Annotated[str, typer.Option("--to", metavar="UNIT|SESSION", help="Serial number, or id of a session.")],
+    by: By,
+    text: Annotated[str, typer.Option("--text", help="What they show.")] = "",
+    *,
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Attach files to a unit or a session: photographs, protocols. They are kept as they are and never opened."""
+    with connect(server) as client:
+        subject = "session" if is_session(client, to) else "unit"
+        for file in files:
+            form = {subject: to, "by": by, "text": text}
+            kept = client.answer("POST", "/attachments", files={"file": (file.name, file.read_bytes())}, data=form)
+            found = kept.json()
+            screen().print(f"[bold]{escape(found['unit'])}[/]  attachment {found['id']}  {escape(found['filename'])}")
+
+
+def write_note(
+    unit: Unit,
+    text: Annotated[str, typer.Argument(metavar="TEXT", help="What is worth knowing.")],
+    by: By,
+    at: At = None,
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Write a note on a unit's history, or on a session."""
+    note = {"text": text, "by": by}
+    with connect(server) as client:
+        if not is_session(client, unit):
+            when = {} if at is None else {"at": at.isoformat()}
+            _show_event(client.post(in_address("/units/{unit}/notes", {"unit": unit}), note | when))
+        elif at is None:
+            _show_event(client.post(f"/sessions/{unit}/notes", note))
+        else:
+            raise typer.BadParameter("a note on a session has the date of the session", param_hint="--at")
+
+
+def list_flags(
+    context: typer.Context,
+    unit: Annotated[str | None, typer.Option(help="Only of this serial number.")] = None,
+    state: Annotated[FlagState | None, typer.Option(help="Only in this state.", show_default="open ones")] = None,
+    assigned: Annotated[
+        str | None, typer.Option(help="Only of this login or name; `me`: of the token's account; `nobody`.")
+    ] = None,
+    server: Server = DEFAULT_SERVER,
+    *,
+    form: FormOf = None,
+    as_json: AsLines = False,
+) -> None:
+    """Show flags; without a state those that are open, which the API has first."""
+    if context.invoked_subcommand is not None:
+        return
+    wanted = {"unit": unit, "state": state, "assigned": assigned}
+    with connect(server) as client:
+        found = client.every("/flags", "flags", limit=1000, **{name: value for name, value in wanted.items() if value})
+        shown = list(found if state else takewhile(lambda flag: flag["state"] != FlagState.RESOLVED, found))
+    columns = Columns("flags", "There is none." if state else "No flag is open.", FLAG_CELLS)
+    Listing(form, as_json).show(shown, lambda: columns.table(shown))
+
+
+def assign_flags(
+    ids: Annotated[list[int], typer.Argument(metavar="FLAG...", help="Numbers of the flags.", show_default=False)],
+    to: Annotated[str, typer.Option("--to", help="Login or name; empty for nobody in particular.")],
+    by: By,
+    why: Why = "",
+    *,
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Say who is to look after flags; `imu-health flags --assigned NAME` finds them."""
+    with connect(server) as client:
+        for id in ids:
+            _show_flag(client.post(f"/flags/{id}/assign", {"to": to, "by": by, "why": why}))
+
+
+def _show_session(found: Answer) -> None:
+    reference = "  reference" if found["is_reference"] else ""
+    line = f"Session {found['id']}  [bold]{escape(found['unit'])}[/]  {found['state']}{reference}"
+    screen().print(f"{line}  {escape(found['reason'])}")
+
+
+def _show_withdrawn_service(found: Answer) -> None:
+    screen().print(f"Service {found['id']}  [bold]{escape(found['unit'])}[/]  {found['kind']}  {found['state']}")
+
+
+def _show_event(kept: Answer) -> None:
+    what = kept.get("kind", "note")
+    screen().print(f"[bold]{escape(kept['unit'])}[/]  {kept['at'][:10]}  {what} {kept['id']} recorded")
+
+
+def _show_flag(flag: Answer) -> None:
+    unit, what = escape(flag["unit"]), escape(said(flag["summary"]))
+    screen().print(f"Flag {flag['id']}  [bold]{unit}[/]  {_flag_state(flag)}  {what}")
+
+
+def _flag_state(flag: Answer) -> str:
+    state = FlagState(flag["state"])
+    return f"[{COLOURS[state]}]{state.value}[/]"
+
+
+def _show_customer(kept: Answer) -> None:
+    where = escape(kept["address"] or "address not stated")
+    screen().print(f"[bold]{escape(kept['unit'])}[/]  {escape(kept['name'])}, {where}")
+
+
+def _show_stand(kept: Answer) -> None:
+    screen().print(f"[bold]{escape(kept['stand'])}[/]  {escape(kept['number'])}, valid until {kept['valid_until']}")
+
+
+def _show_usable(answer: Answer) -> None:
+    word = f"[green]{said('usable')}[/]" if answer["usable"] else f"[bold red]{said('not usable')}[/]"
+    lines = (answer["why"], *answer["reasons"][1:], *(f"But: {line}" for line in answer["reservations"]))
+    screen().print(f"[bold]{escape(answer['unit'])}[/]  {word}", *(escape(said(line)) for line in lines), sep="\n  ")
+
+
+FLAG_CELLS = {
+    "flag": lambda flag: str(flag["id"]),
+    "unit": lambda flag: escape(flag["unit"]),
+    "state": _flag_state,
+    "since": lambda flag: flag["raised_at"][:10],
+    "who": lambda flag: escape(flag["assignee"]),
+    "where": lambda flag: escape(flag["place"]),
+    "what": lambda flag: escape(said(f"{flag['summary']} {flag['proposal']}".strip())),
+}
+VIEWS = Columns(
+    "views",
+    "No view is saved yet.",
+    {
+        "view": lambda view: str(view["id"]),
+        "page": lambda view: view["page"],
+        "name": lambda view: escape(view["name"]),
+        "address": lambda view: escape(f"{view['server'].rstrip('/')}{view['url']}"),
+    },
+)
+SERVICE = {
+    "unit": Unit,
+    "kind": Annotated[str, typer.Argument(help="adjustment, repair, sensor-swap, reference or service.")],
+    "by": By,
+    "at": (At, None),
+    "sensor": (
+        Annotated[str, typer.Option(help="The sensor that it concerns.", show_default="the whole unit")],
+        "",
+    ),
+    "note": (Annotated[str, typer.Option(help="What exactly.")], ""),
+}
+CUSTOMER = {
+    "unit": Unit,
+    "name": Annotated[str, typer.Argument(metavar="NAME", help="For whom it is calibrated.")],
+    "by": By,
+    "address": (Annotated[str, typer.Option(help="Where they can be reached.")], ""),
+}
+STAND_CERTIFICATE = {
+    "stand": Annotated[str, typer.Argument(metavar="STAND", help="Its name, as session files give it.")],
+    "number": Annotated[str, typer.Option(help="As printed on the certificate.")],
+    "issued_by": Annotated[str, typer.Option(help="The laboratory that calibrated the stand.")],
+    "issued_on": Annotated[datetime, typer.Option(formats=DAYS, help="From this day on it speaks for the stand.")],
+    "valid_until": Annotated[datetime, typer.Option(formats=DAYS, help="The last day on which it holds.")],
+    "by": By,
+}
+ON_SESSION = {"id": SessionId, "by": By, "why": Why}
+ON_SERVICE = {
+    "number": Annotated[int, typer.Argument(metavar="SERVICE", help="Number of the service.")],
+    "by": By,
+    "why": Why,
+}
+ON_FLAG = {"id": FlagId, "by": By, "why": WhyHandled}
+
+COMMANDS: dict[str, Row] = {
+    "session withdraw": Call(
+        "POST /sessions/{id}/withdraw",
+        ON_SESSION,
+        _show_session,
+        "Take a session back: it stays readable, and tells nothing of its unit any more.",
+    ),
+    "session accept": Call(
+        "POST /sessions/{id}/accept",
+        ON_SESSION,
+        _show_session,
+        "Say that a session counts that was questioned, withdrawn or superseded.",
+    ),
+    "session reference": choose_reference,
+    "withdraw-service": Call("POST /services/{number}/withdraw", ON_SERVICE, _show_withdrawn_service),
+    "service": Call("POST /units/{unit}/services", SERVICE, _show_event),
+    "note": write_note,
+    "attach": attach_files,
+    "flags": list_flags,
+    "flags acknowledge": Call(
+        "POST /flags/{id}/acknowledge",
+        ON_FLAG,
+        _show_flag,
+        "Say that somebody looks after the flag, and why it can stay for now.",
+    ),
+    "flags resolve": Call("POST /flags/{id}/resolve", ON_FLAG, _show_flag, "Say that the matter is settled, and how."),
+    "flags assign": assign_flags,
+    "customer": Call("PUT /units/{unit}/customer", CUSTOMER, _show_customer),
+    "stand-certificate": Call("PUT /stands/{stand}/certificate", STAND_CERTIFICATE, _show_stand),
+    "usable": Call(
+        "GET /units/{unit}/usable",
+        {"unit": Unit},
+        _show_usable,
+        has_json=True,
+        is_failure=lambda answer: not answer["usable"],
+    ),
+    "views": Call("GET /views", {}, VIEWS),
+    "open": open_page,
+}
+
+
+def command_of(name: str) -> typer.Typer:
+    """The command or the group of commands of a name."""
+    return app_of(name, COMMANDS)

@@ -1,0 +1,163 @@
+"""Commands that make one call of the API: a row of a table becomes a command of Typer.
+
+Names in braces in the address are taken from the command's parameters; the other parameters are the query or the body.
+"""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from string import Formatter
+from typing import Any
+from urllib.parse import quote
+
+import typer
+from rich.table import Table
+
+from service.client import Client, connect
+from service.commands.catalogue import CATALOGUE
+from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, Listing, Server, print_json, table_of
+from service.commands.speech import FAILED
+
+Answer = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Columns:
+    """How a list is printed; numbers in the first column are aligned to the right."""
+
+    entries: str
+    """Field of the answer that holds the list."""
+    empty: str
+    """Printed where the list has no entry."""
+    cells: Mapping[str, Callable[[Answer], str]]
+    """What stands under each heading, as Rich markup."""
+    is_paged: bool = False
+
+    def table(self, rows: list[Answer]) -> Table | str:
+        """The rows as a table."""
+        if not rows:
+            return self.empty
+        table = table_of(*self.cells, right=tuple(self.cells)[:1])
+        for row in rows:
+            table.add_row(*(cell(row) for cell in self.cells.values()))
+        return table
+
+
+@dataclass(frozen=True)
+class Call:
+    """A command that makes one call of the API and prints the answer."""
+
+    request: str
+    """Method and address below /api/v1."""
+    parameters: Mapping[str, Any]
+    """Annotation of each, or the annotation and the default, in the order of the help."""
+    show: Callable[[Answer], None] | Columns
+    """Prints the answer, to which the parameters are added where it has no field of their name."""
+    help: str = ""
+    """One line; empty where the catalogue has it."""
+    has_json: bool = False
+    """Whether ``--json`` prints the answer as it is; lists always have it."""
+    then: str = ""
+    """Address of what is shown in place of the answer, with names of its fields."""
+    is_failure: Callable[[Answer], bool] = lambda _: False
+    """Whether an answer ends the command with exit code 1."""
+
+    def run(self, given: dict[str, Any]) -> None:
+        """Makes the call and prints the answer."""
+        sent = {name: given[name] for name in self.parameters}
+        with connect(given["server"]) as client:
+            if isinstance(self.show, Columns):
+                rows = self._rows(client, sent, self.show)
+                view = self.show.table
+                listing = Listing(given["form"], given["as_json"])
+                listing.show(rows, lambda: view([given | row for row in rows]))
+                return
+            answer = self._answer(client, sent)
+        if given.get("as_json"):
+            print_json(answer)
+        else:
+            self.show(given | answer)
+        if self.is_failure(answer):
+            raise typer.Exit(FAILED)
+
+    def _rows(self, client: Client, sent: dict[str, Any], columns: Columns) -> list[Answer]:
+        method, path, rest = _request(self.request, sent)
+        if columns.is_paged:
+            return list(client.every(path, columns.entries, limit=1000, **rest))
+        found: list[Answer] = client.answer(method, path, params=rest).json()[columns.entries]
+        return found
+
+    def _answer(self, client: Client, sent: dict[str, Any]) -> Answer:
+        method, path, rest = _request(self.request, sent)
+        body = {"params": rest} if method == "GET" else {"json": rest}
+        answer: Answer = client.answer(method, path, **body).json()
+        return client.get(in_address(self.then, answer)).json() if self.then else answer
+
+    def function(self, name: str, *, is_group: bool) -> Callable[..., None]:
+        """The function that Typer makes a command of; of a group it does nothing where a command below was named."""
+        asked = {**({"context": typer.Context} if is_group else {}), **self.parameters, **self._common()}
+
+        def command(**given: Any) -> None:
+            context = given.pop("context", None)
+            if context is None or context.invoked_subcommand is None:
+                self.run(given)
+
+        signature = inspect.Signature([_parameter(key, one) for key, one in asked.items()])
+        command.__signature__ = signature  # type: ignore[attr-defined]  # which Typer reads
+        command.__annotations__ = {key: one.annotation for key, one in signature.parameters.items()}
+        command.__doc__ = self.help or CATALOGUE[name].says
+        return command
+
+    def _common(self) -> dict[str, Any]:
+        common: dict[str, Any] = {"server": (Server, DEFAULT_SERVER)}
+        if isinstance(self.show, Columns):
+            common |= {"form": (FormOf, None), "as_json": (AsLines, False)}
+        elif self.has_json:
+            common |= {"as_json": (AsJson, False)}
+        return common
+
+
+Row = Call | Callable[..., None]
+"""A command of a table: one call, or a function where it takes more."""
+
+
+def app_of(name: str, rows: Mapping[str, Row]) -> typer.Typer:
+    """The command of a name with those below it; a group that is a row itself is one that can be run."""
+    below = {words.split()[1]: row for words, row in rows.items() if words.startswith(f"{name} ")}
+    itself = rows.get(name)
+    app = typer.Typer(
+        name=name,
+        add_completion=False,
+        help=CATALOGUE[name].says,
+        no_args_is_help=itself is None,
+        invoke_without_command=itself is not None,
+    )
+    if itself is not None:
+        function = itself.function(name, is_group=bool(below)) if isinstance(itself, Call) else itself
+        (app.callback() if below else app.command(name))(function)
+    for word, row in below.items():
+        app.command(word)(row.function(word, is_group=False) if isinstance(row, Call) else row)
+    return app
+
+
+def in_address(template: str, names: Mapping[str, Any]) -> str:
+    """An address with the names in its braces filled in."""
+    return template.format(**{name: quote(str(value), safe="") for name, value in names.items()})
+
+
+def _request(request: str, sent: dict[str, Any]) -> tuple[str, str, dict[str, Any]]:
+    """Method, address, and the parameters that are not part of it."""
+    method, template = request.split()
+    in_path = {name for _, name, _, _ in Formatter().parse(template) if name}
+    rest = {name: _plain(value) for name, value in sent.items() if name not in in_path and value is not None}
+    return method, in_address(template, {name: sent[name] for name in in_path}), rest
+
+
+def _plain(value: Any) -> Any:
+    return value.isoformat() if isinstance(value, datetime) else value
+
+
+def _parameter(name: str, given: Any) -> inspect.Parameter:
+    annotation, default = given if isinstance(given, tuple) else (given, inspect.Parameter.empty)
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=annotation, default=default)

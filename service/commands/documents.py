@@ -1,0 +1,141 @@
+"""Commands that write a file made by a running service: `certificate`, `correction`, `export`, `report`, `template`."""
+
+import json
+import os
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.client import connect
+from service.commands.calls import in_address
+from service.commands.console import DEFAULT_SERVER, Out, Server, deliver, progress
+from service.commands.speech import say
+from service.languages.language import Language, of_environment
+
+
+class System(StrEnum):
+    """Whose parameters."""
+
+    PX4 = "px4"
+    ARDUPILOT = "ardupilot"
+    KALIBR = "kalibr"
+    ROS2 = "ros2"
+
+
+class CertificateForm(StrEnum):
+    """What a certificate can be written as."""
+
+    PDF = "pdf"
+    DCC = "dcc"
+
+
+class ReportForm(StrEnum):
+    """What a report can be written as."""
+
+    JSON = "json"
+    CSV = "csv"
+    XLSX = "xlsx"
+    PDF = "pdf"
+
+
+class LabelForm(StrEnum):
+    """What a label can be written as."""
+
+    PDF = "pdf"
+    SVG = "svg"
+
+
+Session = Annotated[str, typer.Argument(metavar="SESSION", help="The session's id, as its page's address ends.")]
+
+
+def certificate(
+    session: Session,
+    server: Server = DEFAULT_SERVER,
+    format: Annotated[
+        CertificateForm, typer.Option("--format", help="pdf, to sign, or dcc: XML for programs.")
+    ] = CertificateForm.PDF,
+    by: Annotated[str, typer.Option("--by", help="Your name, kept with the certificate's number.")] = "",
+    number: Annotated[
+        str, typer.Option(help="Of an approved one, as it was approved.", show_default="the latest")
+    ] = "",
+    out: Out = None,
+) -> None:
+    """Write the certificate of a session."""
+    path = "/sessions/{session}/certificates/{number}" if number else "/sessions/{session}/certificate"
+    query = {"format": format.value} | ({} if number else {"by": by})
+    with connect(server) as client:
+        deliver(client.get(in_address(path, {"session": session, "number": number}), **query).content, out)
+
+
+def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = None) -> None:
+    """Write the correction that firmware applies to readings, as JSON."""
+    with connect(server) as client:
+        found = client.get(in_address("/sessions/{session}/correction", {"session": session})).json()
+    deliver((json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode(), out)
+
+
+def export(
+    session: Session,
+    system: Annotated[System, typer.Option("--system", help="px4, ardupilot, kalibr or ros2.")],
+    server: Server = DEFAULT_SERVER,
+    out: Out = None,
+) -> None:
+    """Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."""
+    with connect(server) as client:
+        path = in_address("/sessions/{session}/export", {"session": session})
+        deliver(client.get(path, system=system.value).content, out)
+
+
+report = typer.Typer(add_completion=False, rich_markup_mode="markdown", invoke_without_command=True)
+
+
+@report.callback()
+def write_report(
+    context: typer.Context,
+    server: Server = DEFAULT_SERVER,
+    format: Annotated[ReportForm, typer.Option("--format", help="json, csv, xlsx or pdf.")] = ReportForm.CSV,
+    out: Out = None,
+) -> None:
+    """Write the fleet's condition as a file for other programs."""
+    if context.invoked_subcommand is not None:
+        return
+    is_long = format in (ReportForm.XLSX, ReportForm.PDF)
+    with connect(server) as client, progress(1, "making the report", is_long=is_long):
+        content = client.get("/fleet/report", format=format.value).content
+    deliver(content, out)
+
+
+@report.command("label")
+def write_label(
+    unit: Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")],
+    server: Server = DEFAULT_SERVER,
+    format: Annotated[LabelForm, typer.Option("--format", help="pdf or svg.")] = LabelForm.PDF,
+    due: Annotated[bool, typer.Option(help="Say when the calibration is due.")] = True,
+    out: Out = None,
+) -> None:
+    """Write a unit's label: serial number, due date, and a QR code that opens its page."""
+    path = in_address(f"/units/{{unit}}/label.{format.value}", {"unit": unit})
+    with connect(server) as client:
+        deliver(client.get(path, due=str(due).lower()).content, out)
+
+
+def write_template(
+    server: Server = DEFAULT_SERVER,
+    *,
+    unit: Annotated[str, typer.Option(help="Like the last session of this serial number.")] = "",
+    unit_type: Annotated[str, typer.Option("--unit-type", help="For this stored type of units.")] = "",
+    kind: Annotated[str, typer.Option(help="Without a unit and a type: accelerometer or gyroscope.")] = "accelerometer",
+    sensors: Annotated[int, typer.Option(help="Without a unit and a type: how many.")] = 6,
+    lang: Annotated[
+        Language | None, typer.Option(help="Of its sheets, headings and hints.", show_default="the system's: LANG")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="File to write.")] = Path("session.xlsx"),
+) -> None:
+    """Write a workbook to fill in: sensors, stand and schedule are there; `imu-health upload` takes it as it is."""
+    asked = {"unit": unit, "unit_type": unit_type, "kind": kind, "sensors": sensors}
+    language = lang or of_environment(os.environ)
+    with connect(server) as client:
+        out.write_bytes(client.get("/session-template", lang=language.value, **asked).content)
+    say(f"{out} is ready to fill in: its yellow cells; then imu-health upload {out}")

@@ -1,0 +1,210 @@
+"""`imu-health jobs` and `models`: long work of a running service, and what engineers accepted into its models, after
+which sessions are computed again. Each command is a row of the table at the end; two need more than one call.
+"""
+
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+from rich.markup import escape
+
+from estimator.errors import Problem
+from estimator.wording import counted
+from service.client import connect
+from service.commands.api import By, WhyHandled
+from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
+from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
+from service.commands.speech import FAILED, problems_said, say
+from service.commands.upload import followed
+from service.errors import RefusedError, ServiceError
+from service.groups.records import Level
+from service.jobs.records import KILOBYTE, JobKind, JobState
+from service.models.records import Scope
+
+PATHS = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
+COLOURS = {JobState.DONE: "green", JobState.FAILED: "red", JobState.CANCELLED: "yellow"}
+JobId = Annotated[int, typer.Argument(metavar="JOB", help="Number of the job.")]
+JobBy = Annotated[str, typer.Option("--by", help="Your name, where nobody signs in.")]
+Wait = Annotated[bool, typer.Option("--wait", help="Stay until it has ended; exit code 1 where it did not get done.")]
+RevisionId = Annotated[int, typer.Argument(metavar="REVISION", help="Number of the revision.")]
+
+
+class ReportForm(StrEnum):
+    """What a report can be made as."""
+
+    PDF = "pdf"
+    XLSX = "xlsx"
+
+
+def show_job(
+    id: JobId, server: Server = DEFAULT_SERVER, as_json: AsJson = False, wait: Wait = False, out: Out = None
+) -> None:
+    """Show how far a job has come; --out writes the file that it made."""
+    with connect(server) as client:
+        job = followed(client, id, quiet=as_json) if wait else client.get(f"/jobs/{id}").json()
+        if out is not None:
+            deliver(client.get(f"/jobs/{id}/file").content, out)
+    print_json(job) if as_json else _show_job(job)
+    if wait and job["state"] != JobState.DONE:
+        raise typer.Exit(FAILED)
+
+
+def accept_cause(
+    level: Annotated[Level, typer.Argument(help="Whose sessions: of a unit, of a type, or on a stand.")],
+    name: Annotated[str, typer.Argument(help="Serial number of the unit, or name of the type or stand.")],
+    cause: Annotated[str, typer.Argument(help="Identifier of a cause that these sessions show together.")],
+    by: By,
+    why: WhyHandled = "",
+    sensor: Annotated[list[str] | None, typer.Option(help="Sensor of the finding, where several have it.")] = None,
+    server: Server = DEFAULT_SERVER,
+    as_json: AsJson = False,
+) -> None:
+    """Accept what sessions show together; every session that it concerns is computed again."""
+    body = {"cause": cause, "sensors": sensor or [], "by": by, "note": why}
+    with connect(server) as client:
+        try:
+            made = client.post(in_address(f"/{PATHS[level]}/{{name}}/diagnosis/accept", {"name": name}), body)
+        except RefusedError as refused:
+            reasons = "; ".join(f"{problem.field} {problem.message}" for problem in refused.problems)
+            raise ServiceError(f"{refused.detail} {reasons}") from refused
+        found = client.get(f"/models/{made['id']}").json()
+    print_json(found) if as_json else _show_model(found)
+
+
+def _show_job(job: Answer) -> None:
+    screen().print(f"Job {job['id']}  {_state(job)}  {escape(_work(job))}  {_done(job)}")
+    if job["held_up"]:
+        say(f"Held up, and tried again by itself: {job['held_up']}")
+    for one in job["failures"]:
+        say(f"{one['subject']}: {one['reason']}" if one["subject"] else one["reason"])
+    if job["problems"]:
+        problems = (Problem(one["field"], one["message"], one["row"]) for one in job["problems"])
+        say(f"{job['subject']}: {problems_said(problems)}")
+    if job["session"]:
+        say(f"Session {job['session']}")
+
+
+def _done(job: Answer) -> str:
+    if job["kind"] == JobKind.UPLOAD:
+        return f"{job['done'] / KILOBYTE:.1f} of {job['total'] / KILOBYTE:.1f} MB"
+    return f"{job['done']} of {job['total']}"
+
+
+def _work(job: Answer) -> str:
+    if job["kind"] == JobKind.UPLOAD:
+        return f"upload of {job['subject']}"
+    return f"{job['kind']} of {job['scope']} {job['subject']}" if job["scope"] else f"{job['kind']} of the fleet"
+
+
+def _state(job: Answer) -> str:
+    state = JobState(job["state"])
+    return f"[{COLOURS.get(state, 'blue')}]{state.value}[/]"
+
+
+def _show_model(found: Answer) -> None:
+    what = "withdraws revision " + str(found["withdraws"]) if found["withdraws"] else "accepted"
+    by = f"{what} by {found['accepted_by']}, {found['accepted_at'][:10]}"
+    line = f"Revision {found['id']}  {_cause(found)}  of {found['scope']} {found['subject']}, {by}"
+    screen().print(escape(line), highlight=False)
+    for one in found["recomputations"]:
+        screen().print(f"  [bold]{escape(one['unit'])}[/]  {_outcome(one)}", highlight=False)
+
+
+def _cause(revision: Answer) -> str:
+    sensors = f" ({', '.join(revision['sensors'])})" if revision["sensors"] else ""
+    return f"{revision['cause']}{sensors}"
+
+
+def _outcome(one: Answer) -> str:
+    outcome = one["outcome"]
+    if outcome is None:
+        return str(one["state"])
+    moved = "; ".join(f"{m['session']} {m['before']} → {m['after']}" for m in outcome["verdicts"])
+    return f"{outcome['recomputed']} of {counted(outcome['sessions'], 'session')}; {moved or 'no verdict moved'}"
+
+
+JOBS = Columns(
+    "jobs",
+    "There is no job.",
+    {
+        "job": lambda job: str(job["id"]),
+        "state": _state,
+        "done": _done,
+        "what": lambda job: escape(_work(job)),
+        "asked for": lambda job: job["asked_at"][:16].replace("T", " "),
+        "by": lambda job: escape(job["who"]),
+    },
+)
+MODELS = Columns(
+    "models",
+    "No cause is accepted.",
+    {
+        "revision": lambda one: str(one["id"]),
+        "model of": lambda one: escape(f"{one['scope']} {one['subject']}"),
+        "cause": lambda one: escape(_cause(one)),
+        "accepted": lambda one: f"withdraws {one['withdraws']}" if one["withdraws"] else one["accepted_at"][:10],
+    },
+    is_paged=True,
+)
+WANTED_JOBS = {
+    "mine": (Annotated[bool, typer.Option("--mine", help="Only what the token's account asked for.")], False),
+    "subject": (Annotated[str, typer.Option("--about", help="Only about this unit, unit type or stand.")], ""),
+    "limit": (Annotated[int, typer.Option(min=1, max=500, help="How many, the newest first.")], 50),
+}
+RECALIBRATION = {
+    "scope": (Annotated[Scope | None, typer.Option(help="What NAME is; without it the whole fleet.")], None),
+    "subject": (Annotated[str, typer.Option("--name", help="Serial number, unit type or stand.")], ""),
+    "by": (JobBy, ""),
+}
+REPORT = {
+    "format": (Annotated[ReportForm, typer.Option("--format", help="pdf or xlsx.")], ReportForm.PDF),
+    "by": (JobBy, ""),
+}
+
+COMMANDS: dict[str, Row] = {
+    "jobs": Call("GET /jobs", WANTED_JOBS, JOBS),
+    "jobs show": show_job,
+    "jobs recalibrate": Call(
+        "POST /jobs/recalibration",
+        RECALIBRATION,
+        _show_job,
+        "Have the service compute stored sessions again under the models in force.",
+        has_json=True,
+    ),
+    "jobs report": Call(
+        "POST /jobs/report",
+        REPORT,
+        _show_job,
+        "Have the service make a report of the fleet; `imu-health jobs show JOB --wait --out FILE` fetches it.",
+        has_json=True,
+    ),
+    "jobs cancel": Call(
+        "POST /jobs/{id}/cancel",
+        {"id": JobId, "by": (JobBy, "")},
+        _show_job,
+        "Stop a job between two pieces of its work; what was done stays.",
+        has_json=True,
+    ),
+    "models": Call("GET /models", {}, MODELS),
+    "models accept": accept_cause,
+    "models withdraw": Call(
+        "POST /models/{id}/withdraw",
+        {"id": RevisionId, "by": By, "why": WhyHandled},
+        _show_model,
+        "Take an accepted cause out of the model again.",
+        has_json=True,
+        then="/models/{id}",
+    ),
+    "models show": Call(
+        "GET /models/{id}",
+        {"id": RevisionId},
+        _show_model,
+        "Show a revision: how far its sessions are computed again, and what moved.",
+        has_json=True,
+    ),
+}
+
+
+def command_of(name: str) -> typer.Typer:
+    """The command or the group of commands of a name."""
+    return app_of(name, COMMANDS)
