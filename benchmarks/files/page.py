@@ -56,8 +56,8 @@ Made by `python -m benchmarks.files`; edit `benchmarks/files/page.py`, not this 
 No uploaded file may end, freeze or bloat the service:
 
 * **Sizes are counted** before anything is built: cells of a workbook, rows and columns of CSV, nesting of JSON.
-* **A separate process reads.** XLSX, HDF5, MAT, Parquet, logs and text of more than {LONG // MEBIBYTE} MiB, are read by a
-  process whose memory, CPU time and wall-clock time the kernel limits. It cannot write files, has no settings or
+* **A separate process reads.** XLSX, HDF5, MAT, Parquet, logs and text of more than {LONG // MEBIBYTE} MiB are read
+  by a process whose memory, CPU time and wall-clock time the kernel limits. It cannot write files, has no settings or
   passwords, and returns numbers and text, never objects. When it is ended, the upload is answered 422. Commands read
   files the same way, with exit code 2.
 * **Nothing large is held in memory.** An upload of more than {IN_MEMORY // 1024} KiB is written to disk and
@@ -105,10 +105,12 @@ def _long(long: Sequence[LongLog]) -> str:
     return f"""## Long raw logs
 
 A raw log (`sample_rate_hz`) of more cells than that, as CSV or Parquet, is averaged to its positions while it is
-scanned (`estimator/long_logs`), in constant memory and with the same result as a log in one piece. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
+scanned (`estimator/long_logs`), in constant memory and with the same result as a log in one
+piece. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
 whole.
 
-Beside polars alone (scan and group-by mean of the same file), medians of three; memory of the reading process over idle.
+Beside polars alone (scan and group-by mean of the same file), medians of three; memory of the reading process over
+idle.
 
 {table(list(long))}
 
