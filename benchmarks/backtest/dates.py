@@ -187,8 +187,8 @@ def page(sample: Sample, seed: int) -> str:
         "the estimator. Intervals: 95 % (Wilson). [What is computed](../methods/health.md).",
         "## Dates of parameters",
         f"Types of {MIXED} units with all kinds equally common in their {PARAMETERS} parameters: how often the "
-        "tolerance was passed by a date stated within twelve years. Target: 7 to 13 % by *reach 90*, 42 to 58 % by *reach 50*. "
-        "The last column is the mean chance, with two standard errors, given the generator's laws.",
+        "tolerance was passed by a date stated within twelve years. Target: 7 to 13 % by *reach 90*, 42 to 58 % by "
+        "*reach 50*. The last column is the mean chance, with two standard errors, given the generator's laws.",
         table(head, short),
         "*Reach 50* is early for saturating aging, which the readings cannot separate from continuing aging; the "
         "generator's laws give those dates less than 50 % too. Early is the safe side.",
