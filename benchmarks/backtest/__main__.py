@@ -99,7 +99,7 @@ def _first(sample: Sample, rng: np.random.Generator) -> list[str]:
            str(every), "within 2") for kind, every in beside.items()),
         *_dates(FIRST, due, reached),
         ("temperature coefficient found at 1 %, seasonal", str(rate([f.here for f in seasonal])), "≥ 95 %"),
-        ("the same, by who knows that nothing else moves", str(rate([f.best for f in seasonal])), "–"),
+        ("the same, given that nothing else moves", str(rate([f.best for f in seasonal])), "–"),
         ("temperature coefficient found, stable", str(rate([f.here for f in still])), "≤ 1 %"),
     ]  # fmt: skip
     return [
@@ -131,7 +131,7 @@ def _second(sample: Sample, rng: np.random.Generator) -> list[str]:
 
 def _described(world: World, rows: Sequence[Row]) -> list[str]:
     kinds = table(("a parameter may be", "that is"), list(world.described.items()))
-    return [kinds, "### In short", table(("figure", "here", "wanted"), list(rows))]
+    return [kinds, "### In short", table(("figure", "here", "target"), list(rows))]
 
 
 def _dates(world: World, due: Sequence[Due], reached: Sequence[Reached]) -> list[Row]:
@@ -144,7 +144,7 @@ def _dates(world: World, due: Sequence[Due], reached: Sequence[Reached]) -> list
         ("passed the tolerance before due, all units", str(rate([d.passed < d.due for d in due])), "≤ 5 %"),
         ("passed before reach 90, all kinds alike", str(before(of_mix(reached))), "7–13 %"),
         (f"passed before reach 90, {world.late} since two sessions or more", str(before(late)), "≤ 20 %"),
-        ("the same, by who knows the generator", str(before(late, whose=1)), "–"),
+        ("the same, given the generator's laws", str(before(late, whose=1)), "–"),
     ]
 
 

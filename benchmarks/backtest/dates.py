@@ -178,23 +178,20 @@ def page(sample: Sample, seed: int) -> str:
             came.append(
                 _come(source, name, list(fleets(source, share, sample, np.random.default_rng([seed, number, 2 + i]))))
             )
-    head = ("generator", "by reach 90", "by reach 50", "by reach 50, for who knows the generator")
+    head = ("generator", "by reach 90", "by reach 50", "by reach 50, given the generator's laws")
     parts = [
         "# Do stated dates hold?",
-        f"Made by `python -m benchmarks.backtest.dates --seed {seed}`. Of every unit a session of its life is drawn, "
-        "the second or a later one, and what is stated then is held against what comes; its type is known by the "
-        "sessions up to then. The first two generators are those of the [back-test](backtest.md), the third that of "
-        "the tests of whole lives (`tests/lives/generator`); none shares a law with another or with the estimator. "
-        "Intervals: 95 % (Wilson). [What is computed](../methods/health.md).",
+        f"Made by `python -m benchmarks.backtest.dates --seed {seed}`. A session of every unit's life, the second or a "
+        "later one, is drawn and its statements compared with what follows. The first two generators are those of the "
+        "[back-test](backtest.md), the third that of `tests/lives/generator`; none shares a law with another or with "
+        "the estimator. Intervals: 95 % (Wilson). [What is computed](../methods/health.md).",
         "## Dates of parameters",
-        f"Types of {MIXED} units, in whose {PARAMETERS} parameters all kinds are alike: how often the tolerance was "
-        "passed by the date, where one within twelve years was stated. Wanted: 7 to 13 % by *reach 90*, 42 to 58 % by "
-        "*reach 50*. The last column is the mean chance, with two standard errors, that somebody gives to the same "
-        "dates who knows the generator with all its laws, and of this parameter no more than its readings.",
+        f"Types of {MIXED} units with all kinds equally common in their {PARAMETERS} parameters: how often the "
+        "tolerance was passed by a date stated within twelve years. Target: 7 to 13 % by *reach 90*, 42 to 58 % by "
+        "*reach 50*. The last column is the mean chance, with two standard errors, given the generator's laws.",
         table(head, short),
-        "*Reach 50* comes early where agings come to an end, which within the readings look like agings that go on "
-        "(see below), and whoever knows the generator gives those dates less than 50 % too. Early is the side that "
-        "costs a measurement and not a flight.",
+        "*Reach 50* is early for saturating aging, which the readings cannot separate from continuing aging; the "
+        "generator's laws give those dates less than 50 % too. Early is the safe side.",
         "## Are chances right?",
         "How often the tolerance was passed within so many years, by the chance that was stated for it.",
         table(("generator", "within", *(f"{low:.0%} to {high:.0%}" for low, high in pairwise(BINS))), chances),

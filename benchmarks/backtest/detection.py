@@ -134,16 +134,13 @@ def rivals_page(count: int, rng: np.random.Generator) -> tuple[str, dict[str, Co
     rules: dict[str, Rule] = {OURS: suspicion, BEST: optimum, ODDS: log_odds, **RIVALS}
     hits = {name: _hits(rule, still, events) for name, rule in rules.items()}
     rows = [(name, *(str(rate(hit)) for hit in every.values())) for name, every in hits.items()]
-    rows.insert(2, ("who looks for that kind alone", *(str(rate(hit)) for hit in _alone(still, events))))
+    rows.insert(2, ("likelihood ratio of that kind alone", *(str(rate(hit)) for hit in _alone(still, events))))
     text = (
         "### Beside other rules, at equal false alarms\n\n"
         f"Every rule has the threshold at which {100 * LEVEL:.0f} % of stable histories raise an alarm. The optimum "
-        "is the likelihood ratio of the generator's own changes in equal shares to nothing, over a grid of their "
-        "sizes, days and constants, whatever the level: no rule finds more of their mixture (Neyman and Pearson). Of "
-        "one kind more is found only by who leaves the others out; the likelihood ratio of that kind alone bounds it. "
-        "Ours is a p-value, uniform in every history by itself: it spends its false alarms alike on histories that can "
-        "show something and on those that cannot. The odds behind it have one threshold for all histories, as the "
-        "optimum has.\n\n"
+        "is the likelihood ratio of the generator's changes in equal shares: no rule finds more of their mixture "
+        "(Neyman and Pearson); the likelihood ratio of one kind bounds that kind. Ours is a p-value, uniform in every "
+        "history; the odds behind it have one threshold for all histories, as the optimum has.\n\n"
     )
     return text + table(("rule", *EVENTS), rows), {
         kind: Compared(hits[OURS][kind], hits[ODDS][kind], hits[BEST][kind]) for kind in EVENTS

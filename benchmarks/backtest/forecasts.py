@@ -45,7 +45,7 @@ class Reached:
 
     kind: str
     early: tuple[float, ...]
-    """By the estimator, and by its rivals; in the back-test by who knows the generator."""
+    """By the estimator, and by its rivals; in the back-test given the generator's laws."""
     passed: float
     is_found: bool
     """Whether a change was found in it."""
@@ -166,11 +166,10 @@ def reached_page(world: World, found: Sequence[Reached]) -> str:
     return (
         "### Is 10 % ten percent?\n\n"
         "How often the tolerance was passed before *reach 90*, where a date within twelve years was stated, in types "
-        "whose parameters are of all kinds alike and may change any day; by kind, those whose change began two "
-        "sessions back or more. The last column is of somebody who knows the generator with all its laws and states "
-        "the date before which the tolerance is passed with 10 %: of all about every tenth is passed; what "
-        "is more in a kind, its readings do not tell.\n\n"
+        "with all kinds equally common and changes at any day; by kind, those whose change began two sessions back or "
+        "more. The last column is the 10 % date given the generator's laws: what exceeds a tenth there, the readings "
+        "do not show.\n\n"
         + table(
-            ("the parameter", "passed before reach 90", "where a change was found", "by who knows the generator"), rows
+            ("the parameter", "passed before reach 90", "where a change was found", "given the generator's laws"), rows
         )
     )

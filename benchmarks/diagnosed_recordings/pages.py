@@ -15,12 +15,10 @@ STATED = "stated-errors"
 INDEX = f"""# Real recordings: what the simulation gets wrong
 
 Made by `{COMMAND}` from the recordings that
-[Real recordings](../recordings.md) describes. Each is diagnosed as it is, with the noise that its averaging states;
-nothing is tuned to it. Nobody knows the truth here: what a page says of the physics is an argument, and where it is
-inference it says so. The score of held-out positions is the evidence that a named cause predicts readings it has not
-seen. Accelerometers of a single position are no calibration and are refused; the pages say where. Whether an answer
-depends on what the errors are stated as, and on which sensors are chosen, is asked
-[on a page of its own](recordings/{STATED}.md).
+[Real recordings](../recordings.md) describes. Each is diagnosed with the noise that its averaging states. The truth is
+unknown: statements on the physics are arguments, marked where they are inference. The score of held-out positions is
+the evidence. Accelerometers of a single position are rejected as no calibration. How an answer depends on stated errors
+and chosen sensors: [stated errors](recordings/{STATED}.md).
 """
 SET_BY_SET = "set-by-set.md"
 """Of every recording what is named and what is not, by hand."""

@@ -1,7 +1,6 @@
 """Whatever the errors are stated as: every group diagnosed from its log and from means with errors × ⅓, × 1 and × 3."""
 
 import sys
-import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
@@ -20,7 +19,7 @@ allows for too much."""
 ALIKE = 0.02
 """Probabilities nearer than this are the same: rounding of a fit that starts from other weights."""
 
-HEAD = ("recording", "sensors", "input", "× ⅓", "× 1", "× 3", "noise said", "structures", "s")
+HEAD = ("recording", "sensors", "input", "× ⅓", "× 1", "× 3", "noise said", "structures")
 
 
 @dataclass(frozen=True)
@@ -61,17 +60,15 @@ def probability(finding: Finding) -> float:
 
 def line(group: Group, words: str, sessions: Iterable[CalibrationSession]) -> tuple[str, ...]:
     """A row of the table: the names of every session of one input."""
-    begun = time.perf_counter()
     try:
         found = [answer(diagnose(s)) for s in sessions]
     except ScheduleError as error:
-        return group.recording, group.words, words, f"refused: {error.problems[0].field}", *[""] * 5
-    spent = f"{(time.perf_counter() - begun) / len(found):.1f}"
+        return group.recording, group.words, words, f"refused: {error.problems[0].field}", *[""] * 4
     middle = found[len(found) // 2]
     names = [a.words if a is middle else "the same" if a.like(middle) else f"**{a.words}**" for a in found]
     told = [each([a.noise for a in found]), each([str(a.structures) for a in found])]
     shown = names if len(names) > 1 else ["", *names, ""]
-    return group.recording, group.words, words, *shown, *told, spent
+    return group.recording, group.words, words, *shown, *told
 
 
 def each(said: list[str]) -> str:
@@ -88,10 +85,10 @@ def lines(group: Group) -> Iterator[tuple[str, ...]]:
 
 
 def stated_table() -> str:
-    """The whole table, Markdown."""
+    """The table, Markdown: inputs of which something is named."""
     body = []
     for groups in SETS:
         for group in groups():
-            body += list(lines(group))
+            body += [row for row in lines(group) if any("`" in cell for cell in row[3:6])]
             print(f"{group.recording}, {group.words}", file=sys.stderr)
     return table(HEAD, body)

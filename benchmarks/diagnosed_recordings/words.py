@@ -8,6 +8,8 @@ from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.kit.measures import measured, number
 
 NOTHING = "Nothing wrong found."
+MOST = 5
+"""Sensors of one cause whose amplitudes are listed, the most evident first; the command prints a diagnosis whole."""
 
 
 def table(head: Sequence[str], body: Iterable[Sequence[str]]) -> str:
@@ -64,7 +66,8 @@ def finding_section(finding: Finding) -> str:
     """One named cause."""
     rows = list(amplitudes(finding))
     head = ["sensor", *(f"k{k}" for k in range(1, max(len(r) for r in rows)))]
-    amounts = table(head, rows) if len(head) > 1 else ""
+    more = [(f"and {len(rows) - MOST} more", *[""] * (len(head) - 1))] if len(rows) > MOST else []
+    amounts = table(head, [*rows[:MOST], *more]) if len(head) > 1 else ""
     return f"**`{finding.cause}`**: {finding.sentence} {evidence(finding)}\n\n{amounts}".strip()
 
 

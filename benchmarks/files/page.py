@@ -29,8 +29,8 @@ LIMITS = {
     "unpacked": ("bytes that the compressed parts of a file unpack to", "422"),
     "seconds": ("seconds of computing that reading a file takes; by the clock thrice", "422"),
     "memory": ("bytes of memory that reading a file takes in its process", "422"),
-    "at_once": ("binary and large files that are read at once; others wait, then are asked back", RETRY),
-    "in_flight": ("large uploads that are received or worked on at once; others are asked back", RETRY),
+    "at_once": ("binary and large files that are read at once; others wait, then are rejected", RETRY),
+    "in_flight": ("large uploads that are received or worked on at once; others are rejected", RETRY),
 }
 """What each is of, and the answer beyond it."""
 MEBIBYTE = 1024**2
@@ -53,25 +53,20 @@ def page(rows: Sequence[Row], ordinary: dict[str, float], long: Sequence[LongLog
 
 Made by `python -m benchmarks.files`; edit `benchmarks/files/page.py`, not this page.
 
-No file that somebody uploads may end, freeze or bloat the service. Five things see to that:
+No uploaded file may end, freeze or bloat the service:
 
-* **Nothing is believed.** The extent of a table is counted before anything is built from it: the cells of a workbook
-  one by one, wherever its sheets lie; rows and columns of CSV; lists, nesting and commas of JSON.
-* **Another process reads.** XLSX, HDF5, MAT, Parquet, logs and text of more than {LONG // MEBIBYTE} MiB, are read by a
-  process of their own. Before it sees a byte the kernel bounds its memory, its computing time and its time by the
-  clock. It cannot write files, knows no setting and no password, and gives back numbers and text, never objects
-  (no pickle). When it is ended, the upload is answered 422 with what to do, and the service goes on.
-  The commands read such files the same way, recordings of any length for `imu-health parity` among them; there the
-  answer is a line and exit code 2.
-* **Nothing long is held.** An upload of more than {IN_MEMORY // 1024} KiB goes to disk as it comes, hashed and
-  counted on the way; the file that is kept is that one, synced and renamed. The reading process opens it there. What
-  was not kept is removed with the request, or by the hourly look.
-* **Few at once.** So many files are read at the same time, one place fewer for one account or address; some more wait
-  up to ten seconds; the others are answered 503 with `Retry-After`.
-* **The bytes stay.** What is stored is the upload, unchanged, under its hash.
+* **Sizes are counted** before anything is built: cells of a workbook, rows and columns of CSV, nesting of JSON.
+* **A separate process reads.** XLSX, HDF5, MAT, Parquet, logs and text of more than {LONG // MEBIBYTE} MiB are read
+  by a process whose memory, CPU time and wall-clock time the kernel limits. It cannot write files, has no settings or
+  passwords, and returns numbers and text, never objects. When it is ended, the upload is answered 422. Commands read
+  files the same way, with exit code 2.
+* **Nothing large is held in memory.** An upload of more than {IN_MEMORY // 1024} KiB is written to disk and
+  hashed as it arrives.
+* **Concurrency is limited**, one place fewer for one account or address; some more uploads wait up to ten seconds,
+  others are rejected with 503 and `Retry-After`.
 
-The process is a fork of one that has the readers loaded. An ordinary file of 240 rows is read in {_times(ordinary)}
-(median), fork included; JSON of that size is read in place.
+An ordinary file of 240 rows is read in {_times(ordinary)}
+(median); JSON of that size is read in the service.
 
 ## Limits
 
@@ -84,18 +79,15 @@ A cell takes about 60 bytes of memory. Reading may take a second more for every
 {_places()}
 ## Measured
 
-Against a running service: peak memory over idle of the service, its readers and what diagnoses together (proportional
-set size, so that shared pages count once), and the longest that `/healthz` took to answer meanwhile; the seconds are
-those of the answer. Hostile files come first, all made by code in `benchmarks/files/hostile.py`; then the heaviest
-files that are allowed, watched until nothing is left to do for them.
+Against a running service: peak memory over idle of all its processes (proportional set size), longest answer of
+`/healthz` meanwhile, seconds to the answer. Hostile files are made by `benchmarks/files/hostile.py`; then the heaviest
+allowed files.
 
 Worst single file: {worst:.0f} MiB over idle. Longest wait for `/healthz`: {wait:.2f} s.
 
 | file | size, kB | answer | seconds | memory over idle, MiB | longest /healthz, s |
 | --- | --- | --- | --- | --- | --- |
 {_table(rows)}
-
-How long things take depends on the machine and on what else it does; memory does not.
 
 ## Fuzzing
 
@@ -113,19 +105,17 @@ def _long(long: Sequence[LongLog]) -> str:
     return f"""## Long raw logs
 
 A raw log (`sample_rate_hz`) of more cells than that, as CSV or Parquet, is averaged to its positions while it is
-scanned (`estimator/long_logs`): first for its labels, or for where the block stands still, then for the sums of every
-rest. Of a rest only sums are kept, so that memory does not grow with the log; the positions are those that a log in
-one piece gives, standard errors included. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
+scanned (`estimator/long_logs`), in constant memory and with the same result as a log in one
+piece. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
 whole.
 
-Beside the peer, which is polars alone with a scan and a group-by mean of the same file, its start not counted: medians
-of three in turn on the same machine; the memory is the reading process's over idle.
+Beside polars alone (scan and group-by mean of the same file), medians of three; memory of the reading process over
+idle.
 
 {table(list(long))}
 
-A CSV is parsed twice, once for its labels: where a rest is trimmed is not known before its end. Of Parquet hardly
-anything is parsed, so that there the checks of every cell and the sums take nearly all of the time: the wish of 1.5
-times a bare scan is met for neither.
+A CSV is parsed twice; for Parquet the checks of every cell dominate. The target of 1.5 times a bare scan is met for
+neither.
 """
 
 
@@ -148,9 +138,8 @@ after that page was last shown; {MOST} of an account and {MOST_BYTES // MEBIBYTE
 way | no: send it again |
 | `made` | reports that jobs made, under the job's number | {KEPT_MADE.days} days | no: ask for it again |
 
-What waits or is set aside is given out by no address. Only the account that set a table aside goes on with it, and it
-is stored when that confirms. What a service that was killed left behind goes with the hourly look: what is half
-written, what was set aside too long ago, and of `waiting` what no open job names, {UNASKED // hour} hour after it came.
+Only the account that set a table aside continues with it. Hourly, what a killed service left is removed: partial files,
+expired tables, and of `waiting` what no open job names, {UNASKED // hour} hour after it came.
 """
 
 

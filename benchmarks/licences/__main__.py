@@ -1,6 +1,7 @@
 """`python -m benchmarks.licences` writes docs/security/licences.md from what is installed."""
 
 import re
+from collections import defaultdict
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
@@ -12,8 +13,8 @@ Made by `python -m benchmarks.licences` from `requirements.lock` and what the pa
 tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
 and so is what `make bench` adds (`requirements-bench.lock`: imucal and pandas).
 
-| package | version | licence |
-| --- | --- | --- |
+| licence | packages |
+| --- | --- |
 """
 NOT_HERE = "not installed on this kind of machine"
 
@@ -32,8 +33,11 @@ def licence(name: str) -> str:
 
 def main() -> None:
     """Writes the page."""
-    pinned = re.findall(r"(?m)^([\w.-]+)==([^\s;]+)", (ROOT / "requirements.lock").read_text(encoding="utf-8"))
-    rows = [f"| {name} | {version} | {licence(name)} |" for name, version in pinned]
+    pinned = re.findall(r"(?m)^([\w.-]+)==", (ROOT / "requirements.lock").read_text(encoding="utf-8"))
+    found = defaultdict[str, list[str]](list)
+    for name in pinned:
+        found[licence(name)].append(name)
+    rows = [f"| {stated} | {', '.join(names)} |" for stated, names in sorted(found.items())]
     PAGE.write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
 
 

@@ -127,18 +127,18 @@ def rows(fleets: int, seed: int) -> list[tuple[str, Rate, str]]:
          "≤ 1 %"),
         ("a stand turned by 12″, its ten units seated to 30″ on the other stand: it alone is named",
          share(fleets, seed + 2, beside, found), "≥ 95 %"),
-        ("the same fleets: it is named by who knows τ and looks for the date, direction and size", best[1], "–"),
-        ("the same fleets: it is named by who knows all of that, and asks which stand alone", best[0], "–"),
+        ("the same fleets: it is named given τ, searching date, direction and size", best[1], "–"),
+        ("the same fleets: it is named given all of that, searching the stand alone", best[0], "–"),
         ("a stand turned by 12″, ten of its twenty units seated to 30″: it alone is named",
          share(fleets, seed + 3, among, found), "≥ 95 %"),
-        ("the same fleets: it is named by who knows τ and looks for the date, direction and size", second[1], "–"),
+        ("the same fleets: it is named given τ, searching date, direction and size", second[1], "–"),
         ("a stand seated 25″ off for a month: one shift, with the dates of there and back",
          rate(seated), "≥ 95 %"),
         ("the same, of fleets of which three units or more were measured on it in that month",
          rate(list(compress(seated, is_told))), "≥ 95 %"),
-        ("the same fleets, all: so dated by who knows τ and looks for stand, dates, direction and size",
+        ("the same fleets, all: so dated given τ, searching stand, dates, direction and size",
          rate(best_dated), "–"),
-        ("the same fleets, three units or more: so dated by who knows τ",
+        ("the same fleets, three units or more: so dated given τ",
          rate(list(compress(best_dated, is_told))), "–"),
         *((f"{m} axes, one drifted by 0.2–0.6 T, {arcsec}″ a session: U holds it", own, "93–97 %")
           for m, arcsec, own, _ in axes),
@@ -156,9 +156,9 @@ def page(fleets: int, seed: int) -> str:
         "has 8 to 12 sessions within three years on two stands at random, each with an error of 0.8″; mountings are "
         "Student's with five degrees of freedom. Intervals: 95 % (Wilson). [What is computed](../methods/health.md).",
         "\n".join(["| figure | share | target |", "| --- | --- | --- |", *lines]),
-        "U of an axis is made for the direction in which it is known least, so that the decision keeps its levels in "
-        "every direction; in the others it holds more than 95 %, of four axes most. It does so too for who knows which "
-        "axis drifted. A drift below two standard uncertainties can only be stated too long, in 2.3 % of the cases.",
+        "U of an axis is that of its least known direction, so that the decision keeps its level in every direction; "
+        "in others it holds more than 95 %. A drift below two standard uncertainties can only be stated too long, in "
+        "2.3 % of cases.",
     ]
     return "\n\n".join(head) + "\n"
 

@@ -8,17 +8,15 @@ from benchmarks.study.rates import rate
 
 EXPLANATION = """# Evidence of many sessions
 
-A session sees an effect from about five standard errors. Thirty sessions of a unit, on a stand or of a type see one of
-strength 1 in each as plainly. `diagnose_group(sessions, level)` adds them up and says what they share, with the rules
-that hold for a session: a name is given only to what fits, and what cannot be told apart is listed together.
+A session shows an effect from about five standard errors. Thirty sessions of a unit, on a stand or of a type show one
+of strength 1 in each as plainly. `diagnose_group(sessions, level)` pools them by the rules of one session.
 
 ## What is kept of a session
 
-`statistics_of(session)` makes a record of some hundred kilobytes: for every cause that can last, at every place and in
-every shape, its *score* U (how much of it the residuals hold) and its *information* F (how much they could hold), with
-the information that any two share. Clipped channels, slips of the record and lone wrong readings are put right first.
-A session that scatters otherwise than its file states enters with the scatter that it shows. The amplitude that fits
-a whole group is â = (ΣF)⁻¹ΣU, its covariance (ΣF)⁻¹: no reading is needed any more.
+`statistics_of(session)` keeps, for every cause that can last at every place and shape, its *score* U (how much of it
+the residuals hold) and *information* F (how much they could hold), some hundred kilobytes. Clipped channels, record
+errors and outliers are corrected first; a session that scatters otherwise than stated enters with its own scatter.
+The amplitude of a group is â = (ΣF)⁻¹ΣU with covariance (ΣF)⁻¹.
 
 ## Whose it is
 
@@ -28,37 +26,29 @@ a whole group is â = (ΣF)⁻¹ΣU, its covariance (ΣF)⁻¹: no reading is ne
 | type | the same of the sensor of one name in every unit, or of every sensor of a kind | one unit's, the stand's |
 | stand | of stand and fixture, over all units; a sensor cause that every sensor measured there shares | the units' |
 
-All levels are weighed on the same sessions. Two that fit alike are listed as rivals: only the same units on another
-stand tell them apart.
+Two levels that explain alike are listed as rivals: only the same units on another stand separate them.
 
 ## When a name is given
 
-The group is looked at after every upload, for years. So evidence is counted in *e-values*: bets that gain nothing on
-average where there is nothing, however often one looks. The mean over all causes, places, shapes and three forms (the
-same in every session; there, but different every time; since some session) reaches 100 in at most one group of a
-hundred without an effect, ever. A name needs that, must hold without the session that shows it most, must make sessions
-that took no part in its amplitude likelier, and must leave nothing but noise: where waves of β are left on the same
-sensor, or common to all, the name is taken back and the group is *unexplained*.
+A group is evaluated after every upload, so evidence is counted in *e-values*, valid however often one looks. The mean
+over all causes, places, shapes and three forms (same in every session, varying, since some session) reaches 100 in at
+most one group of a hundred without an effect. A name also must hold without the session that shows it most, make
+held-out sessions likelier, and leave only noise; with waves of β left on the same sensor or in common the group is
+*unexplained*.
 
-A name also says that the cause fits, not that it is the nearest of the catalogue. So at its place it is weighed against
-a library of empirical terms, some two hundred products of what a session knows of each reading (input, its size, sign
-and powers, what is across it, temperature, its square, its rate, what follows it late, time, waves of β, the row
-before), less those that a cause of the catalogue describes too:
+A name is weighed at its place against a library of some two hundred empirical terms (products of input, its size,
+sign and powers, cross-axis input, temperature, its square, rate and lag, time, waves of β, the row before), less
+those that a cause describes:
 
-* Where the terms are at least 20 times as likely, or are as sure beside the name as a name must be, the name is taken
-  back: *unexplained*, with the equation that was learned. What a name describes nearly, to 5 % of what it explains,
-  stays its own.
-* Where they are within 200 to 1, `unexplained` stands among the alternatives of the name. So it does where the sessions
-  have the name in different sizes (the form `varying`, or Cochran's test at 1 %): a cause is one constant, and what is
-  in no catalogue looks so too.
-* Every name beyond the first on one sensor pays as much as an independent misfortune is rare, ln 100.
-* A place whose names were taken back is left free in every session, and the search is made again: what is named
-  elsewhere holds whatever that place does.
+* Terms at least 20 times as likely, or as sure beside the name, withdraw it: *unexplained*, with the learned
+  equation. What a name describes to 5 % of what it explains stays its own.
+* Terms within 200 to 1, or different sizes in different sessions (the form `varying`, or Cochran's test at 1 %), put
+  `unexplained` among its alternatives.
+* Every further name on one sensor costs ln 100.
+* A place whose names were withdrawn is left free, and the search repeated.
 
-Names are only taken back in this way, so that a group without an effect keeps its bound. It takes the readings: what
-is kept of a session holds the scores of the catalogue, and those of the library would make it five times as large.
-Without sessions `diagnose_statistics` weighs names by waves of β and by prediction alone, and `unexplained` stands
-among the alternatives of each.
+This needs the readings; without sessions `diagnose_statistics` uses waves of β and prediction alone, and
+`unexplained` is among the alternatives of each name.
 
 ## What an answer holds
 
@@ -75,25 +65,19 @@ among the alternatives of each.
 
 ## In the service
 
-* Beside the diagnosis of a session, in the same process, its record is made and kept: once, since it needs nothing of
-  other sessions. Records of sessions older than that are made with the first answer of their group. One that fails is
-  kept with its reason, and the next version of the program tries again.
-* A group's answer is made again when one of its sessions comes, gets its record, or changes its state: a session that
-  is withdrawn, questioned or superseded leaves the pool, and one that is accepted comes back. A digest of the
-  sessions says whether a stored answer still holds; one that does not is never given out.
-* The newest 60 accepted sessions are pooled, of a unit those since its last service. To those of a stand come up to
-  60 of the same units elsewhere, from before its last one. `left_out` counts the older ones; `not_pooled` lists
-  sessions without a record, with the reason.
-* The pages of a unit, a type and a stand show it: every session's own amplitude beside the pooled one, what all of them
-  leave without the effect and with it, what naming it gains on later sessions, what would tell it from its rivals, and
-  the limits of the pool beside those of one session. The fleet page says in a line what was found anywhere.
-  `GET /units/{serial}/diagnosis`, `/unit-types/{name}/diagnosis` and `/stands/{name}/diagnosis` hand it out:
-  [the API](../api.md#diagnosis-and-models).
+* A session's record is made once, beside its diagnosis. One that fails is kept with its reason and retried by the
+  next version.
+* A group's answer is made again when one of its sessions comes, gets its record or changes its state; an answer for
+  other sessions is never given out.
+* The newest 60 accepted sessions are pooled, of a unit those since its last service; a stand's group adds up to 60 of
+  the same units elsewhere. `left_out` counts older ones, `not_pooled` lists sessions without a record.
+* The pages of unit, type and stand show amplitudes by session, residuals with and without the effect, gain, rivals
+  and limits; [the API](../api.md#diagnosis-and-models) gives the same.
 
 ## Accepted into a model
 
-An engineer accepts an effect for whom it is found: the unit, every unit of a type, or whatever is measured on a stand.
-On the page with a button, by `POST …/diagnosis/accept`, or
+An engineer accepts an effect for whom it is found: the unit, every unit of a type, or whatever is measured on a
+stand. On the page with a button, by `POST …/diagnosis/accept`, or
 
 ```
 imu-health models accept stand ODG-1 beta-eccentricity --by "K. Ito" --why "encoder looked at"
@@ -101,38 +85,26 @@ imu-health models show 7
 imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
 ```
 
-* Its size is the group's, and no session fits it again: fitted freely, an effect below the noise would cost each
-  session more than it is worth. What it adds is taken out of the readings, and what the group does not know of it (its
-  σ and the spread τ) is in every parameter's uncertainty. Only of an effect that differs every time each session has a
-  say.
-* What began at a date is not in the sessions before it.
-* Of one cause on one sensor the size found nearest to it counts: the unit's before the type's before the stand's. A
-  cause that was accepted from a single session is fitted in each, as it always was.
-* Every stored session that it concerns is computed again, unit by unit, in the processes beside the requests. The page
-  of the revision says how far that is, which sessions have another verdict since, and what moved furthest in each unit;
-  all of it stays on record. Nothing is overwritten.
-* It is withdrawn by a revision of its own, and goes out of every session again.
-* A learned term is accepted alike, under the name `empirical-term`: its equation stands on the page of the revision,
-  and what of it a session lacks, as a temperature, is left out there. Of one place one term counts.
+* Its size is the group's, not estimated again in each session (only a varying effect is). It is subtracted from the
+  readings, and its σ and spread τ enter every parameter's uncertainty.
+* An effect that began at a date is not in earlier sessions.
+* Of one cause on one sensor the unit's size takes precedence over the type's, and that over the stand's. A cause
+  accepted from a single session is estimated in each.
+* Every stored session concerned is recomputed beside the requests; the revision's page shows progress, changed
+  verdicts and the largest change in each unit. Withdrawal is a revision of its own.
+* A learned term is accepted as `empirical-term`; what a session lacks of it, such as temperature, is left out there.
 
 ## In the diagnosis of one session
 
-`diagnose(session, history)` pools the session with its unit's earlier ones, by the rules of a group; names are held
-against the library by the readings of the session and its history, also where records of earlier ones are pooled. What
-they show together and the session by itself does not name is named in it too, with the amplitude of all of them, where
-the session's own readings bear out that it is there: n earlier sessions that have it make the odds n + 1 beforehand,
-the readings multiply them by p(readings | amplitude of the others) / p(readings | none), and a name needs nine in ten.
-Then it is taken out of every session at the amplitude that the others found, and the search is made anew: what is left
-is the session's own, and the gain rests on an amplitude that its readings had no part in. Below one in twenty the
-diagnosis says that it has ended, and the history, whose parameters had absorbed it, is freed of it. A finding of this
-kind has `over_sessions`: how many speak of it, their e-value, and the probability that this session has it.
+`diagnose(session, history)` pools the session with its unit's earlier ones. An effect that they show together and the
+session alone does not is named in it, with the pooled amplitude, if its readings support it: prior odds n + 1 for n
+earlier sessions, times p(readings | amplitude of the others) / p(readings | none), at least nine in ten. It is then
+subtracted and the search repeated. Below one in twenty it is reported as ended. Such a finding has `over_sessions`:
+how many sessions, their e-value, and the probability in this one; it raises no flag of the session's. The service
+pools up to 60 earlier sessions since the last service; blocks of more than 16 sensors only where records were kept.
 
-The service pools what it kept of up to 60 earlier sessions since the unit's last service. Such a finding raises no flag
-of the session's: the group has one. Blocks of more than 16 sensors are pooled with their history only where records
-were kept.
-
-Units of twelve sessions with an effect of pooled strength 8.2 to 9.5, at most 3.5 in a session, made by
-`python -m benchmarks.study.with_history --groups 53 --seed 1`:
+Units of twelve sessions with an effect of pooled strength 8.2 to 9.5, at most 3.5 in a session, made by `python -m
+benchmarks.study.with_history --groups 53 --seed 1`:
 
 | the twelfth session | measured |
 | --- | --- |
@@ -142,41 +114,32 @@ Units of twelve sessions with an effect of pooled strength 8.2 to 9.5, at most 3
 | the effect ended before it: named all the same | 11.3 % (5.3–22.6) of 53 |
 | a unit without an effect: anything named that only several sessions show | 0.0 % (0.0–6.8) of 53 |
 
-What is missed are pools that do not reach their threshold yet, and sessions whose noise speaks against the effect. One
-that has just ended outlasts its end by a session in one case of nine: at strength 3 no reading tells better.
+Missed are pools below their threshold and sessions whose noise contradicts the effect.
 
-From Python: `statistics_of(session)` is the record, with `to_dict` and `from_dict` (`imu-session-statistics/2`);
-`diagnose_statistics(records, level, sessions)` pools records, oldest first. Without `sessions` no measurement is
-proposed, no term learned and no name sure. `diagnose_group(sessions, level)` is both at once.
+From Python: `statistics_of(session)`, with `to_dict` and `from_dict` (`imu-session-statistics/2`);
+`diagnose_statistics(records, level, sessions)` pools records, oldest first; without `sessions` no measurement is
+proposed and no term learned. `diagnose_group(sessions, level)` does both.
 
 ## Real recordings
 
-Made by `python -m benchmarks.recorded_groups`. A session left out is calibrated without and with what the others show,
-at the size that they found.
+Made by `python -m benchmarks.recorded_groups`; χ² per degree of freedom of a session left out, without and with what
+the others show.
 
-* The array of eight triads, three sessions, accelerometers: `warm-up` on the z axes, some with `bias-ramp` as a rival;
-  the same each time in A1z, since the second session in A5z, different every time in A2z, A3z, A4z, A6z, A8z. χ² per
-  degree of freedom of the session left out: 0.53 → 0.40, 0.36 → 0.24, 1.61 → 1.23.
-* Its gyros: nothing. Where the second session is left out the other two name a cause, and its χ² goes from 3.28
-  to 3.18.
-* Five MPU-9150 of one type, one session each, accelerometers and gyros: nothing.
+* The array of eight triads, three sessions, accelerometers: `warm-up` on the z axes, some with `bias-ramp` as a
+  rival; the same each time in A1z, since the second session in A5z, varying in A2z, A3z, A4z, A6z, A8z: 0.53 → 0.40,
+  0.36 → 0.24, 1.61 → 1.23.
+* Its gyros: nothing; without the second session a cause is named, 3.28 → 3.18.
+* Five MPU-9150 of one type, one session each: nothing.
 
-A board that is switched on before each session warms, and its z axes say so each time: what two sessions teach takes a
-quarter off the misfit of the third. Five units measured once each share nothing that five sessions could show.
+Record causes, outliers, jumps, clipping and excess noise belong to their session and are not pooled. Parameters
+between sessions are [no evidence here](../decisions/residuals-alone.md). A varying amplitude is known a little less
+well than its sigma, since few sessions determine its spread. Of two similar effects on one stand one may take the
+name of both.
 
-What is not pooled: record causes, outliers, jumps, clipping and excess noise belong to their session. How parameters
-moved between sessions is no evidence: [residuals alone are](../decisions/residuals-alone.md).
-
-Every figure below is at its target, or its interval holds it. An amplitude that differs from session to session is
-known a little less well than its sigma says: ten to eighteen sessions tell little of how much it differs. Of two
-effects on one stand that look alike, one may take the name of both.
-
-Effects of one sensor drawn from a hidden grammar of products (`tests/blind/effects_grammar.py`), strength 6 in each of
-ten sessions; made by `python -m benchmarks.study.groups --groups 26 --seed 31 --part grammar`. A name and nothing said
-to be unexplained: 0.0 % (0.0–6.9) of 52. In 48 other such groups it was 29 before names were weighed against the
-library. In 228 others it was 7 after that: five powers of the input nearer than 4 standard errors to
-`cubic-nonlinearity` on the pool, a product of scale and temperature cubed that varies as `scale-temperature` with the
-range of temperature, and one whose `thermal-lag` a single session of a wide range carries. All seven are doubted now.
+Effects of one sensor drawn from a hidden grammar of products (`tests/blind/effects_grammar.py`), strength 6 in each
+of ten sessions; made by `python -m benchmarks.study.groups --groups 26 --seed 31 --part grammar`. A name and nothing
+said to be unexplained: 0.0 % (0.0–6.9) of 52. Nearest to fail: odd powers of the input within 4 standard errors of
+`cubic-nonlinearity`, and products with temperature that resemble `scale-temperature`.
 """
 
 

@@ -42,9 +42,14 @@ def section(outcomes: list[Outcome]) -> str:
     ]
     figures = table(("figure", "target", "measured"), rows)
     head = ("left out", "no rival within 10", "wrong name", "`unexplained` said or listed", "names given")
-    return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\n" + table(
-        head, (_row(cause, apart) for cause in CATALOGUE)
+    told = [_row(cause, apart) for cause in CATALOGUE if not _is_clean([o for o in apart if o.causes == (cause,)])]
+    return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\nCauses with a wrong name or without " + (
+        f"`unexplained`:\n\n{table(head, told)}"
     )
+
+
+def _is_clean(outcomes: list[Outcome]) -> bool:
+    return all(o.unexplained_listed and not o.findings for o in outcomes)
 
 
 def _listed_near(outcomes: list[Outcome]) -> str:

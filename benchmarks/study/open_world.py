@@ -32,9 +32,8 @@ from tests.blind.catalogue import CATALOGUE
 PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "open-world.md"
 
 INTRODUCTION = (
-    "Inside its assumptions the diagnosis is measured in [study.md](study.md). Here its assumptions are false, and "
-    "what counts is that it notices. Physics, flights and blocks are simulated by code that the estimator does not "
-    "share. Intervals: 95 % (Wilson)."
+    "How the diagnosis behaves when its assumptions are false ([inside them](study.md)). Physics, flights and blocks "
+    "are simulated by code that the estimator does not share. Intervals: 95 % (Wilson)."
 )
 
 Task, Answer = TypeVar("Task"), TypeVar("Answer")

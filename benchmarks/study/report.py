@@ -10,6 +10,9 @@ from tests.blind.score import Outcome
 
 BINS = ((2, 3), (3, 4), (4, 5), (5, 6.5), (6.5, 8), (8, 12), (12, 18), (18, 27), (27, 1e9))
 
+FEW = 10
+"""A cause with fewer sessions has no row of its own: an interval of three trials says nothing."""
+
 INTRODUCTION = (
     "Unit, stand, schedule, temperature, order, noise and effect are drawn at random; the physics is written a second "
     "time, apart from the estimator. Strength is the norm of what the baseline leaves of an effect, in standard errors "
@@ -104,28 +107,30 @@ def named(outcome: Outcome) -> str:
 
 
 def _confusion(outcomes: list[Outcome]) -> str:
-    def rows(choose: Callable[[Outcome], bool]) -> Iterable[tuple[str, str, str]]:
+    def wrong_rows(choose: Callable[[Outcome], bool]) -> Iterable[tuple[str, str, str]]:
         for cause in CATALOGUE:
             own = [o for o in of_kind(outcomes, "single") if o.causes == (cause,) and choose(o)]
             counts = Counter(named(o) for o in own)
             right = counts.pop(cause, 0)
             wrong = ", ".join(f"{name} {n}" for name, n in counts.most_common())
-            yield f"`{cause}`", f"{right} / {len(own)}", wrong or "–"
+            if wrong:
+                yield f"`{cause}`", f"{right} / {len(own)}", wrong
 
     head = ("hidden", "named", "named instead")
     return (
-        "## Confusion matrix\n\nThe first name, one effect; empty cells of the matrix are left out.\n\n"
+        "## Confusion matrix\n\nThe first name, one effect; causes that are always named first are left out.\n\n"
         "### Separated from every rival by 5\n\n"
-        + table(head, rows(lambda o: o.separated))
+        + table(head, wrong_rows(lambda o: o.separated))
         + "\n\n### Nearer to a rival than that\n\n"
-        + table(head, rows(lambda o: not o.separated))
+        + table(head, wrong_rows(lambda o: not o.separated))
     )
 
 
 def _curve(outcomes: list[Outcome]) -> str:
     hidden = [o for o in outcomes if o.kind in ("single", "weak")]
     groups = [("all causes", hidden)]
-    groups += [(f"`{cause}`", [o for o in hidden if o.causes == (cause,)]) for cause in CATALOGUE]
+    causes = [(f"`{cause}`", [o for o in hidden if o.causes == (cause,)]) for cause in CATALOGUE]
+    groups += [(name, group) for name, group in causes if len(group) >= FEW]
     rows = []
     for name, group in groups:
         cells = []
@@ -181,10 +186,13 @@ def _two(outcomes: list[Outcome]) -> str:
 
 def _amplitudes(outcomes: list[Outcome]) -> str:
     rows = []
-    for cause in CATALOGUE:
-        values = [p.value for o in of_kind(outcomes, "single") for p in o.pulls if p.cause == cause]
+    pulls = [p for o in of_kind(outcomes, "single") for p in o.pulls]
+    groups = [("all causes", [p.value for p in pulls])]
+    causes = [(f"`{cause}`", [p.value for p in pulls if p.cause == cause]) for cause in CATALOGUE]
+    groups += [(name, values) for name, values in causes if len(values) >= FEW]
+    for name, values in groups:
         if values:
             spread = fmean([v * v for v in values]) ** 0.5
-            rows.append((f"`{cause}`", rate([abs(v) <= 2 for v in values]), f"{fmean(values):+.2f}", f"{spread:.2f}"))
+            rows.append((name, rate([abs(v) <= 2 for v in values]), f"{fmean(values):+.2f}", f"{spread:.2f}"))
     head = ("cause", "within two sigma", "mean", "root mean square")
     return "## Amplitudes, (estimate − truth) / sigma\n\n" + table(head, rows)

@@ -143,13 +143,12 @@ def page(found: list[Turned]) -> str:
             _clean(clean, lambda f: f"{f.wish.degrees:g}°", [f"{d:g}°" for d in DEGREES], "turn"),
             _clean(clean, lambda f: f.wish.programme.name, NAMES, "programme"),
             f"### A drift of strength {STRENGTH:g} beside the turn",
-            _beside(drifted, lambda f: f.wish.programme.name, NAMES, "programme"),
             _beside(drifted, lambda f: f"{f.wish.degrees:g}°", [f"{d:g}°" for d in DRIFT_DEGREES], "turn"),
             "### Three sessions before, each in another mounting",
             _clean(
                 [f for f in found if f.wish.earlier > 1],
                 lambda f: f.wish.programme.name,
-                [p.name for p in PROGRAMMES],
+                [],
                 "programme",
             ),
         ]

@@ -68,10 +68,9 @@ def page(types: int, seed: int) -> str:
         "## By kind of history",
         *(_kinds(cases[i], cases[i + 1]) for i in (0, 2)),
         "## Would it help to weigh sessions by Student's law?",
-        "The same histories with Student's errors. *Sessions weighed*: every session by what the type's learned tails "
-        "make of it, given all that the history may be (expectation maximisation, two rounds). *λ missing*: with the "
-        "information that Student's law has, which is less. A level is where the parameter is said to be at its last "
-        "session.",
+        "The same histories with Student's errors. *Sessions weighed*: by the type's learned tails (expectation "
+        "maximisation, two rounds). *λ missing*: with the smaller information of Student's law. A level is the "
+        "estimate at the last session.",
         table(
             ("workshops", "forecast", "passed before reach 90, all kinds alike",
              "late drift, since two sessions or more", "level wrong by, median", "level further out than 2 u"),
