@@ -1,7 +1,7 @@
 """A file as it comes in, before anything is known of what it holds."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -45,21 +45,34 @@ def held(content: Content) -> bytes:
     return content.path.read_bytes() if isinstance(content, Landed) else content
 
 
+@dataclass(frozen=True, kw_only=True)
+class Stated:
+    """What a sender states of a file, beside what it holds; carried whole from the request to the stored session."""
+
+    is_check: bool = False
+    """Whether it is only a check, which moves no due date."""
+    replaces: Replaced | None = None
+    mapping: Mapping[str, Any] | None = None
+    """How a table of a user-defined layout is read."""
+
+    def stated(self) -> dict[str, Any]:
+        """Its fields by name, for another form of the same file."""
+        return {field.name: getattr(self, field.name) for field in fields(Stated)}
+
+
+NOTHING_STATED = Stated()
+
+
 @dataclass(frozen=True)
-class SentFile:
+class SentFile(Stated):
     """A file as its sender named it."""
 
     filename: str
     content: Content
-    replaces: Replaced | None = None
-    mapping: Mapping[str, Any] | None = None
-    """How a table of one's own layout is read, as it was sent."""
-    is_check: bool = False
-    """Whether it only looks after the unit and moves no date."""
 
 
 @dataclass(frozen=True)
-class Received:
+class Received(Stated):
     """An upload on its way through the steps."""
 
     size: int
@@ -71,13 +84,11 @@ class Received:
     at: datetime
     who: str
     """That sent it."""
-    is_check: bool = False
-    """Whether it only looks after the unit and moves no date."""
 
 
 @dataclass(frozen=True)
-class Sent:
-    """A file that was received whole and is still to be read, with what its sender said of it."""
+class Sent(Stated):
+    """A file that was received whole and is still to be read."""
 
     place: str
     """Its name among those that wait."""
@@ -86,7 +97,3 @@ class Sent:
     """Bytes."""
     account: str = ""
     """As the audit trail names who sent it."""
-    is_check: bool = False
-    replaces: Replaced | None = None
-    mapping: Mapping[str, Any] | None = None
-    """How a table of one's own layout is read."""

@@ -46,7 +46,7 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
     with reception.storage.database.reading() as store:
         is_check = Sessions(store).get(id).is_check
     replaced = Replaced(id, by, f"corrected: {done}")
-    return receive(reception, SentFile(f"{id}-corrected.json", content, replaced, is_check=is_check), now)
+    return receive(reception, SentFile(f"{id}-corrected.json", content, replaces=replaced, is_check=is_check), now)
 
 
 def remedies_of(storage: Storage, id: str, states: Sequence[StateChange]) -> Remedies:

@@ -22,7 +22,7 @@ from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.known_unit import KnownUnit, known_unit
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
-from service.kit.arriving_files import Content, Received, Replaced, SentFile, held, where
+from service.kit.arriving_files import NOTHING_STATED, Content, Received, Replaced, SentFile, Stated, held, where
 from service.models.rules import model_for
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -104,8 +104,7 @@ def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> R
         with in_turn(where(file.content)):
             return upload(
                 reception.storage, file.content, file.filename, now, coverage_factor=k, who=reception.who,
-                replaces=file.replaces, is_dated_later=reception.is_dated_later, is_check=file.is_check,
-                course=reception.course,
+                stated=file, is_dated_later=reception.is_dated_later, course=reception.course,
             )  # fmt: skip
     except RefusedError as refusal:
         return refusal
@@ -119,10 +118,9 @@ def upload(
     *,
     coverage_factor: float = 2.0,
     who: str = "crew",
-    replaces: Replaced | None = None,
+    stated: Stated = NOTHING_STATED,
     outlook: bool = True,
     is_dated_later: bool = True,
-    is_check: bool = False,
     course: Course = UNFOLLOWED,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
@@ -130,26 +128,26 @@ def upload(
     A corrected file names the session that it replaces, whatever unit or date that one is of. Raises RefusedError with
     every problem when the file cannot be used; then only the refusal is recorded. Without ``outlook`` the unit's dates
     stay as they were: another file of it follows. ``is_dated_later``: they are asked for, and made beside the requests.
-    ``is_check``: the session is judged and moves no date; what is stored already stays what it is.
+    ``stated``: what its sender states beside it; of a session that is stored already that stays as it was.
     """
-    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, is_check)
+    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, **stated.stated())
     way = Deriving(storage.files, coverage_factor, now, outlook=outlook, is_dated_later=is_dated_later)
     with storage.database.reading() as store:
-        if replaces is not None:
-            Sessions(store).get(replaces.session)
+        if stated.replaces is not None:
+            Sessions(store).get(stated.replaces.session)
         known = Sessions(store).by_hash(received.sha256)
     if known is not None:
         storage.files.put_back(content)
-        return _known(storage, way, known, replaces)
+        return _known(storage, way, known, stated.replaces)
     try:
         new = _calibrated(storage, _checked(storage, content, received))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems, course) from fault
     course.keeping()
     storage.files.keep(content)
-    ready = _ready(storage, way, received, new, replaces)
+    ready = _ready(storage, way, received, new)
     with storage.database.writing() as store:
-        receipt, derived = _store(store, way, received, ready, replaces)
+        receipt, derived = _store(store, way, received, ready)
         course.stored(store, receipt)
     return _followed(storage, way, receipt, derived)
 
@@ -204,8 +202,9 @@ class _Ready:
     """Where its content is stored already, of `settled_by`."""
 
 
-def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated, replaces: Replaced | None) -> _Ready:
+def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated) -> _Ready:
     """With no transaction open that others wait for."""
+    replaces = received.replaces
     digests = Digests(content_digest(new.checked.session), new.checked.readings_digest)
     with storage.database.reading() as store:
         same = None if replaces is None else Sessions(store).same(received.sha256, digests.content_digest)
@@ -215,11 +214,9 @@ def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated,
     return _Ready(new, digests, made(new.calibration), foreseen, settled)
 
 
-def _store(
-    store: Store, way: Deriving, received: Received, ready: _Ready, replaces: Replaced | None
-) -> tuple[Receipt, dict[str, Derived]]:
+def _store(store: Store, way: Deriving, received: Received, ready: _Ready) -> tuple[Receipt, dict[str, Derived]]:
     """The record, and everything that follows from it, within one transaction; by unit, what is left of that."""
-    new = ready.new
+    new, replaces = ready.new, received.replaces
     unit = _unit(store, received, new)
     same = Sessions(store).same(received.sha256, ready.digests.content_digest)
     if same is not None:

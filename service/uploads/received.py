@@ -63,7 +63,7 @@ async def _sent(request: Request, arriving: Arriving, stated: dict[str, str | No
     if content_type.startswith("multipart/form-data"):
         return await _from_form(arriving, stated)
     name = "upload.csv" if "csv" in content_type else "upload.json"
-    return SentFile(name, await arriving.body(), _replaced(stated))
+    return SentFile(name, await arriving.body(), replaces=_replaced(stated))
 
 
 async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentFile:
@@ -75,7 +75,8 @@ async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentF
     name, sent = file.filename or "upload", form.get("mapping")
     mapping = held(await sent.content()) if isinstance(sent, LandedFile) else str(sent or "").encode()
     is_check = str(form.get("check", "")).strip().lower() in YES
-    return SentFile(name, await file.content(), _replaced(stated | own), _mapping(mapping, name), is_check)
+    replaces, read_by = _replaced(stated | own), _mapping(mapping, name)
+    return SentFile(name, await file.content(), is_check=is_check, replaces=replaces, mapping=read_by)
 
 
 def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:

@@ -59,8 +59,7 @@ def ask_upload(storage: Storage, file: SentFile, person: Person, place: str, now
         with storage.database.reading() as store:
             Sessions(store).get(file.replaces.session)
     digest = content_hash(file.content)
-    own = (person.account, file.is_check, file.replaces, file.mapping)
-    sent = Sent(place, digest, len(file.content), *own)
+    sent = Sent(place, digest, len(file.content), person.account, **file.stated())
     put_waiting(storage.files, place, file.content)
     new = NewJob(JobKind.UPLOAD, person.signs("crew"), person.login, subject=plain_filename(file.filename), sent=sent)
     try:
@@ -156,7 +155,7 @@ def _taken_in(reception: Reception, job: Job, sent: Sent, at: _Following) -> Non
     course = Course(at.keeping, at.stored, at.refused)
     own = replace(reception, storage=acting, who=job.who, course=course)
     landed = waiting_file(storage.files, sent)
-    file = SentFile(job.subject, landed, sent.replaces, sent.mapping, sent.is_check)
+    file = SentFile(job.subject, landed, **sent.stated())
     try:
         with heard_by(at.read_on):
             mapped = None if file.mapping is None else receive_mapped(own, file, file.mapping, came)

@@ -212,7 +212,7 @@ def test_what_no_job_waits_for_is_swept_after_an_hour(storage: Storage) -> None:
 @one_engine
 def test_what_it_would_replace_must_be_there(storage: Storage) -> None:
     with pytest.raises(NotFoundError):
-        asked(storage, SentFile("a.json", session_bytes(), Replaced("none", "K. Ito", "wrong")))
+        asked(storage, SentFile("a.json", session_bytes(), replaces=Replaced("none", "K. Ito", "wrong")))
     assert waiting(storage) == []
 
 

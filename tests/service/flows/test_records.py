@@ -10,7 +10,7 @@ from sqlalchemy.exc import DatabaseError
 from service.errors import ConflictError, NotFoundError
 from service.flags.store import Flags
 from service.fleet.store import Fleet
-from service.kit.arriving_files import Replaced
+from service.kit.arriving_files import Replaced, Stated
 from service.outlook.store import Outlooks
 from service.records.changes import accept_session, choose_reference, record_service, withdraw_service, withdraw_session
 from service.records.supersede import supersede_session
@@ -34,7 +34,7 @@ APRIL = datetime(2026, 4, 1, tzinfo=UTC)
 def measured(storage: Storage, month: int, moved: float = 0.0, replaces: Replaced | None = None) -> Receipt:
     """A session of a month with A3's bias moved by so many µg."""
     content = session_bytes(seed=month, month=month, a3_moved=moved)
-    return upload(storage, content, f"{month}.json", NOW, replaces=replaces)
+    return upload(storage, content, f"{month}.json", NOW, stated=Stated(replaces=replaces))
 
 
 def stored(storage: Storage, id: str) -> StoredSession:
@@ -73,7 +73,9 @@ def test_a_corrected_file_stands_for_the_first_and_counts_once(storage: Storage)
     measured(storage, 3)
     wrong = measured(storage, 5, 300.0)
     content = session_bytes(seed=5, month=5)
-    right = upload(storage, content, "b.json", NOW, replaces=Replaced(wrong.id, "K. Ito", "typing error"))
+    right = upload(
+        storage, content, "b.json", NOW, stated=Stated(replaces=Replaced(wrong.id, "K. Ito", "typing error"))
+    )
     known = stored(storage, wrong.id)
     assert (known.state, known.superseded_by) == (RecordState.SUPERSEDED, right.id)
     with storage.database.reading() as store:
@@ -87,7 +89,9 @@ def test_a_session_moves_to_another_unit_by_a_corrected_file(storage: Storage) -
     before = state_of(storage, UNIT)
     wrong = measured(storage, 5, 300.0)
     right = session_bytes(seed=5, month=5, a3_moved=300.0, unit="BA-018")
-    assert upload(storage, right, "b.json", NOW, replaces=Replaced(wrong.id, "K. Ito", "other unit")).is_reference
+    assert upload(
+        storage, right, "b.json", NOW, stated=Stated(replaces=Replaced(wrong.id, "K. Ito", "other unit"))
+    ).is_reference
     assert state_of(storage, UNIT)[UNIT] == before[UNIT]
 
 

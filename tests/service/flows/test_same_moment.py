@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from service.kit.arriving_files import Replaced
+from service.kit.arriving_files import Replaced, Stated
 from service.records.supersede import successor_of, supersede_session
 from service.sessions.records import Receipt
 from service.sessions.states import RecordState
@@ -55,7 +55,7 @@ def test_one_that_stands_for_the_other_counts_as_if_it_had_said_so(storage: Stor
 @one_engine
 def test_the_file_sent_again_with_the_name_of_the_other_counts_too(storage: Storage, asked: tuple[str, str]) -> None:
     replaces = Replaced(asked[0], "K. Ito", "read off wrongly")
-    receipt = upload(storage, RIGHT, "a.json", NOW, replaces=replaces)
+    receipt = upload(storage, RIGHT, "a.json", NOW, stated=Stated(replaces=replaces))
     assert (receipt.created, receipt.state) == (False, RecordState.ACCEPTED)
 
 
