@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.kit.arriving_files import Replaced
+from service.kit.arriving_files import Replaced, Stated
 from service.opening import open_database
 from service.records.changes import accept_session, choose_reference, record_service, withdraw_service, withdraw_session
 from service.sessions.states import RecordState
@@ -52,7 +52,8 @@ class Crew:
         id = session_id(content(month))
         if month == 6 and detour == "corrected":
             wrong = upload_and_date(self.storage, WRONG, "wrong.json", NOW).id
-            upload_and_date(self.storage, content(6), "a.json", NOW, replaces=Replaced(wrong, "K. Ito", "other unit"))
+            stated = Stated(replaces=Replaced(wrong, "K. Ito", "other unit"))
+            upload_and_date(self.storage, content(6), "a.json", NOW, stated=stated)
             return
         upload_and_date(self.storage, content(month), "a.json", NOW)
         if detour == "twice":
