@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from benchmarks.details import in_full, publish
 from benchmarks.diagnosed_recordings.pictures import draw
 from benchmarks.diagnosed_recordings.stated import stated_table
 from benchmarks.diagnosed_recordings.subjects import Diagnosed
@@ -31,15 +32,15 @@ def page(name: str, made: list[Diagnosed], out: Path) -> None:
     for k, one in enumerate(made, 1):
         picture = f"{name}-{k}.png"
         draw(one.subject.session, one.diagnosis, out / picture)
-        parts += [f"## {one.subject.title}", section(one.diagnosis), f"![measured minus simulated]({picture})"]
-    (out / f"{name}.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+        parts += [f"## {one.subject.title}", in_full(section(one.diagnosis)), f"![measured minus simulated]({picture})"]
+    publish("\n\n".join(parts) + "\n", out / f"{name}.md")
 
 
 def stated_page(out: Path) -> None:
     """Write the page on errors stated otherwise."""
     title, argued = (PHYSICS / f"{STATED}.md").read_text(encoding="utf-8").split("\n", 1)
-    parts = [title, f"Made by `{COMMAND} {STATED}`.", argued.strip(), stated_table()]
-    (out / f"{STATED}.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+    parts = [title, f"Made by `{COMMAND} {STATED}`.", argued.strip(), in_full(stated_table())]
+    publish("\n\n".join(parts) + "\n", out / f"{STATED}.md")
 
 
 def index(made: dict[str, list[Diagnosed]]) -> str:

@@ -3,6 +3,7 @@
 from collections import Counter
 from itertools import cycle, islice
 
+from benchmarks.details import in_full
 from benchmarks.study.examine import Task
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
@@ -43,9 +44,8 @@ def section(outcomes: list[Outcome]) -> str:
     figures = table(("figure", "target", "measured"), rows)
     head = ("left out", "no rival within 10", "wrong name", "`unexplained` said or listed", "names given")
     told = [_row(cause, apart) for cause in CATALOGUE if not _is_clean([o for o in apart if o.causes == (cause,)])]
-    return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\nCauses with a wrong name or without " + (
-        f"`unexplained`:\n\n{table(head, told)}"
-    )
+    by_cause = in_full(f"Causes with a wrong name or without `unexplained`:\n\n{table(head, told)}")
+    return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\n{by_cause}"
 
 
 def _is_clean(outcomes: list[Outcome]) -> bool:

@@ -8,6 +8,7 @@ from statistics import fmean
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from tests.blind.score import Outcome
@@ -48,7 +49,7 @@ def section(outcomes: list[Outcome]) -> str:
         f"## Probabilities\n\n{INTRODUCTION}\n\n"
         + table(("figure", "target", "measured"), rows)
         + "\n\n"
-        + table(("stated", "mean", "true"), bins)
+        + in_full(table(("stated", "mean", "true"), bins))
     )
 
 

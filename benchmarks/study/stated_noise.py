@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import diagnose, read_session
@@ -115,7 +116,7 @@ def section(answers: list[Answer]) -> str:
         f"## Stated noise\n\n{INTRODUCTION}\n\n"
         + table(("figure", "target", "measured"), rows)
         + "\n\n"
-        + table(head, lines)
+        + in_full(table(head, lines))
     )
 
 
