@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.orientations import GRAVITY, NOISE, Case, case, one_degree_off, sphere, two_axis_turns
 from benchmarks.papers.markdown import section, table
 from estimator import CalibrationSession, calibrate
@@ -82,7 +83,7 @@ def published_counts() -> str:
             rows.append((name, f"{grow} / {shrink}", *shown, f"{np.nanmedian(left):.1e}"))
     rows.append(("published, at least 9", "not stated", "about 270", "about 200", "about 1e-7"))
     columns = ("orientations", "grow / shrink", "from nominal", "from 10 % off", "functional there, (m/s²)²")
-    return section("Iterations to 0.001 %", COUNTED, table(columns, rows), COUNTS)
+    return section("Iterations to 0.001 %", COUNTED, in_full(table(columns, rows)), COUNTS)
 
 
 def orientation_sets() -> list[tuple[str, Array]]:
@@ -184,7 +185,7 @@ def side_by_side() -> str:
             )  # fmt: skip
     columns = ("sensors × orientations", "estimator", "iterations", "ms", "bias / σ", "variance / bound", "worst")
     words = COMPARED.format(trials=TRIALS, noise=1e6 * NOISE)
-    return section("Three estimators on the same sessions", words, table(columns, rows), ESTIMATED)
+    return section("Three estimators on the same sessions", words, in_full(table(columns, rows)), ESTIMATED)
 
 
 def orientation_errors() -> str:
@@ -216,7 +217,7 @@ def ranks() -> str:
         values = np.linalg.svd(problem.jacobian(levenberg_marquardt(problem).x), compute_uv=False)
         rows.append((name, int((values > 1e-6 * values[0]).sum()), f"{values[-1] / values[0]:.1e}"))
     columns = ("orientations", "rank of 13", "least / largest singular value")
-    return section("Which sets determine everything", table(columns, rows), RANKS)
+    return section("Which sets determine everything", in_full(table(columns, rows)), RANKS)
 
 
 def page() -> str:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 
+from benchmarks.details import in_full
 from benchmarks.files.long import LongLog, table
 from benchmarks.files.service import Cost
 from estimator.long_logs.average import MOST_RESTS
@@ -85,15 +86,14 @@ allowed files.
 
 Worst single file: {worst:.0f} MiB over idle. Longest wait for `/healthz`: {wait:.2f} s.
 
-| file | size, kB | answer | seconds | memory over idle, MiB | longest /healthz, s |
-| --- | --- | --- | --- | --- | --- |
-{_table(rows)}
+{in_full(_table(rows))}
 
 ## Fuzzing
 
 `tests/service/ingest/test_hostile.py` damages valid files of every format at random: each is read, or refused with a
 reason. `python -m benchmarks.fuzz` does the same guided by the code that it reaches, for as long as it is let.
-`make fuzz-numbers` puts extreme numbers into every field ([bounds](../session-file.md#which-numbers-are-taken)).
+`make fuzz-numbers` puts extreme numbers into every field ([bounds](../session-file.md#which-numbers-are-taken)) and
+into every number of the other calls, and writes what became of them to [a table](../../benchmarks/fuzz/NUMBERS.md).
 """
 
 
@@ -156,7 +156,10 @@ def _limits() -> str:
 
 
 def _table(rows: Sequence[Row]) -> str:
-    return "\n".join(
+    head = (
+        "| file | size, kB | answer | seconds | memory over idle, MiB | longest /healthz, s |\n" + "| --- " * 6 + "|\n"
+    )
+    return head + "\n".join(
         f"| {row.name} | {row.size / 1000:,.1f} | {', '.join(map(str, row.cost.statuses))} | {row.cost.seconds:.1f} "
         f"| {row.cost.memory:.0f} | {row.cost.wait:.2f} |"
         for row in rows

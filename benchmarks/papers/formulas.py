@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.papers.half_sums import simulated
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers.published import ACCELEROMETERS, AXES, STAND
@@ -70,6 +71,6 @@ with what it printed."""
 def formulas(trials: int = TRIALS) -> str:
     """Both tables as markdown."""
     columns = ("source", "", f"{trials} simulated", "checked", "checked / simulated", "printed", "printed / simulated")
-    first = section("Formulas (28)–(30), source by source", WORDS, table(columns, compared(trials)))
+    first = section("Formulas (28)–(30), source by source", WORDS, in_full(table(columns, compared(trials))))
     stated = ("3σ, N = 12", "stated", "(28)–(30) as printed", "checked")
     return "\n\n".join((first, section("The instrument alone", table(stated, instrument_only()), INSTRUMENT)))

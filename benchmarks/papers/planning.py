@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers.published import ACCELEROMETERS, GYROS
 from benchmarks.papers.tables import schedule
@@ -61,7 +62,7 @@ def conditionings() -> str:
     words = """ρ is the ratio of the largest to the smallest eigenvalue of a sensor's own information. It is
 least between 40° and 45° and within a quarter of that from 31° to 55°: the paper's 40° to 55° are the upper part of
 that range. With equal steps it is the same for every N: more positions give more information, not a better shape."""
-    return section("Conditioning", table(("α", "N = 12", "24", "36"), rows), words)
+    return section("Conditioning", in_full(table(("α", "N = 12", "24", "36"), rows)), words)
 
 
 def positions() -> str:
@@ -111,7 +112,7 @@ def orientation_sets() -> str:
 scale, bias, axis, no common turn). Nine generic orientations are needed whatever the number of sensors: the readings
 lie on an ellipsoid, which has nine parameters. Turns in two planes never show x and y together and stay one short."""
     columns = ("orientations", "m = 3", "m = 4", "m = 6", "to add for m = 4")
-    return section("Orientation sets before they are flown", table(columns, rows), words)
+    return section("Orientation sets before they are flown", in_full(table(columns, rows)), words)
 
 
 def planning() -> str:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers_alignment.observability import expected, gramian, mounting_effect, planned_path
 from benchmarks.papers_alignment.runs import MOUNTING, QUIET, SITE, TRUTH, Errors, G, errors
@@ -114,7 +115,7 @@ def plans() -> str:
         "One sigma at the end by covariance analysis, turntable 0.5″; *told* counts the directions of φ, ε, ∇, E, κ "
         "that are known well enough to be of use (60″, 1 °/h, 0.3 mg). The eigenvalue is the least of the "
         "observability Gramian in those units: above 1, gyros without noise could tell the direction.",
-        table(heads, rows),
+        in_full(table(heads, rows)),
         "Velocity alone (*mounting*) does not tell E, whatever the number of positions and the sense of the turns; it "
         "takes the turntable's own direction. That the eigenvalue is not zero is the Earth's rotation at work, at "
         "5e-5 a second: gyro noise drowns it. The ten-state sigmas of ∇ hold only where E is zero.",

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.details import DOCS, RESULTS, in_full, publish, published, shortened
+from benchmarks.details import BEGIN, DOCS, RESULTS, in_full, publish, published, shortened
 
-WHOLE = sorted(path.relative_to(RESULTS) for path in RESULTS.rglob("*.md"))
+WHOLE = sorted(p.relative_to(RESULTS) for p in RESULTS.rglob("*.md") if BEGIN in p.read_text(encoding="utf-8"))
 TEXT = f"# Title\n\nMade [so](other.md).\n\n| short |\n\n{in_full('| long |')}\n\nThe end.\n"
 
 
