@@ -60,7 +60,7 @@ class Bound:
         """As docs/session-file.md has it."""
         least, zero = (self.within.smallest, "yes") if 0 in self.within else (self.within.low, "no")
         ends = f"{self.within.low:g} to {self.within.high:g}"
-        return f"| `{self.field}` | {self.within.unit} | {ends} | {least:g} | {zero} | {self.reason} |"
+        return f"| `{self.field}` | {self.within.unit} | {ends} | {least:g} | {zero} |"
 
 
 ANGLE = "ten degrees, beyond which a stand is none; the best are known to 0.01"
