@@ -30,5 +30,9 @@ def test_every_field_is_described(key):
 
 
 def test_the_page_has_the_bounds_of_every_number():
-    stated = {line for line in PAGE.splitlines() if line.startswith("| `") and line.count("|") == 6 and line.rstrip(" |").endswith(("yes", "no"))}
+    stated = {
+        line
+        for line in PAGE.splitlines()
+        if line.startswith("| `") and line.count("|") == 6 and line.rstrip(" |").endswith(("yes", "no"))
+    }
     assert stated == {bound.row for bound in BOUNDS}
