@@ -71,11 +71,12 @@ def page(types: int, seed: int) -> str:
         "The same histories with Student's errors. *Sessions weighed*: by the type's learned tails (expectation "
         "maximisation, two rounds). *λ missing*: with the smaller information of Student's law. A level is the "
         "estimate at the last session.",
-        table(
+        in_full(table(
             ("workshops", "forecast", "passed before reach 90, all kinds alike",
              "late drift, since two sessions or more", "level wrong by, median", "level further out than 2 u"),
             [row for case in (cases[1], cases[3]) for row in _rivals(case)],
-        ),
+        )),
+        "What follows from it: [errors with tails](../methods/health.md#errors-with-tails).",
     ]  # fmt: skip
     return "\n\n".join(parts) + "\n"
 
