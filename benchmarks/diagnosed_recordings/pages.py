@@ -21,8 +21,6 @@ unknown: statements on the physics are arguments, marked where they are inferenc
 the evidence. Accelerometers of a single position are rejected as no calibration. How an answer depends on stated errors
 and chosen sensors: [stated errors](recordings/{STATED}.md).
 """
-SET_BY_SET = "set-by-set.md"
-"""Of every recording what is named and what is not, by hand."""
 
 
 def page(name: str, made: list[Diagnosed], out: Path) -> None:
@@ -57,5 +55,4 @@ def index(made: dict[str, list[Diagnosed]]) -> str:
         for one in several
     ]
     head = ("recording", "rows × sensors", "what the simulation gets wrong", "held-out χ²/dof", "held-out log score")
-    argued = (PHYSICS / SET_BY_SET).read_text(encoding="utf-8").strip()
-    return f"{INDEX}\n{table(head, body)}\n\n{argued}\n"
+    return f"{INDEX}\n{table(head, body)}\n"
