@@ -37,8 +37,8 @@ most) of twelve blocks. *To 0.001 %*: every scale to 1e-5 of itself, every bias 
 
 COUNTS = """What an iteration is, the step factors and the orientations are not stated in print. Here an iteration is
 one pass over all 13 parameters. The orientations matter most: medians run from 26 to 1536, and the published 270 and
-200 lie inside. Their ratio, 1.35, is ours too (1.2 to 1.4). The functional at 0.001 % is the published 1e-7 in (m/s²)², within
-the spread of the number of equations."""
+200 lie inside. Their ratio, 1.35, is ours too (1.2 to 1.4). The functional at 0.001 % is the published 1e-7 in (m/s²)²,
+within the spread of the number of equations."""
 
 COMPARED = """{trials} simulated sessions, noise {noise:.0f} µg. *Bias* is the mean error over the bound's sigma, root
 mean square over the parameters (0.07 is what 200 sessions of an unbiased estimator show); *variance* is over the
