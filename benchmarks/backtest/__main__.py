@@ -143,7 +143,7 @@ def _second(sample: Sample, rng: np.random.Generator) -> list[str]:
 
 def _described(world: World, rows: Sequence[Row]) -> list[str]:
     kinds = table(("a parameter may be", "that is"), list(world.described.items()))
-    return [kinds, "### In short", table(("figure", "here", "target"), list(rows))]
+    return [in_full(kinds), "### In short", table(("figure", "here", "target"), list(rows))]
 
 
 def _dates(world: World, due: Sequence[Due], reached: Sequence[Reached]) -> list[Row]:

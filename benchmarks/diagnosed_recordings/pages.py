@@ -8,6 +8,10 @@ from benchmarks.diagnosed_recordings.stated import stated_table
 from benchmarks.diagnosed_recordings.subjects import Diagnosed
 from benchmarks.diagnosed_recordings.words import section, summary, table
 
+LEGEND = """A cell is *the same* as × 1 (probabilities within 2 %), or bold. *Stated noise* is the factor by which the
+answer calls the stated errors of accelerometers (A) or gyros (G) too small, *right* where it believes them; a slash
+separates the three factors. A log states no errors, so it has one answer. Inputs without any name are left out."""
+"""How the table of stated errors reads."""
 COMMAND = "python -m benchmarks.diagnosed_recordings"
 PHYSICS = Path(__file__).parent / "physics"
 """What is argued of each recording, written by hand; the figures on the page are made by the command."""
@@ -37,7 +41,7 @@ def page(name: str, made: list[Diagnosed], out: Path) -> None:
 def stated_page(out: Path) -> None:
     """Write the page on errors stated otherwise."""
     title, argued = (PHYSICS / f"{STATED}.md").read_text(encoding="utf-8").split("\n", 1)
-    parts = [title, f"Made by `{COMMAND} {STATED}`.", argued.strip(), in_full(stated_table())]
+    parts = [title, f"Made by `{COMMAND} {STATED}`.", argued.strip(), in_full(f"{LEGEND}\n\n{stated_table()}")]
     publish("\n\n".join(parts) + "\n", out / f"{STATED}.md")
 
 

@@ -175,7 +175,7 @@ def table(marks: list[dict[str, Any]]) -> Iterator[tuple[str, str, str]]:
         pulls = [abs(p) <= 2 for m in part[name] for p in m["pulls"]]
         yield f"amplitude within two of its sigma, {words}", "93–97 %", str(rate(pulls))
     since = [m["forms"][0] == "since" for m in part["since"] if m["named"][0]]
-    yield "effect that began later: said to have begun, where it is named", "–", str(rate(since))
+    yield "effect that began later: its beginning found, where it is named", "–", str(rate(since))
     two = [all(m["listed"]) for m in part["two"]]
     yield "two effects of pooled strength ≥ 8: both named or listed", "–", str(rate(two))
     wrong = [all(m["listed"]) for m in part["misstated"]]
@@ -183,7 +183,11 @@ def table(marks: list[dict[str, Any]]) -> Iterator[tuple[str, str, str]]:
     outside = part["outside"]
     said = rate([m["unexplained"] for m in outside])
     named = rate([bool(m["findings"]) for m in outside])
-    yield "outside the catalogue, strength 6 in each session: unexplained said; a wrong name", "–", f"{said}; {named}"
+    yield (
+        "outside the catalogue, strength 6 in each session: `unexplained` answered; a wrong name",
+        "–",
+        f"{said}; {named}",
+    )
     yield from terms(outside, part["none"])
     yield from hidden(part["grammar"], one)
     shares = [m["share"] for m in marks if m.get("share")]
@@ -214,12 +218,12 @@ def hidden(outside: list[dict[str, Any]], one: list[dict[str, Any]]) -> Iterator
     """Rows of effects of a hidden grammar, and what the doubt about them costs effects that the catalogue has."""
     sure = str(rate([m["sure"] for m in outside]))
     far = str(rate([m["sure"] for m in outside if min(m["separations"]) >= 3]))
-    yield "hidden grammar, strength 6 in each of ten sessions: a name and nothing said to be unexplained", "≤ 2 %", sure
+    yield "hidden grammar, strength 6 in each of ten sessions: a name without `unexplained`", "≤ 2 %", sure
     yield "the same, 3 or more standard errors from every cause of the catalogue", "≤ 2 %", far
     named, crowd = rate([bool(m["findings"]) for m in outside]), rate([m["crowd"] > 1 for m in outside])
     yield "the same: any name; two or more names on one sensor", "–", f"{named}; {crowd}"
     back, doubted = rate([m["unexplained"] for m in one]), rate([m["doubted"] for m in one])
-    yield "one effect of the catalogue: unexplained said; unexplained among its alternatives", "–", f"{back}; {doubted}"
+    yield "one effect of the catalogue: `unexplained` answered; among its alternatives", "–", f"{back}; {doubted}"
 
 
 PARTS = ("one", "spread", "since", "two", "none", "misstated", "outside", "life", "grammar")

@@ -38,11 +38,11 @@ def section(outcomes: list[Outcome]) -> str:
             rate([bool(o.findings) and not o.unexplained_listed for o in apart]),
         ),
         ("any wrong name", "≤ 10 %", rate([bool(o.findings) for o in apart])),
-        ("`unexplained` said or listed", "≥ 95 %", rate([o.unexplained_listed for o in apart])),
-        ("nearer to a rival than 10: `unexplained` said or listed", "", _listed_near(outcomes)),
+        ("`unexplained` answered or listed", "≥ 95 %", rate([o.unexplained_listed for o in apart])),
+        ("nearer to a rival than 10: `unexplained` answered or listed", "", _listed_near(outcomes)),
     ]
     figures = table(("figure", "target", "measured"), rows)
-    head = ("left out", "no rival within 10", "wrong name", "`unexplained` said or listed", "names given")
+    head = ("left out", "no rival within 10", "wrong name", "`unexplained` answered or listed", "names given")
     told = [_row(cause, apart) for cause in CATALOGUE if not _is_clean([o for o in apart if o.causes == (cause,)])]
     by_cause = in_full(f"Causes with a wrong name or without `unexplained`:\n\n{table(head, told)}")
     return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\n{by_cause}"

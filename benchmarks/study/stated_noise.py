@@ -111,7 +111,7 @@ def section(answers: list[Answer]) -> str:
         (f"{factor:.2g}", who, *_cells([a for a in answers if (a.wish.factor, a.wish.who) == (factor, who)]))
         for factor, who in product(FACTORS, WHO)
     ]
-    head = ("stated over true", "of", "sound: other name", "sound: noise said wrong", "strength 12: named or listed")
+    head = ("stated over true", "of", "sound: other name", "sound: noise called wrong", "strength 12: named or listed")
     return (
         f"## Stated noise\n\n{INTRODUCTION}\n\n"
         + table(("figure", "target", "measured"), rows)
