@@ -19,11 +19,10 @@ STATED = "stated-errors"
 """The page that asks whether an answer depends on what the errors are stated as."""
 INDEX = f"""# Real recordings: what the simulation gets wrong
 
-Made by `{COMMAND}` from the recordings that
-[Real recordings](../recordings.md) describes. Each is diagnosed with the noise that its averaging states. The truth is
-unknown: statements on the physics are arguments, marked where they are inference. The score of held-out positions is
-the evidence. Accelerometers of a single position are rejected as no calibration. How an answer depends on stated errors
-and chosen sensors: [stated errors](recordings/{STATED}.md).
+Made by `{COMMAND}` from the recordings that [Real recordings](../recordings.md)
+describes, with the noise that their averaging states. The truth is unknown: statements on the physics are arguments,
+marked where they are inference; held-out positions are the evidence. How an answer depends on stated errors and chosen
+sensors: [stated errors](recordings/{STATED}.md).
 """
 
 
@@ -53,10 +52,9 @@ def index(made: dict[str, list[Diagnosed]]) -> str:
             f"{len(one.subject.session.readings)} × {len(one.subject.session.sensors)}",
             summary(one.diagnosis),
             f"{one.diagnosis.gain.before.chi2_per_dof:.2f} → {one.diagnosis.gain.after.chi2_per_dof:.2f}",
-            f"{one.diagnosis.gain.before.log_score:.2f} → {one.diagnosis.gain.after.log_score:.2f}",
         )
         for name, several in made.items()
         for one in several
     ]
-    head = ("recording", "rows × sensors", "what the simulation gets wrong", "held-out χ²/dof", "held-out log score")
+    head = ("recording", "rows × sensors", "what the simulation gets wrong", "held-out χ²/dof")
     return f"{INDEX}\n{table(head, body)}\n"

@@ -44,9 +44,6 @@ those that a cause describes:
   `unexplained` among its alternatives.
 * Every further name on one sensor costs ln 100.
 
-This needs the readings; without sessions `diagnose_statistics` uses waves of β and prediction alone, and
-`unexplained` is among the alternatives of each name.
-
 ## What an answer holds
 
 | field | meaning |
@@ -55,8 +52,7 @@ This needs the readings; without sessions `diagnose_statistics` uses waves of β
 | `form`, `since` | `same`, `varying` or `since` a date |
 | `e_value`, `strength` | evidence; norm of the pooled effect in standard errors |
 | `rivals` | what cannot be told from it, how far it is, which measurement would tell and how many sessions of it |
-| `sessions` | every session's own amplitude: a forest plot |
-| `limits` | what the pool finds with 95 % power, and what one session would |
+| `sessions`, `limits` | every session's amplitude; what the pool finds with 95 % power |
 | `gain` | the amplitudes fixed on the first two thirds of the sessions, tried on the later ones |
 | `terms` | empirical terms, learned where the catalogue ends: equation, gain on the later sessions, nearest cause |
 
@@ -81,7 +77,6 @@ imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
 
 * Its size is the group's, not estimated again in each session (only a varying effect is). It is subtracted from the
   readings, and its σ and spread τ enter every parameter's uncertainty.
-* An effect that began at a date is not in earlier sessions.
 * Of one cause on one sensor the unit's size takes precedence over the type's, and that over the stand's. A cause
   accepted from a single session is estimated in each.
 * Every stored session concerned is recomputed; the revision's page shows changed verdicts and the largest change in
@@ -106,9 +101,8 @@ benchmarks.study.with_history --groups 53 --seed 1`):
 | the effect ended before it: named all the same | 11.3 % (5.3–22.6) of 53 |
 | a unit without an effect: anything named that only several sessions show | 0.0 % (0.0–6.8) of 53 |
 
-From Python: `statistics_of(session)`, with `to_dict` and `from_dict` (`imu-session-statistics/2`);
-`diagnose_statistics(records, level, sessions)` pools records, oldest first; without `sessions` no measurement is
-proposed and no term learned. `diagnose_group(sessions, level)` does both.
+From Python: `diagnose_group(sessions, level)`; or `statistics_of(session)` once, then `diagnose_statistics(records,
+level, sessions)`, oldest first; without `sessions` no measurement is proposed and no term learned.
 
 ## Real recordings
 
