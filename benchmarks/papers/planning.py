@@ -47,7 +47,7 @@ def elevations() -> str:
     words = """Ours minimises the mean square of scale and axis error of all sensors, reading noise, variation of the
 zero and the stand together. (6) looks at the stand alone; where noise rules, the best elevation is arctan(1/√2) =
 35.3°."""
-    return section("Elevation of the head", table(columns, rows), words)
+    return section("Elevation of the head", in_full(table(columns, rows)), words)
 
 
 def conditionings() -> str:

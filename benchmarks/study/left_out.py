@@ -13,8 +13,8 @@ from tests.blind.score import FAR, Outcome
 
 INTRODUCTION = (
     "Every cause of the catalogue in turn is hidden at a strength of 40 standard errors and looked for with a "
-    "catalogue that lacks it. Where no other explanation comes within 10 standard errors of it, any name is wrong, "
-    "and the honest answer is `unexplained`."
+    "catalogue that lacks it. Where no other explanation comes within 10 standard errors of it, the right answer is "
+    "`unexplained`."
 )
 
 

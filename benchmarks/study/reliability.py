@@ -21,8 +21,7 @@ PLAIN = 0.01
 
 INTRODUCTION = (
     "Of one effect hidden in a session, every probability that the ranking states, with how often it was right. The "
-    "error is the mean over all statements of the distance between what the bin says and what is so; by chance what "
-    "it would be if every statement meant what it says."
+    "error is the mean distance between the two; by chance, what it would be if every statement were right."
 )
 
 

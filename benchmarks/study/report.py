@@ -29,7 +29,7 @@ def page(outcomes: list[Outcome], command: str) -> str:
         _targets(outcomes),
         in_full(f"{_by_cause(outcomes)}\n\n{_confusion(outcomes)}"),
         _curve(outcomes),
-        _false_alarms(outcomes),
+        in_full(_false_alarms(outcomes)),
         in_full(f"{_outside(outcomes)}\n\n{_two(outcomes)}\n\n{_amplitudes(outcomes)}"),
     ]
     return "\n\n".join(parts) + "\n"

@@ -31,9 +31,8 @@ UNLIKE = {
 }
 
 INTRODUCTION = (
-    "The zeros of some of six sensors step at one row, each by so many standard errors, or all together by twelve. "
-    "Right is one `bias-jump` of exactly these sensors, at this row for each, and no other name. A single step of "
-    "strength 5 is at the detection limit of one sensor; beside steps of 80 no other sensor may seem to step."
+    "The zeros of some of six sensors step at one row. Right is one `bias-jump` of exactly these sensors at this row, "
+    "and no other name."
 )
 PLAIN = 8
 """Strength from which a step is well above the detection limit of one sensor."""

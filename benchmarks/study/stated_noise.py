@@ -27,9 +27,8 @@ SOUND = 3
 REPEATED = ("bias_repeatability_m_s2", "bias_repeatability_rad_s")
 
 INTRODUCTION = (
-    "The standard errors in the file, those of repetition too, are the true ones times a factor, of one sensor, of "
-    "half of them or of all; in sound sessions, and in sessions with one effect of 12 true standard errors. Named or "
-    "listed: the cause, or what it cannot be told from."
+    "The standard errors in the file are the true ones times 0.1 to 3, of one sensor, of half of them or of all; in "
+    "sound sessions, and with one effect of 12 true standard errors."
 )
 
 
