@@ -101,8 +101,16 @@ def _line(one: SensorNoise) -> str:
     return f"| {one.name} | {holds} | {' | '.join(cells)} |"
 
 
+HEAD = """# Noise at rest: every record
+
+Printed by `python -m benchmarks.allan` (100 Hz; sizes in units of the white noise), then a public static recording of
+an ADIS16405.
+"""
+
+
 def main(count: int) -> None:
     """Prints both tables."""
+    print(HEAD)
     print("| record | truth | term | decided | interval holds it | decided sizes are off by |")
     print("| --- | --- | --- | --- | --- | --- |")
     stated = wrong = 0

@@ -8,10 +8,10 @@ from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
 PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "causes.md"
 HEAD = """# The catalogue of causes
 
-Made by `python -m benchmarks.catalogue` from `estimator/causes`, which the simulation, the diagnosis and the extended
-fit read too. a = e·n is the component of the applied vector n along the input axis e; p and o are unit vectors across
-it; t is the time since the start, T the temperature; a bar means the session's mean. Amplitudes are k, in SI; for a
-gyroscope read rad/s for m/s². A cause that can be *accepted* may become part of a unit's, unit type's or stand's model.
+Made by `python -m benchmarks.catalogue` from `estimator/causes`. What to do about a cause stands with each finding. a =
+e·n is the component of the applied vector n along the input axis e; p and o are unit vectors across it; t is the time
+since the start, T the temperature; a bar means the session's mean. Amplitudes are k, in SI; for a gyroscope read rad/s
+for m/s². {accepted}
 """
 SCOPES = {
     "sensor": "One sensor",
@@ -25,7 +25,8 @@ SCOPES = {
 
 def page() -> str:
     """Markdown: one table a scope."""
-    parts = [HEAD]
+    never = ", ".join(f"`{cause.identifier}`" for cause in CATALOGUE if not cause.can_be_modelled)
+    parts = [HEAD.format(accepted=f"All but {never} can be accepted into the model of a unit, unit type or stand.")]
     for scope, heading in SCOPES.items():
         rows = [_row(cause) for cause in CATALOGUE if cause.scope == scope]
         parts.append(f"## {heading}\n\n{_line(COLUMNS)}\n{RULE}\n" + "\n".join(rows) + "\n")
@@ -38,17 +39,16 @@ TURNTABLE = """## One sensor, on a turntable
 
 Looked for in alignments, where nothing else is. ω is the turn rate, α the angular acceleration, r the sensor's place
 from the turn axis."""
-COLUMNS = ("identifier", "adds", "unit", "needs", "what it says, and what to do", "accepted")
-RULE = "| --- | --- | --- | --- | --- | --- |"
+COLUMNS = ("identifier", "adds", "unit", "needs", "what it is")
+RULE = "| --- | --- | --- | --- | --- |"
 
 
 def _row(cause: Cause) -> str:
     sentence = cause.sentence.format(sensors="the sensor")
-    said = f"{sentence[0].upper()}{sentence[1:]} {cause.advice}"
+    what = f"{sentence[0].upper()}{sentence[1:]}"
     needs = ", ".join(sorted(cause.needs)) or "–"
-    accepted = "always" if cause.always_modelled else "yes" if cause.can_be_modelled else "no"
     units = ", ".join(dict.fromkeys(cause.units)) or "–"
-    return _line((f"`{cause.identifier}`", cause.equation, units, needs, said, accepted))
+    return _line((f"`{cause.identifier}`", cause.equation, units, needs, what))
 
 
 def _line(cells: Iterable[str]) -> str:

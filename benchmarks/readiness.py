@@ -141,6 +141,8 @@ def main() -> None:
         "ready, of what does not",
         "too early",
     )
+    made = f"python -m benchmarks.readiness --cases {chosen.cases} --seed {chosen.seed}"
+    print(f"# Readiness: how often it is wrong\n\nPrinted by `{made}`; 95 % intervals (Clopper and Pearson).\n")
     print(f"| {' | '.join(headings)} |")
     print("| --- | --- | --- | --- | --- |")
     total: Counter[tuple[State, bool]] = Counter()

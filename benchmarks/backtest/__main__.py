@@ -23,6 +23,7 @@ from benchmarks.backtest.forecasts import (
 )
 from benchmarks.backtest.warmth import followed
 from benchmarks.backtest.worlds import FIRST, SECOND, World
+from benchmarks.details import in_full, publish
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator.health.error_laws import USUAL
@@ -65,8 +66,7 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=1)
     asked.add_argument("--out", type=Path, default=PAGE)
     given = asked.parse_args()
-    given.out.parent.mkdir(parents=True, exist_ok=True)
-    given.out.write_text(page(SMALL if given.small else Sample(), given.seed), encoding="utf-8")
+    publish(page(SMALL if given.small else Sample(), given.seed), given.out)
 
 
 def page(sample: Sample, seed: int) -> str:
@@ -107,9 +107,15 @@ def _first(sample: Sample, rng: np.random.Generator) -> list[str]:
         "Sessions every one to eight months, each with a standard uncertainty of 0.02 to 0.2 T and a normal error, the "
         "first of them the reference. Sizes are uniform, changes are sharp.",
         *_described(FIRST, rows),
-        alarms_page(FIRST, (2 * count, tails), rng),
-        rivals,
-        *_forecasts(FIRST, sample.types, rng, (due, reached)),
+        in_full(
+            "\n\n".join(
+                [
+                    alarms_page(FIRST, (2 * count, tails), rng),
+                    rivals,
+                    *_forecasts(FIRST, sample.types, rng, (due, reached)),
+                ]
+            )
+        ),
     ]
 
 
@@ -123,15 +129,21 @@ def _second(sample: Sample, rng: np.random.Generator) -> list[str]:
         "to 0.3 T and an error with heavy tails (Student's, four degrees of freedom). Sizes are log-normal over a "
         "decade, onsets follow a hazard.",
         *_described(SECOND, _dates(SECOND, due, reached)),
-        alarms_page(SECOND, (2 * count, tails_of(SECOND, rng)), rng),
-        beside_page(SECOND, count, rng),
-        *_forecasts(SECOND, sample.types, rng, (due, reached)),
+        in_full(
+            "\n\n".join(
+                [
+                    alarms_page(SECOND, (2 * count, tails_of(SECOND, rng)), rng),
+                    beside_page(SECOND, count, rng),
+                    *_forecasts(SECOND, sample.types, rng, (due, reached)),
+                ]
+            )
+        ),
     ]
 
 
 def _described(world: World, rows: Sequence[Row]) -> list[str]:
     kinds = table(("a parameter may be", "that is"), list(world.described.items()))
-    return [kinds, "### In short", table(("figure", "here", "target"), list(rows))]
+    return [in_full(kinds), "### In short", table(("figure", "here", "target"), list(rows))]
 
 
 def _dates(world: World, due: Sequence[Due], reached: Sequence[Reached]) -> list[Row]:

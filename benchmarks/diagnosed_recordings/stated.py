@@ -19,7 +19,7 @@ allows for too much."""
 ALIKE = 0.02
 """Probabilities nearer than this are the same: rounding of a fit that starts from other weights."""
 
-HEAD = ("recording", "sensors", "input", "× ⅓", "× 1", "× 3", "noise said", "structures")
+HEAD = ("recording", "sensors", "input", "× ⅓", "× 1", "× 3", "stated noise", "structures")
 
 
 @dataclass(frozen=True)

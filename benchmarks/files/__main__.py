@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from benchmarks.details import publish
 from benchmarks.files.heavy import as_parquet, heaviest
 from benchmarks.files.hostile import HOSTILE
 from benchmarks.files.long import ROWS, long_logs
@@ -31,8 +32,7 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         long = list(long_logs(Path(folder), options.rows))
     text = page(rows, milliseconds(), long)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(text)
+    publish(text, options.out)
     print(text)
 
 

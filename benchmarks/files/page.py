@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 
+from benchmarks.details import in_full
 from benchmarks.files.long import LongLog, table
 from benchmarks.files.service import Cost
 from estimator.long_logs.average import MOST_RESTS
@@ -58,8 +59,7 @@ No uploaded file may end, freeze or bloat the service:
 * **Sizes are counted** before anything is built: cells of a workbook, rows and columns of CSV, nesting of JSON.
 * **A separate process reads.** XLSX, HDF5, MAT, Parquet, logs and text of more than {LONG // MEBIBYTE} MiB are read
   by a process whose memory, CPU time and wall-clock time the kernel limits. It cannot write files, has no settings or
-  passwords, and returns numbers and text, never objects. When it is ended, the upload is answered 422. Commands read
-  files the same way, with exit code 2.
+  passwords, and returns numbers and text, never objects. When it is ended, the upload is answered 422.
 * **Nothing large is held in memory.** An upload of more than {IN_MEMORY // 1024} KiB is written to disk and
   hashed as it arrives.
 * **Concurrency is limited**, one place fewer for one account or address; some more uploads wait up to ten seconds,
@@ -79,21 +79,19 @@ A cell takes about 60 bytes of memory. Reading may take a second more for every
 {_places()}
 ## Measured
 
-Against a running service: peak memory over idle of all its processes (proportional set size), longest answer of
-`/healthz` meanwhile, seconds to the answer. Hostile files are made by `benchmarks/files/hostile.py`; then the heaviest
-allowed files.
+Hostile files and the heaviest allowed ones against a running service: peak memory over idle of all its processes,
+longest answer of `/healthz` meanwhile.
 
 Worst single file: {worst:.0f} MiB over idle. Longest wait for `/healthz`: {wait:.2f} s.
 
-| file | size, kB | answer | seconds | memory over idle, MiB | longest /healthz, s |
-| --- | --- | --- | --- | --- | --- |
-{_table(rows)}
+{in_full(_table(rows))}
 
 ## Fuzzing
 
-`tests/service/ingest/test_hostile.py` damages valid files of every format at random: each is read, or refused with a
-reason. `python -m benchmarks.fuzz` does the same guided by the code that it reaches, for as long as it is let.
-`make fuzz-numbers` puts extreme numbers into every field ([bounds](../session-file.md#which-numbers-are-taken)).
+Tests damage valid files of every format at random: each is read, or refused with a reason. `python -m benchmarks.fuzz`
+does the same guided by the code that it reaches.
+`make fuzz-numbers` puts extreme numbers into every field ([bounds](../session-file.md#which-numbers-are-taken)) and
+into every number of the other calls, and writes what became of them to [a table](../../benchmarks/fuzz/NUMBERS.md).
 """
 
 
@@ -113,9 +111,6 @@ Beside polars alone (scan and group-by mean of the same file), medians of three;
 idle.
 
 {table(list(long))}
-
-A CSV is parsed twice; for Parquet the checks of every cell dominate. The target of 1.5 times a bare scan is met for
-neither.
 """
 
 
@@ -156,7 +151,10 @@ def _limits() -> str:
 
 
 def _table(rows: Sequence[Row]) -> str:
-    return "\n".join(
+    head = (
+        "| file | size, kB | answer | seconds | memory over idle, MiB | longest /healthz, s |\n" + "| --- " * 6 + "|\n"
+    )
+    return head + "\n".join(
         f"| {row.name} | {row.size / 1000:,.1f} | {', '.join(map(str, row.cost.statuses))} | {row.cost.seconds:.1f} "
         f"| {row.cost.memory:.0f} | {row.cost.wait:.2f} |"
         for row in rows

@@ -1,6 +1,6 @@
-"""How PostgreSQL reads what pages of a large fleet ask: the plans, as a section of docs/how-to/large-fleets.md.
+"""How PostgreSQL reads what pages of a large fleet ask: the plans, as a file of benchmarks/results.
 
-``python -m benchmarks.fleet.plans`` fills a fleet of 10,000 units and writes the section anew; with the address of a
+``python -m benchmarks.fleet.plans`` fills a fleet of 10,000 units and writes them; with the address of a
 database that was filled so, it reads that one.
 """
 
@@ -12,8 +12,8 @@ from pathlib import Path
 
 from sqlalchemy import event, text
 
+from benchmarks.details import RESULTS
 from benchmarks.fleet.fill import NOW, Size, fill
-from benchmarks.sections import write_section
 from service.flags.store import FlagQuery, Flags
 from service.fleet.changes import summarise_all
 from service.fleet.records import FleetQuery, Order
@@ -28,8 +28,12 @@ from service.storage import Files, Storage
 from service.storage.store import Store
 from tests.databases import postgres_databases
 
-PAGE = Path(__file__).parents[2] / "docs/how-to/large-fleets.md"
-MARK = "<!-- written by python -m benchmarks.fleet.plans -->"
+PAGE = RESULTS / "how-to" / "plans.md"
+HEAD = """# What PostgreSQL reads for the pages of a large fleet
+
+Written by `python -m benchmarks.fleet.plans`: `EXPLAIN` for 10,000 units with 20 sessions each; small tables are read
+whole.
+"""
 SIZE = Size(10_000, 20)
 UNIT, STAND = "BA-003-00007", "ODG-1"
 QUESTIONS: dict[str, Callable[[Store], object]] = {
@@ -59,7 +63,7 @@ def main() -> None:
             storage = Storage(open_database(databases.migrated()), Files(Path(folder)))
             fill(storage, SIZE)
             lines = _written(storage)
-    write_section(PAGE, MARK, lines)
+    PAGE.write_text(f"{HEAD}\n{lines}\n", encoding="utf-8")
 
 
 def _written(storage: Storage) -> str:

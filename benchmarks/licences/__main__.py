@@ -5,6 +5,8 @@ from collections import defaultdict
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
+from benchmarks.details import in_full, publish
+
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "security" / "licences.md"
 HEAD = """# What we depend on
@@ -13,9 +15,10 @@ Made by `python -m benchmarks.licences` from `requirements.lock` and what the pa
 tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
 and so is what `make bench` adds (`requirements-bench.lock`: imucal and pandas).
 
-| licence | packages |
-| --- | --- |
 """
+COLUMNS = "| licence | packages |\n| --- | --- |\n"
+ASKS_MORE = re.compile("GPL|MPL|any-OSI|not ")
+"""Licences on the page: those that ask for more than naming the authors, and those that are not clear."""
 NOT_HERE = "not installed on this kind of machine"
 
 
@@ -38,7 +41,20 @@ def main() -> None:
     for name in pinned:
         found[licence(name)].append(name)
     rows = [f"| {stated} | {', '.join(names)} |" for stated, names in sorted(found.items())]
-    PAGE.write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
+    publish(page_of(rows, len(pinned)), PAGE)
+
+
+def page_of(rows: list[str], packages: int) -> str:
+    """Markdown, from the rows of the table."""
+    asking = [row for row in rows if ASKS_MORE.search(row.split(" | ")[0])]
+    words = (
+        f"Of {packages} packages these ask for more than MIT, BSD, Apache, ISC and PSF licences do, or are not clear:"
+    )
+    return "\n\n".join([HEAD.strip(), words, _table(asking), in_full(f"## Every package\n\n{_table(rows)}")]) + "\n"
+
+
+def _table(rows: list[str]) -> str:
+    return COLUMNS + "\n".join(rows)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ that all but the times in the last one come out the same; some minutes.
 import sys
 from pathlib import Path
 
+from benchmarks.details import publish
 from benchmarks.optimisation import page as optimisation
 from benchmarks.papers import analytic, schematics
 from benchmarks.papers_alignment.page import page as alignment
@@ -19,7 +20,7 @@ def main() -> None:
     """Write all pages, or those that are named."""
     schematics.draw()
     for name in sys.argv[1:] or PAGES:
-        (DOCS / name).write_text(PAGES[name](), encoding="utf-8")
+        publish(PAGES[name](), DOCS / name)
         sys.stdout.write(f"docs/{name}\n")
 
 

@@ -7,8 +7,8 @@ from benchmarks.papers.tables import tables
 
 HEAD = """# The papers' tables beside ours
 
-Written, with every figure, by `make papers` (`python -m benchmarks.papers`); every difference is explained below its
-table, and every error of the print has its test in the [errata](errata.md)."""
+Written, with every figure, by `make papers` (`python -m benchmarks.papers`); errors of the print:
+[errata](errata.md)."""
 
 PLACES = (
     ("Tyuvin", "table 1", "[accelerometers](#table-1-accelerometers)", "rows 12 and 24 to 15 %; row 36 is one sigma"),
@@ -57,13 +57,12 @@ SOURCE = """## Analytic alignment on a two-axis stand
 A. V. Tyuvin, analytic alignment and calibration of the inertial measurement unit of a strapdown inertial navigation
 system; six sensors in a cone of 54.7° about the head's axis (e2² = 1/3), α = 40°, δα, δβ = 3″, θ_x, θ_y = 1″ (3σ)."""
 
-FIGURES = """The paper's figure 1, the stand: the platform's Y axis is the head's, raised by α above the horizon; the
-turn β is about it, and at rest n stays upright.
+FIGURES = """The paper's figure 1: the platform's Y axis is the head's, raised by α above the horizon; the turn β is
+about it.
 
 ![Level and platform axes](pictures/stand-figure-1.png)
 
-Figure 2, the block in its fixture: (10) takes platform axes to block axes, and the six input axes lie on a cone about
-Y_П. The paper draws one sensor's measuring element; the axes are what its equations use.
+Figure 2: (10) takes platform axes to block axes, and the six input axes lie on a cone about Y_П.
 
 ![Platform and block axes with the six input axes](pictures/stand-figure-2.png)"""
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers.published import ACCELEROMETERS, AXES, COUNT_TIME, GYRO_STAND, GYROS, LATITUDE, PULSE, Published
 from estimator import Sensor, Site, Stand
@@ -119,22 +120,21 @@ def noises(paper: Published) -> str:
 
 COLUMNS = ("N", "", "printed, 2σ", "its estimator, simulated", "this program, simulated", "(28)–(30) as printed")
 
-CAUSE_1 = """Causes. Rows 12 and 24 are reproduced to within 15 % by one noise. **Row 36 is one sigma**: all three of
-its numbers are half of what the other rows lead to, and the ratio is two. Scale and axis ask for different noises:
-(29) and (30) carry twice the noise variance, so the printed formulas err to the other side of the table. This
-program's bias is larger because it estimates the second-order term along with it, which (28) takes as known."""
+CAUSE_1 = """Rows 12 and 24 are reproduced to within 15 % by one noise. **Row 36 is one sigma**: all three of its
+numbers are half of what the other rows lead to. (29) and (30) carry twice the noise variance, so the printed
+formulas err to the other side of the table. This program's bias is larger because it estimates the second-order term
+along with it, which (28) takes as known."""
 
-CAUSE_2 = """Causes. The drift column is the variation of the zero alone, 0.04 °/h as 3σ over √(2N); row 36 is one
-sigma again. The scale and axis columns cannot be reached: the variation of the zero acts on them as noise of every
-reading, which (28) counts and (29), (30) leave out, and it alone gives more than the table, with no reading noise
-left to fit. Nor do the two columns belong together: noise gives an axis error of √2 times the relative scale error
-or, by the printed formulas, 0.93 times; 0.036 % is 3.6e-4, to which 105″ or 69″ belong, not 36″. Earth rate,
-latitude, meridian, count time (10 µs) and quantisation are in the simulation and do not matter beside this."""
+CAUSE_2 = """The drift column is the variation of the zero alone, 0.04 °/h as 3σ over √(2N); row 36 is one sigma
+again. The scale and axis columns cannot be reached: the variation of the zero acts on them as noise of every
+reading, which (28) counts and (29), (30) leave out, and it alone gives more than the table. Nor do the two columns
+belong together: noise gives an axis error of √2 times the relative scale error or, by the printed formulas, 0.93
+times; 0.036 % is 3.6e-4, to which 105″ or 69″ belong, not 36″."""
 
 
 def tables(trials: int = TRIALS) -> str:
     """Both tables as markdown."""
     parts = []
     for paper, cause in ((ACCELEROMETERS, CAUSE_1), (GYROS, CAUSE_2)):
-        parts.append(section(paper.title, table(COLUMNS, reproduced(paper, trials)), noises(paper), cause))
+        parts.append(section(paper.title, in_full(table(COLUMNS, reproduced(paper, trials))), noises(paper), cause))
     return "\n\n".join(parts)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers_alignment.observability import expected, gramian, mounting_effect, planned_path
 from benchmarks.papers_alignment.runs import MOUNTING, QUIET, SITE, TRUTH, Errors, G, errors
@@ -19,6 +20,11 @@ NOISE = Noise((5e-6 * G) ** 2 * np.eye(3), (0.06 * ARCSEC) ** 2 * np.eye(3), 0.0
 DEGREE_PER_HOUR = np.pi / 180 / 3600
 LATITUDE = SITE.latitude or 0.0
 SETTING = Setting(LATITUDE, G, NOISE, wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
+EXPECTED = (
+    "One sigma at the end by covariance analysis, turntable 0.5″; *told* counts the directions of φ, ε, ∇, E, κ "
+    "that are known well enough to be of use (60″, 1 °/h, 0.3 mg). The eigenvalue is the least of the "
+    "observability Gramian in those units: above 1, gyros without noise could tell the direction."
+)
 TURNS = {
     "0°, 180°": (0.0, np.pi),
     "0°, 90°, 180°": (0.0, np.pi / 2, np.pi),
@@ -111,10 +117,7 @@ def plans() -> str:
     heads = ("stops", "model", "told", "E_xz, ″", "∇_x, µg", "ε_x, °/h", "ε_z, °/h", "φ_U, ″", "least eigenvalue")
     return section(
         "What a programme of 15 minutes tells",
-        "One sigma at the end by covariance analysis, turntable 0.5″; *told* counts the directions of φ, ε, ∇, E, κ "
-        "that are known well enough to be of use (60″, 1 °/h, 0.3 mg). The eigenvalue is the least of the "
-        "observability Gramian in those units: above 1, gyros without noise could tell the direction.",
-        table(heads, rows),
+        in_full(f"{EXPECTED}\n\n{table(heads, rows)}"),
         "Velocity alone (*mounting*) does not tell E, whatever the number of positions and the sense of the turns; it "
         "takes the turntable's own direction. That the eigenvalue is not zero is the Earth's rotation at work, at "
         "5e-5 a second: gyro noise drowns it. The ten-state sigmas of ∇ hold only where E is zero.",

@@ -1,4 +1,5 @@
-"""Prints the tables of docs/recordings.md."""
+"""Prints every table of ours beside the publications: ``… > benchmarks/results/recordings.md``; docs/recordings.md has
+what follows from them."""
 
 import sys
 
@@ -22,8 +23,9 @@ def main() -> int:
     if not folder().is_dir():
         print(f"The recordings are not at {folder()}; set {FOLDER} to their folder.", file=sys.stderr)
         return 1
+    print("# Real recordings: every table\n\nPrinted by `python -m benchmarks.recordings`.")
     for title, make in SECTIONS:
-        print(f"### {title}\n\n{make()}\n")
+        print(f"\n## {title}\n\n{make()}")
     return 0
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from benchmarks.details import publish
 from benchmarks.study.examine import run, tasks
 from benchmarks.study.report import page
 
@@ -32,8 +33,7 @@ def main() -> None:
     print(file=sys.stderr)
     command = f"python -m benchmarks.study --sessions {options.sessions} --seed {options.seed}"
     text = page(outcomes, command)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(text)
+    publish(text, options.out)
     print(text)
 
 

@@ -7,7 +7,7 @@ has up to three amplitudes, which are wrong together; the interval is that of se
 
 import argparse
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from statistics import fmean
 
@@ -15,6 +15,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
+from benchmarks.details import in_full, publish, published
 from benchmarks.study.examine import Task, run
 from benchmarks.study.open_world import parts_of, with_command
 from benchmarks.study.rates import Z, rate
@@ -51,9 +52,13 @@ def section(outcomes: list[Outcome]) -> str:
         f"{HEADING}\n\n{len(outcomes)} sessions, one effect each. The target is 93–97 %; intervals are those of "
         "sessions, since amplitudes of one are wrong together.\n\n"
         + table(head, [(name, *cells(own)) for name, own in groups.items() if pulls(own)])
-        + "\n\nOf each cause some twenty amplitudes tell little (Wilson):\n\n"
-        + table(("cause", "within two sigma"), [(name, rate(inside(own))) for name, own in by_cause.items()])
+        + "\n\n"
+        + in_full(f"Of each cause some twenty amplitudes tell little (Wilson):\n\n{_by_cause(by_cause)}")
     )
+
+
+def _by_cause(groups: Mapping[str, list[Outcome]]) -> str:
+    return table(("cause", "within two sigma"), [(name, rate(inside(own))) for name, own in groups.items()])
 
 
 def pulls(outcomes: Iterable[Outcome]) -> list[float]:
@@ -94,10 +99,10 @@ def main() -> None:
 
 def write(part: str, path: Path = PAGE) -> None:
     """The section at the end of the page, in place of an older one."""
-    text = path.read_text()
+    text = published(path)
     old = parts_of(text).get(HEADING)
     rest = text if old is None else text.replace(old, "")
-    path.write_text(rest.rstrip() + "\n\n" + part.rstrip() + "\n")
+    publish(rest.rstrip() + "\n\n" + part.rstrip() + "\n", path)
 
 
 if __name__ == "__main__":

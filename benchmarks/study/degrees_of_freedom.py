@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import lfilter
 
+from benchmarks.details import BEGIN, END
 from benchmarks.study.rates import Rate
 from benchmarks.study.report import table
 from estimator import Calibration, CalibrationSession, Sensor, Site, calibrate
@@ -181,6 +182,8 @@ def lines(found: Sequence[Counted], sessions: int, seed: int) -> Iterator[str]:
     """All tables in Markdown, line by line."""
     yield targets(found)
     yield ""
+    yield BEGIN
+    yield ""
     yield (
         "| sensors | orientations | degrees of freedom | noise | 95 % intervals hold | sessions without uncertainty "
         "| a quadratic term that is not there |"
@@ -193,6 +196,8 @@ def lines(found: Sequence[Counted], sessions: int, seed: int) -> Iterator[str]:
     for seconds in (2.0, 5.0, 10.0):
         for time, size in ((2.0, 0.0), (0.5, 0.3), (2.0, 0.1), (2.0, 0.3)):
             yield raw_row(seconds, time, size, max(sessions // 3, 1), seed)
+    yield ""
+    yield END
 
 
 def tables(sessions: int, seed: int) -> str:

@@ -9,46 +9,40 @@ from benchmarks.study.rates import rate
 EXPLANATION = """# Evidence of many sessions
 
 A session shows an effect from about five standard errors. Thirty sessions of a unit, on a stand or of a type show one
-of strength 1 in each as plainly. `diagnose_group(sessions, level)` pools them by the rules of one session.
+of strength 1 in each as plainly.
 
 ## What is kept of a session
 
 `statistics_of(session)` keeps, for every cause that can last at every place and shape, its *score* U (how much of it
-the residuals hold) and *information* F (how much they could hold), some hundred kilobytes. Clipped channels, record
-errors and outliers are corrected first; a session that scatters otherwise than stated enters with its own scatter.
+the residuals hold) and *information* F (how much they could hold). Clipped channels, record errors
+and outliers are corrected first; a session that scatters otherwise than stated enters with the scatter that it shows.
 The amplitude of a group is â = (ΣF)⁻¹ΣU with covariance (ΣF)⁻¹.
 
 ## Whose it is
 
-| level | effects | held against |
+| level | effects | rivals |
 | --- | --- | --- |
 | unit | a sensor's or its environment's, on one unit | the same on every unit of the type, a cause of the stand |
 | type | the same of the sensor of one name in every unit, or of every sensor of a kind | one unit's, the stand's |
 | stand | of stand and fixture, over all units; a sensor cause that every sensor measured there shares | the units' |
 
-Two levels that explain alike are listed as rivals: only the same units on another stand separate them.
+Only the same units on another stand separate two levels that explain alike.
 
 ## When a name is given
 
-A group is evaluated after every upload, so evidence is counted in *e-values*, valid however often one looks. The mean
+A group is evaluated after every upload, so evidence is counted in *e-values*, valid however often one looks: the mean
 over all causes, places, shapes and three forms (same in every session, varying, since some session) reaches 100 in at
-most one group of a hundred without an effect. A name also must hold without the session that shows it most, make
-held-out sessions likelier, and leave only noise; with waves of β left on the same sensor or in common the group is
-*unexplained*.
+most one group of a hundred without an effect. A name must also hold without the session that shows it most, make
+held-out sessions likelier, and leave only noise.
 
 A name is weighed at its place against a library of some two hundred empirical terms (products of input, its size,
 sign and powers, cross-axis input, temperature, its square, rate and lag, time, waves of β, the row before), less
 those that a cause describes:
 
-* Terms at least 20 times as likely, or as sure beside the name, withdraw it: *unexplained*, with the learned
-  equation. What a name describes to 5 % of what it explains stays its own.
+* Terms at least 20 times as likely, or as certain as the name, withdraw it: *unexplained*, with the learned equation.
 * Terms within 200 to 1, or different sizes in different sessions (the form `varying`, or Cochran's test at 1 %), put
   `unexplained` among its alternatives.
 * Every further name on one sensor costs ln 100.
-* A place whose names were withdrawn is left free, and the search repeated.
-
-This needs the readings; without sessions `diagnose_statistics` uses waves of β and prediction alone, and
-`unexplained` is among the alternatives of each name.
 
 ## What an answer holds
 
@@ -58,26 +52,22 @@ This needs the readings; without sessions `diagnose_statistics` uses waves of β
 | `form`, `since` | `same`, `varying` or `since` a date |
 | `e_value`, `strength` | evidence; norm of the pooled effect in standard errors |
 | `rivals` | what cannot be told from it, how far it is, which measurement would tell and how many sessions of it |
-| `sessions` | every session's own amplitude: a forest plot |
-| `limits` | what the pool finds with 95 % power, and what one session would |
+| `sessions`, `limits` | every session's amplitude; what the pool finds with 95 % power |
 | `gain` | the amplitudes fixed on the first two thirds of the sessions, tried on the later ones |
 | `terms` | empirical terms, learned where the catalogue ends: equation, gain on the later sessions, nearest cause |
 
 ## In the service
 
-* A session's record is made once, beside its diagnosis. One that fails is kept with its reason and retried by the
-  next version.
-* A group's answer is made again when one of its sessions comes, gets its record or changes its state; an answer for
-  other sessions is never given out.
-* The newest 60 accepted sessions are pooled, of a unit those since its last service; a stand's group adds up to 60 of
-  the same units elsewhere. `left_out` counts older ones, `not_pooled` lists sessions without a record.
-* The pages of unit, type and stand show amplitudes by session, residuals with and without the effect, gain, rivals
-  and limits; [the API](../api.md#diagnosis-and-models) gives the same.
+A group's answer is made again, beside the requests, when one of its sessions is added or changes its state. The newest
+60 accepted sessions are pooled, of a unit those since its last service; a stand's group adds up to 60 of the same units
+elsewhere. `left_out` counts older ones, `not_pooled` lists sessions without a record. The pages of unit, type and stand
+show amplitudes by session, residuals with and without the effect, gain, rivals and limits; [the
+API](../api.md#diagnosis-and-models) gives the same.
 
 ## Accepted into a model
 
-An engineer accepts an effect for whom it is found: the unit, every unit of a type, or whatever is measured on a
-stand. On the page with a button, by `POST …/diagnosis/accept`, or
+An engineer accepts an effect for the unit, every unit of a type, or whatever is measured on a stand: on the page, by
+`POST …/diagnosis/accept`, or
 
 ```
 imu-health models accept stand ODG-1 beta-eccentricity --by "K. Ito" --why "encoder looked at"
@@ -87,38 +77,32 @@ imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
 
 * Its size is the group's, not estimated again in each session (only a varying effect is). It is subtracted from the
   readings, and its σ and spread τ enter every parameter's uncertainty.
-* An effect that began at a date is not in earlier sessions.
 * Of one cause on one sensor the unit's size takes precedence over the type's, and that over the stand's. A cause
   accepted from a single session is estimated in each.
-* Every stored session concerned is recomputed beside the requests; the revision's page shows progress, changed
-  verdicts and the largest change in each unit. Withdrawal is a revision of its own.
+* Every stored session concerned is recomputed; the revision's page shows changed verdicts and the largest change in
+  each unit. Withdrawal is a new revision.
 * A learned term is accepted as `empirical-term`; what a session lacks of it, such as temperature, is left out there.
 
 ## In the diagnosis of one session
 
 `diagnose(session, history)` pools the session with its unit's earlier ones. An effect that they show together and the
 session alone does not is named in it, with the pooled amplitude, if its readings support it: prior odds n + 1 for n
-earlier sessions, times p(readings | amplitude of the others) / p(readings | none), at least nine in ten. It is then
-subtracted and the search repeated. Below one in twenty it is reported as ended. Such a finding has `over_sessions`:
-how many sessions, their e-value, and the probability in this one; it raises no flag of the session's. The service
-pools up to 60 earlier sessions since the last service; blocks of more than 16 sensors only where records were kept.
+earlier sessions, times p(readings | amplitude of the others) / p(readings | none), at least nine in ten. Below one in
+twenty it is reported as ended. Such a finding has `over_sessions`: how many sessions, their e-value, and the
+probability in this one; it raises no flag. Blocks of more than 16 sensors are pooled only where records were kept.
 
-Units of twelve sessions with an effect of pooled strength 8.2 to 9.5, at most 3.5 in a session, made by `python -m
-benchmarks.study.with_history --groups 53 --seed 1`:
+Units of twelve sessions, pooled strength 8.2 to 9.5, at most 3.5 in a session (`python -m
+benchmarks.study.with_history --groups 53 --seed 1`):
 
 | the twelfth session | measured |
 | --- | --- |
 | by itself: named or listed | 0.0 % (0.0–6.8) of 53 |
 | with eleven earlier ones: named or listed | 88.7 % (77.4–94.7) of 53 |
-| the same, where its own strength is 2 or more | 90.7 % (78.4–96.3) of 43 |
 | the effect ended before it: named all the same | 11.3 % (5.3–22.6) of 53 |
 | a unit without an effect: anything named that only several sessions show | 0.0 % (0.0–6.8) of 53 |
 
-Missed are pools below their threshold and sessions whose noise contradicts the effect.
-
-From Python: `statistics_of(session)`, with `to_dict` and `from_dict` (`imu-session-statistics/2`);
-`diagnose_statistics(records, level, sessions)` pools records, oldest first; without `sessions` no measurement is
-proposed and no term learned. `diagnose_group(sessions, level)` does both.
+From Python: `diagnose_group(sessions, level)`; or `statistics_of(session)` once, then `diagnose_statistics(records,
+level, sessions)`, oldest first; without `sessions` no measurement is proposed and no term learned.
 
 ## Real recordings
 
@@ -126,19 +110,19 @@ Made by `python -m benchmarks.recorded_groups`; χ² per degree of freedom of a 
 the others show.
 
 * The array of eight triads, three sessions, accelerometers: `warm-up` on the z axes, some with `bias-ramp` as a
-  rival; the same each time in A1z, since the second session in A5z, varying in A2z, A3z, A4z, A6z, A8z: 0.53 → 0.40,
-  0.36 → 0.24, 1.61 → 1.23.
+  rival: 0.53 → 0.40, 0.36 → 0.24, 1.61 → 1.23.
 * Its gyros: nothing; without the second session a cause is named, 3.28 → 3.18.
 * Five MPU-9150 of one type, one session each: nothing.
 
-Record causes, outliers, jumps, clipping and excess noise belong to their session and are not pooled. Parameters
-between sessions are [no evidence here](../decisions/residuals-alone.md). A varying amplitude is known a little less
-well than its sigma, since few sessions determine its spread. Of two similar effects on one stand one may take the
-name of both.
+## Limits
 
-Effects of one sensor drawn from a hidden grammar of products (`tests/blind/effects_grammar.py`), strength 6 in each
-of ten sessions; made by `python -m benchmarks.study.groups --groups 26 --seed 31 --part grammar`. A name and nothing
-said to be unexplained: 0.0 % (0.0–6.9) of 52. Nearest to fail: odd powers of the input within 4 standard errors of
+Record causes, outliers, jumps, clipping and excess noise belong to their session and are not pooled. Parameters
+between sessions are [no evidence here](../decisions/residuals-alone.md). Of two similar effects on one stand one may
+take the name of both.
+
+Effects of one sensor drawn from a hidden grammar of products, strength 6 in each of ten sessions (`python -m
+benchmarks.study.groups --groups 26 --seed 31 --part grammar`): a name without `unexplained` in 0.0 % (0.0–6.9) of 52.
+Nearest to fail: odd powers of the input within 4 standard errors of
 `cubic-nonlinearity`, and products with temperature that resemble `scale-temperature`.
 """
 
@@ -185,7 +169,7 @@ def table(marks: list[dict[str, Any]]) -> Iterator[tuple[str, str, str]]:
         pulls = [abs(p) <= 2 for m in part[name] for p in m["pulls"]]
         yield f"amplitude within two of its sigma, {words}", "93–97 %", str(rate(pulls))
     since = [m["forms"][0] == "since" for m in part["since"] if m["named"][0]]
-    yield "effect that began later: said to have begun, where it is named", "–", str(rate(since))
+    yield "effect that began later: its beginning found, where it is named", "–", str(rate(since))
     two = [all(m["listed"]) for m in part["two"]]
     yield "two effects of pooled strength ≥ 8: both named or listed", "–", str(rate(two))
     wrong = [all(m["listed"]) for m in part["misstated"]]
@@ -193,7 +177,11 @@ def table(marks: list[dict[str, Any]]) -> Iterator[tuple[str, str, str]]:
     outside = part["outside"]
     said = rate([m["unexplained"] for m in outside])
     named = rate([bool(m["findings"]) for m in outside])
-    yield "outside the catalogue, strength 6 in each session: unexplained said; a wrong name", "–", f"{said}; {named}"
+    yield (
+        "outside the catalogue, strength 6 in each session: `unexplained` answered; a wrong name",
+        "–",
+        f"{said}; {named}",
+    )
     yield from terms(outside, part["none"])
     yield from hidden(part["grammar"], one)
     shares = [m["share"] for m in marks if m.get("share")]
@@ -224,12 +212,12 @@ def hidden(outside: list[dict[str, Any]], one: list[dict[str, Any]]) -> Iterator
     """Rows of effects of a hidden grammar, and what the doubt about them costs effects that the catalogue has."""
     sure = str(rate([m["sure"] for m in outside]))
     far = str(rate([m["sure"] for m in outside if min(m["separations"]) >= 3]))
-    yield "hidden grammar, strength 6 in each of ten sessions: a name and nothing said to be unexplained", "≤ 2 %", sure
+    yield "hidden grammar, strength 6 in each of ten sessions: a name without `unexplained`", "≤ 2 %", sure
     yield "the same, 3 or more standard errors from every cause of the catalogue", "≤ 2 %", far
     named, crowd = rate([bool(m["findings"]) for m in outside]), rate([m["crowd"] > 1 for m in outside])
     yield "the same: any name; two or more names on one sensor", "–", f"{named}; {crowd}"
     back, doubted = rate([m["unexplained"] for m in one]), rate([m["doubted"] for m in one])
-    yield "one effect of the catalogue: unexplained said; unexplained among its alternatives", "–", f"{back}; {doubted}"
+    yield "one effect of the catalogue: `unexplained` answered; among its alternatives", "–", f"{back}; {doubted}"
 
 
 PARTS = ("one", "spread", "since", "two", "none", "misstated", "outside", "life", "grammar")

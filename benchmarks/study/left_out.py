@@ -3,6 +3,7 @@
 from collections import Counter
 from itertools import cycle, islice
 
+from benchmarks.details import in_full
 from benchmarks.study.examine import Task
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
@@ -12,8 +13,8 @@ from tests.blind.score import FAR, Outcome
 
 INTRODUCTION = (
     "Every cause of the catalogue in turn is hidden at a strength of 40 standard errors and looked for with a "
-    "catalogue that lacks it. Where no other explanation comes within 10 standard errors of it, any name is wrong, "
-    "and the honest answer is `unexplained`."
+    "catalogue that lacks it. Where no other explanation comes within 10 standard errors of it, the right answer is "
+    "`unexplained`."
 )
 
 
@@ -37,15 +38,14 @@ def section(outcomes: list[Outcome]) -> str:
             rate([bool(o.findings) and not o.unexplained_listed for o in apart]),
         ),
         ("any wrong name", "≤ 10 %", rate([bool(o.findings) for o in apart])),
-        ("`unexplained` said or listed", "≥ 95 %", rate([o.unexplained_listed for o in apart])),
-        ("nearer to a rival than 10: `unexplained` said or listed", "", _listed_near(outcomes)),
+        ("`unexplained` answered or listed", "≥ 95 %", rate([o.unexplained_listed for o in apart])),
+        ("nearer to a rival than 10: `unexplained` answered or listed", "", _listed_near(outcomes)),
     ]
     figures = table(("figure", "target", "measured"), rows)
-    head = ("left out", "no rival within 10", "wrong name", "`unexplained` said or listed", "names given")
+    head = ("left out", "no rival within 10", "wrong name", "`unexplained` answered or listed", "names given")
     told = [_row(cause, apart) for cause in CATALOGUE if not _is_clean([o for o in apart if o.causes == (cause,)])]
-    return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\nCauses with a wrong name or without " + (
-        f"`unexplained`:\n\n{table(head, told)}"
-    )
+    by_cause = in_full(f"Causes with a wrong name or without `unexplained`:\n\n{table(head, told)}")
+    return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\n{by_cause}"
 
 
 def _is_clean(outcomes: list[Outcome]) -> bool:

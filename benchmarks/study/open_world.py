@@ -16,6 +16,7 @@ from typing import TypeVar
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from benchmarks.details import publish, published
 from benchmarks.study import (
     degrees_of_freedom,
     examine,
@@ -125,14 +126,14 @@ def main() -> None:
     options = parser.parse_args()
     if unknown := set(options.parts) - set(PARTS):
         parser.error(f"no such part: {', '.join(sorted(unknown))}; choose from {', '.join(PARTS)}")
-    kept = parts_of(options.out.read_text()) if options.parts else {}
+    kept = parts_of(published(options.out)) if options.parts else {}
     size = f"--sessions {options.sessions} --seed {options.seed}"
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
         for name in options.parts or PARTS:
             made = PARTS[name](pool, options.sessions, options.seed)
             part = with_command(made, f"python -m benchmarks.study.open_world {size} {name}")
             kept[part.split("\n", 1)[0]] = part.rstrip()
-            options.out.write_text("\n\n".join([f"# Beyond the catalogue\n\n{INTRODUCTION}", *kept.values()]) + "\n")
+            publish("\n\n".join([f"# Beyond the catalogue\n\n{INTRODUCTION}", *kept.values()]) + "\n", options.out)
 
 
 if __name__ == "__main__":

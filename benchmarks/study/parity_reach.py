@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import Calibration, ParityResult, calibrate, parity_check, read_session
@@ -159,12 +160,12 @@ def tables(sessions: int, seed: int) -> str:
     """Markdown: what is said, whether the isolable size holds, and pulse counters."""
     flights = [flown(seed * 10_000 + k, rest) for rest in (True, False) for k in range(sessions)]
     parts = [
-        targets(flights),
         "### What is said of a block that moves", reach(flights),
         "### Whether the isolable size holds", isolable(flights),
         "### Pulse counters", counted(4 * sessions, seed),
     ]  # fmt: skip
-    return "\n\n".join(parts)
+    joined = "\n\n".join(parts)
+    return f"{targets(flights)}\n\n{in_full(joined)}"
 
 
 def main() -> None:

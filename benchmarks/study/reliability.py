@@ -8,6 +8,7 @@ from statistics import fmean
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from tests.blind.score import Outcome
@@ -20,8 +21,7 @@ PLAIN = 0.01
 
 INTRODUCTION = (
     "Of one effect hidden in a session, every probability that the ranking states, with how often it was right. The "
-    "error is the mean over all statements of the distance between what the bin says and what is so; by chance what "
-    "it would be if every statement meant what it says."
+    "error is the mean distance between the two; by chance, what it would be if every statement were right."
 )
 
 
@@ -48,7 +48,7 @@ def section(outcomes: list[Outcome]) -> str:
         f"## Probabilities\n\n{INTRODUCTION}\n\n"
         + table(("figure", "target", "measured"), rows)
         + "\n\n"
-        + table(("stated", "mean", "true"), bins)
+        + in_full(table(("stated", "mean", "true"), bins))
     )
 
 

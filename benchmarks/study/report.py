@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from statistics import fmean
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from tests.blind.catalogue import CATALOGUE
 from tests.blind.score import Outcome
@@ -26,13 +27,10 @@ def page(outcomes: list[Outcome], command: str) -> str:
     parts = [
         f"# How well hidden effects are found\n\n{made} {INTRODUCTION}",
         _targets(outcomes),
-        _by_cause(outcomes),
-        _confusion(outcomes),
+        in_full(f"{_by_cause(outcomes)}\n\n{_confusion(outcomes)}"),
         _curve(outcomes),
-        _false_alarms(outcomes),
-        _outside(outcomes),
-        _two(outcomes),
-        _amplitudes(outcomes),
+        in_full(_false_alarms(outcomes)),
+        in_full(f"{_outside(outcomes)}\n\n{_two(outcomes)}\n\n{_amplitudes(outcomes)}"),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -141,7 +139,8 @@ def _curve(outcomes: list[Outcome]) -> str:
         rows.append((name, *cells))
     head = ["cause", *(f"{low:g}–{high:g}" if high < 1e6 else f"above {low:g}" for low, high in BINS)]
     text = "Share named first or among the alternatives against strength."
-    return f"## Detection curve\n\n{text}\n\n" + table(head, rows)
+    by_cause = [in_full(table(head, rows[1:]))] if rows[1:] else []
+    return "\n\n".join([f"## Detection curve\n\n{text}", table(head, rows[:1]), *by_cause])
 
 
 def _false_alarms(outcomes: list[Outcome]) -> str:

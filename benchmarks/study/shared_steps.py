@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import diagnose, read_session
@@ -30,11 +31,11 @@ UNLIKE = {
 }
 
 INTRODUCTION = (
-    "The zeros of some of six sensors step at one row, each by so many standard errors, or all together by twelve. "
-    "Right is one `bias-jump` of exactly these sensors, at this row for each, and no other name. A single step of "
-    "strength 5 is at the detection limit of one sensor; beside steps of 80 a bystander must not seem to step too. "
-    "Below, what is no shared step though every sensor shows it."
+    "The zeros of some of six sensors step at one row. Right is one `bias-jump` of exactly these sensors at this row, "
+    "and no other name."
 )
+PLAIN = 8
+"""Strength from which a step is well above the detection limit of one sensor."""
 
 
 @dataclass(frozen=True)
@@ -108,18 +109,24 @@ def section(answers: list[Answer]) -> str:
     rows = []
     for block, strength, together in dict.fromkeys((a.wish.block, a.wish.strength, a.wish.together) for a in answers):
         own = [a for a in answers if (a.wish.block, a.wish.strength, a.wish.together) == (block, strength, together)]
-        own = [a for a in own if a.wish.count and not (a.wish.apart or a.wish.other)]
+        own = [a for a in own if _steps_at_once(a)]
         if own:
             each = [[a.right for a in own if a.wish.count == count] for count in COUNTS]
             kind = "together" if together else "each"
             rows.append((f"{block.name}, {strength:g} {kind}", *(f"{sum(right)} of {len(right)}" for right in each)))
     right = table(("strength", *(f"{count} of 6" for count in COUNTS)), rows)
     apart = [a for a in answers if a.wish.apart]
+    strong = rate([a.right for a in answers if _steps_at_once(a) and a.wish.strength >= PLAIN])
     sound = [(f"sound, {name}: a name", rate([a.found or a.other for a in _sound(answers, name)])) for name in SOUND]
     several = [("2 to 6 steps, each at a row of its own: called one event", rate([a.shared for a in apart]))]
     several += [(words, rate([a.shared for a in answers if a.wish.other == kind])) for kind, words in UNLIKE.items()]
-    wrong = table(("sessions", "measured"), [*sound, *several])
-    return f"## Steps that sensors share\n\n{INTRODUCTION}\n\n{right}\n\n{wrong}"
+    shared = ("1 to 6 sensors step together, strength 8 and more: right", strong)
+    short = table(("sessions", "measured"), [shared, *sound, *several])
+    return f"## Steps that sensors share\n\n{INTRODUCTION}\n\n{short}\n\n{in_full(right)}"
+
+
+def _steps_at_once(answer: Answer) -> bool:
+    return answer.wish.count > 0 and not (answer.wish.apart or answer.wish.other)
 
 
 def _sound(answers: list[Answer], name: str) -> list[Answer]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import diagnose, read_session
@@ -26,9 +27,8 @@ SOUND = 3
 REPEATED = ("bias_repeatability_m_s2", "bias_repeatability_rad_s")
 
 INTRODUCTION = (
-    "The standard errors in the file, those of repetition too, are the true ones times a factor, of one sensor, of "
-    "half of them or of all; in sound sessions, and in sessions with one effect of 12 true standard errors. Named or "
-    "listed: the cause, or what it cannot be told from."
+    "The standard errors in the file are the true ones times 0.1 to 3, of one sensor, of half of them or of all; in "
+    "sound sessions, and with one effect of 12 true standard errors."
 )
 
 
@@ -110,12 +110,12 @@ def section(answers: list[Answer]) -> str:
         (f"{factor:.2g}", who, *_cells([a for a in answers if (a.wish.factor, a.wish.who) == (factor, who)]))
         for factor, who in product(FACTORS, WHO)
     ]
-    head = ("stated over true", "of", "sound: other name", "sound: noise said wrong", "strength 12: named or listed")
+    head = ("stated over true", "of", "sound: other name", "sound: noise called wrong", "strength 12: named or listed")
     return (
         f"## Stated noise\n\n{INTRODUCTION}\n\n"
         + table(("figure", "target", "measured"), rows)
         + "\n\n"
-        + table(head, lines)
+        + in_full(table(head, lines))
     )
 
 

@@ -9,6 +9,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
+from benchmarks.details import in_full
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from benchmarks.study.turned_pairs import PROGRAMMES, Pair, Programme, Wish, draw_flipped, draw_pair
@@ -132,13 +133,11 @@ def run(sessions: int, seed: int) -> list[Turned]:
 
 
 def page(found: list[Turned]) -> str:
-    """Markdown."""
+    """Markdown, but for the targets."""
     single = [f for f in found if f.wish.earlier == 1]
     clean, drifted = ([f for f in single if (f.wish.drift > 0) == with_drift] for with_drift in (False, True))
     return "\n\n".join(
         [
-            "## The block turned between sessions",
-            _targets([f for f in found if not f.wish.drift]),
             "No sensor changed; of a turn the share of its three components within two of their own sigma.",
             _clean(clean, lambda f: f"{f.wish.degrees:g}°", [f"{d:g}°" for d in DEGREES], "turn"),
             _clean(clean, lambda f: f.wish.programme.name, NAMES, "programme"),
@@ -201,7 +200,10 @@ def _beside(found: list[Turned], key: Callable[[Turned], str], names: Iterable[s
 
 def tables(sessions: int, seed: int) -> str:
     """All tables in Markdown."""
-    return f"{page(run(sessions, seed))}\n\n{flipped_page(run_flipped(sessions, seed))}"
+    found = run(sessions, seed)
+    details = in_full(f"{page(found)}\n\n{flipped_page(run_flipped(sessions, seed))}")
+    targets = _targets([f for f in found if not f.wish.drift])
+    return f"## The block turned between sessions\n\n{targets}\n\n{details}"
 
 
 def main() -> None:

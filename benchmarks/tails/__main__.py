@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmarks.backtest.forecasts import Due, Reached, before, dues, of_kind, of_mix
 from benchmarks.backtest.worlds import FIRST, SECOND, World
+from benchmarks.details import in_full, publish
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from benchmarks.tails.forecasts import Told, missed, surprised, tailed, told
@@ -43,7 +44,7 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=31)
     asked.add_argument("--out", type=Path, default=PAGE)
     given = asked.parse_args()
-    given.out.write_text(page(given.types, given.seed), encoding="utf-8")
+    publish(page(given.types, given.seed), given.out)
 
 
 def page(types: int, seed: int) -> str:
@@ -65,17 +66,17 @@ def page(types: int, seed: int) -> str:
              "days to due, still units, from the 4th session: 10 %, median", "passed before due, all units"),
             [_claims(case) for case in cases],
         ),
-        "## By kind of history",
-        *(_kinds(cases[i], cases[i + 1]) for i in (0, 2)),
+        in_full("\n\n".join(["## By kind of history", *(_kinds(cases[i], cases[i + 1]) for i in (0, 2))])),
         "## Would it help to weigh sessions by Student's law?",
         "The same histories with Student's errors. *Sessions weighed*: by the type's learned tails (expectation "
         "maximisation, two rounds). *λ missing*: with the smaller information of Student's law. A level is the "
         "estimate at the last session.",
-        table(
+        in_full(table(
             ("workshops", "forecast", "passed before reach 90, all kinds alike",
              "late drift, since two sessions or more", "level wrong by, median", "level further out than 2 u"),
             [row for case in (cases[1], cases[3]) for row in _rivals(case)],
-        ),
+        )),
+        "What follows from it: [errors with tails](../methods/health.md#errors-with-tails).",
     ]  # fmt: skip
     return "\n\n".join(parts) + "\n"
 

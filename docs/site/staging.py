@@ -12,6 +12,8 @@ BESIDE = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 """Pages outside docs/, and what they are called in the site."""
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]*)(#[^)\s]*)?\)")
 """Text, target and anchor of a link; the text may hold an image."""
+RESULTS = "benchmarks/results"
+"""The folder of measurements in full, copied as `results`."""
 GENERATED = "## Reference\n"
 """The heading of docs/index.md below which the pages made from the code are listed."""
 
@@ -19,6 +21,7 @@ GENERATED = "## Reference\n"
 def stage(project: Path, target: Path, made: Mapping[str, tuple[str, str]]) -> None:
     """Copies and writes every page; ``made`` has, by path, the line of the index and the text."""
     shutil.copytree(project / "docs", target, ignore=shutil.ignore_patterns("site", "*.py", "__pycache__"))
+    shutil.copytree(project / RESULTS, target / "results")
     for source, name in BESIDE.items():
         shutil.copy(project / source, target / name)
     for path, (_, text) in made.items():
@@ -43,15 +46,28 @@ def _relinked(page: Path, root: Path) -> str:
         mark, text, target, anchor = found[1], found[2], found[3], found[4] or ""
         if not target or "://" in target or target.startswith("mailto:"):
             return found[0]
-        came_from = next((Path(old) for old, new in BESIDE.items() if new == str(here)), Path("docs") / here)
-        path = os.path.normpath(came_from.parent / target)
-        inside = BESIDE.get(path) or (path.removeprefix("docs/") if path.startswith("docs/") else None)
+        path = os.path.normpath(_source(here).parent / target)
+        inside = _staged(path)
         if inside is None:
             return text
         inside = inside.removesuffix(".ipynb") + ".md" if inside.endswith(".ipynb") else inside
         return f"{mark}[{text}]({os.path.relpath(inside, here.parent)}{anchor})"
 
     return LINK.sub(link, page.read_text("utf-8"))
+
+
+def _source(here: Path) -> Path:
+    """Where a page of the site stands in the project."""
+    if here.parts[0] == "results":
+        return Path(RESULTS, *here.parts[1:])
+    return next((Path(old) for old, new in BESIDE.items() if new == str(here)), Path("docs") / here)
+
+
+def _staged(path: str) -> str | None:
+    """Where a file of the project stands in the site; nothing of what is left out."""
+    if path.startswith(f"{RESULTS}/"):
+        return path.removeprefix("benchmarks/")
+    return BESIDE.get(path) or (path.removeprefix("docs/") if path.startswith("docs/") else None)
 
 
 def notebook_text(notebook: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""The numbers that a session file may hold, each with its reason: one table, for reading and docs/session-file.md.
+"""The numbers that a session file may hold, each with its reason: one table, for reading and for a page of results.
 
 Generous: any instrument that is calibrated passes. They keep squares, fourth powers and quotients of what passes far
 within the range of floating-point numbers, so that no later step overflows or divides by what is as good as nothing.
@@ -57,7 +57,7 @@ class Bound:
 
     @property
     def row(self) -> str:
-        """As docs/session-file.md has it."""
+        """As benchmarks/results/bounds.md has it."""
         least, zero = (self.within.smallest, "yes") if 0 in self.within else (self.within.low, "no")
         ends = f"{self.within.low:g} to {self.within.high:g}"
         return f"| `{self.field}` | {self.within.unit} | {ends} | {least:g} | {zero} | {self.reason} |"

@@ -22,7 +22,7 @@ def test_the_page_of_one_recording_is_made(tmp_path: Path) -> None:
         pytest.skip(f"no recordings in {folder()}; set IMU_HEALTH_RECORDINGS to their folder")
     made = diagnosed("imu-tk")
     page("imu-tk", made, tmp_path)
-    text = (tmp_path / "imu-tk.md").read_text()
-    assert "**`g-sensitivity`**" in text
+    assert "**`g-sensitivity`**" in (tmp_path / "imu-tk-in-full.md").read_text()
+    assert "![measured minus simulated](imu-tk-1.png)" in (tmp_path / "imu-tk.md").read_text()
     assert (tmp_path / "imu-tk-1.png").read_bytes().startswith(b"\x89PNG")
     assert "[imu-tk-xsens-mti](recordings/imu-tk.md)" in index({"imu-tk": made})

@@ -18,7 +18,8 @@ from tests.serving import serving
 
 PROJECT = Path(__file__).parents[2]
 README = PROJECT / "README.md"
-PAGES = [README, PROJECT / "CHANGELOG.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / "docs").rglob("*.md"))]
+WRITTEN = sorted([*(PROJECT / "docs").rglob("*.md"), *(PROJECT / "benchmarks" / "results").rglob("*.md")])
+PAGES = [README, PROJECT / "CHANGELOG.md", PROJECT / "CONTRIBUTING.md", *WRITTEN]
 ADDRESS = "http://127.0.0.1:8000"
 BIN = Path(sys.executable).parent
 Shell = Callable[[Path], str]

@@ -12,8 +12,8 @@ def test_the_small_back_test_writes_every_row(tmp_path: Path, monkeypatch: pytes
     out = tmp_path / "page.md"
     monkeypatch.setattr("sys.argv", ["backtest", "--small", "--seed", "77", "--out", str(out)])
     main()
-    text = out.read_text(encoding="utf-8")
-    assert text.count("\n### ") == 12
+    text, whole = out.read_text(encoding="utf-8"), (tmp_path / "page-in-full.md").read_text(encoding="utf-8")
+    assert whole.count("\n### ") == 12
     days = re.search(r"from the 4th session, median \| (\d+) \|", text)
     assert days is not None
     assert int(days.group(1)) >= 330
