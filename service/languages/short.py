@@ -20,6 +20,8 @@ WORDS = tuple(
     Lower, −U | Upper, +U | shifted | parity | reviewed | approved | reviewed by | approved by | small | large
     password | diagnose | certificate | upload | customer | interval | tolerances | stage | recalibrate
     refuse | stand-certificate | question | acknowledge | resolve | assigned | check | attach
+    Jan | Feb | Mar | Apr | May | Jun | Jul | Aug | Sep | Oct | Nov | Dec
+    {first} and {last} | {first} or {last}
     {unit} per {input} | {rate} a year | from row {value} | at row {value}
     a steady change of a parameter; a step is a sudden one
     """.strip().splitlines()
@@ -90,11 +92,11 @@ COUNTED = (
 """Things that are said with a number; all have their plural in s."""
 NAMES = frozenset(
     (
-        *("imu-health", "· imu-health", "OpenAPI", "Kalibr", "ROS 2", "imu-health {software}", "imu-health {version}"),
+        *("imu-health", "· imu-health", "OpenAPI", "Kalibr", "ROS 2", "imu-health {value}", "imu-health {version}"),
         *("about:blank", "https:", "private, no-cache", "Vary", "Cookie", "Connection", "openid profile email"),
         *("Liberation Sans", "Libertinus Serif", "General", "begins with", "yyyy-mm-dd hh:mm"),
-        *("acc x", "acc y", "gyro x", "gyro y", "gyro z", "sin {turns}", "cos {turns}", "{worst}.bias ({zero})"),
-        *("mounting{key}", "{length} ± {expanded} cm"),
+        *("acc x", "acc y", "gyro x", "gyro y", "gyro z", "sin {value}", "cos {value}", "{value}.bias ({value})"),
+        *("mounting{value}", "{value} ± {value} cm", "row {value}"),
     )
 )
-"""What looks like words and is a name: of programs, headers, fonts, sensors and keys."""
+"""What looks like words and is none: names of programs, headers, fonts, sensors and keys, and numbers."""

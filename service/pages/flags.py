@@ -9,6 +9,7 @@ from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 from pydantic import Field
 
+from estimator.message import say, uncapitalised
 from service.flags.assigned import ME, active_names, assignee_meant
 from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, bring_flags, resolve_flag
 from service.flags.records import Flag, FlagState, Matter, Notice, NoticeKind
@@ -152,7 +153,7 @@ def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:
 
 def _heading(flag: Flag) -> str:
     matter = MATTERS[flag.matter]
-    return f"{flag.place}: {matter[0].lower()}{matter[1:]}" if flag.place else matter
+    return say("{place}: {matter}", place=flag.place, matter=uncapitalised(matter)) if flag.place else matter
 
 
 router = APIRouter(prefix="/flags", include_in_schema=False)

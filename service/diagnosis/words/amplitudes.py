@@ -8,6 +8,7 @@ from typing import Protocol
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
+from estimator.message import joined, say
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.kit.measures import COVERAGE, HARD, THIN, decimals, measured, number
 
@@ -54,9 +55,9 @@ def amplitudes_of(finding: Sized) -> Iterator[str]:
         if not _is_stated(value) and not _is_stated(sigma):
             continue
         expanded = COVERAGE * sigma
-        who = f"{finding.sensors[k // each]}: " if len(finding.sensors) > 1 else ""
-        which = f"{part_of(finding.cause, k % each)} " if each > 1 else ""
-        yield f"{who}{which}{_size(finding.cause, si_unit, value, expanded)}"
+        who = say("{sensors}: ", sensors=finding.sensors[k // each]) if len(finding.sensors) > 1 else ""
+        which = say("{cause} ", cause=part_of(finding.cause, k % each)) if each > 1 else ""
+        yield joined("", (who, which, _size(finding.cause, si_unit, value, expanded)))
 
 
 def _size(cause: str, si_unit: str, value: float, expanded: float) -> str:
@@ -88,20 +89,27 @@ def shape_of(finding: Finding) -> str:
     if len(each) < 2 or all(one == each[0] for one in each):
         return _shape(finding.cause, finding.nonlinear)
     shapes = (_shape(finding.cause, one) for one in each)
-    return "; ".join(f"{who}: {shape}" for who, shape in zip(finding.sensors, shapes, strict=False) if shape)
+    return joined(
+        "; ",
+        (
+            say("{who}: {shape}", who=who, shape=shape)
+            for who, shape in zip(finding.sensors, shapes, strict=False)
+            if shape
+        ),
+    )
 
 
 def _shape(cause: str, nonlinear: dict[str, float]) -> str:
-    text = " and ".join(filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
+    text = joined(" and ", filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
     known = find(cause)
-    return f"{known.shape_words if known else ''} {text}".strip() if text else ""
+    return joined(" ", filter(None, (known.shape_words if known else "", text))) if text else ""
 
 
 def _place(cause: str, name: str, value: float) -> str:
     """One nonlinear parameter: a row, a side of the range, or a quantity; two of one unit are numbered."""
     si_unit = NUMBERED.sub("", name)
     if si_unit == "row":
-        return f"row {number(value, 0)}"
+        return say("row {value}", value=number(value, 0))
     if si_unit == "side":
         return "upper side" if value > 0 else "lower side" if value < 0 else ""
     measure = amplitude_measure(cause, si_unit, value)

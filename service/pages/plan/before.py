@@ -9,6 +9,7 @@ from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, BeforeValidator, Field, ValidationError
 
 from estimator.errors import Problem
+from estimator.message import joined, say
 from estimator.planning import Expected, Missing
 from estimator.readiness import Outlook, Readiness, State
 from estimator.results import PARAMETERS
@@ -106,22 +107,29 @@ def _facts(answer: Asked) -> tuple[tuple[str, str], ...]:
     facts = [
         ("Recorded", clock(found.recorded)),
         ("Judged from", clock(found.judged_from)),
-        ("Programme", f"{minutes(found.duration)} min{', as is usual' if answer.is_usual else ''}"),
+        (
+            "Programme",
+            (
+                say("{duration} min, as is usual", duration=minutes(found.duration))
+                if answer.is_usual
+                else say("{duration} min", duration=minutes(found.duration))
+            ),
+        ),
         ("Tolerances of", answer.unit_type or "no unit type: the usual ones"),
     ]
     if found.warmed is not None:
-        facts.append(("Thermometer", f"{number(found.warmed, 2)} K since then"))
+        facts.append(("Thermometer", say("{warmed} K since then", warmed=number(found.warmed, 2))))
     return tuple(facts)
 
 
 def _drift(one: Outlook) -> Drift:
     shares = [
-        f"{number(100 * share, 0)} % of the {word}"
+        say("{share} % of the {word}", share=number(100 * share, 0), word=word)
         for share, word in ((one.bias_share, "bias"), (one.scale_share, "scale factor"))
         if share is not None
     ]
     expected, bound, allowed = (amount(one.kind, value) for value in (one.expected, one.bound, one.allowed))
-    return Drift(one.name, expected, bound, allowed, ", ".join(shares))
+    return Drift(one.name, expected, bound, allowed, joined(", ", shares))
 
 
 def _changes(found: Readiness, kinds: dict[str, str]) -> tuple[tuple[str, ...], ...]:

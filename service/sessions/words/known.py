@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import joined, say
 from estimator.results import KnownCombination
 from service.kit.measures import COVERAGE, MINUS, Measure, measured, scale_measure, value_measure
 
@@ -32,7 +33,13 @@ def combination_in_words(known: KnownCombination, kind: str) -> str:
     lead = max(terms, key=lambda t: abs(t.coefficient))
     shares = [(t.coefficient / lead.coefficient, t.name) for t in terms]
     first, *others = [(share, name) for share, name in shares if abs(share) > NEGLIGIBLE]
-    rest = "".join(f" {MINUS if share < 0 else '+'} {_product(abs(share), name)}" for share, name in others)
+    rest = joined(
+        "",
+        (
+            say(" {minus} {name}", minus=MINUS if share < 0 else "+", name=_product(abs(share), name))
+            for share, name in others
+        ),
+    )
     expanded = None if known.sigma is None else COVERAGE * known.sigma
     total = measured(known.value, expanded, Measure(lead.measure.label, 1 / lead.coefficient)).rstrip()
     return f"{MINUS if first[0] < 0 else ''}{_product(abs(first[0]), first[1])}{rest} = {total}"
