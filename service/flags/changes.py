@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import Problem
-from estimator.message import say
+from estimator.message import joined, say
 from service.errors import ConflictError, RefusedError
 from service.flags.records import NOBODY, Assignee, Flag, FlagState, NoticeKind
 from service.flags.store import Flags, Notices
@@ -76,7 +76,7 @@ def _put(store: Store, flag: Flag, unit: int, assignee: Assignee, *, said: Assig
     Flags(store).put(flag.id, now, assignee=assignee.name, assignee_login=assignee.login)
     text = say("To {name}.", name=assignee.name) if assignee.name else "To nobody in particular."
     Notices(store).add(
-        unit, NoticeKind.ASSIGNED, now, said.who, say("{text} {why}", text=text, why=said.why).strip(), flag=flag.id
+        unit, NoticeKind.ASSIGNED, now, said.who, joined(" ", filter(None, (text, said.why))), flag=flag.id
     )
     details = {"flag": flag.id, "to": assignee.name, "login": assignee.login, "why": said.why}
     Audit(store).write(now, said.who, NoticeKind.ASSIGNED, flag.unit, details)

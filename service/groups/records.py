@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from estimator.codec import MOMENT, Document, Form
 from estimator.groups.results import EmpiricalTerm, GroupFinding, GroupGain, PoolLimit
-from estimator.message import say
+from estimator.message import say, with_messages
 
 
 class Level(StrEnum):
@@ -96,7 +96,10 @@ class FoundTogether:
 
 
 STRUCTURES = Form(
-    list, lambda listed: tuple(say("{one} ({one2})", one=one["where"], one2=one["subject"]) for one in listed)
+    list,
+    lambda listed: tuple(
+        say("{where} ({subject})", where=with_messages(one["where"]), subject=one["subject"]) for one in listed
+    ),
 )
 """Read from what the estimator found; never written."""
 

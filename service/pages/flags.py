@@ -16,6 +16,7 @@ from service.flags.records import Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.store import Flags
 from service.flags.view import ORDERS, PAGE_SIZE, FlagsAsked, FlagsView, choices_of
 from service.flags.view import STATES as CHOICES
+from service.groups.words.group import place_in_words
 from service.models.records import Scope
 from service.pages.saved import Saved, saved
 from service.people.admission import PersonOf
@@ -153,7 +154,10 @@ def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:
 
 def _heading(flag: Flag) -> str:
     matter = MATTERS[flag.matter]
-    return say("{place}: {matter}", place=flag.place, matter=uncapitalised(matter)) if flag.place else matter
+    if not flag.place:
+        return matter
+    place = place_in_words(flag.place, flag.subject or flag.unit) if flag.matter is Matter.LASTING else flag.place
+    return say("{place}: {matter}", place=place, matter=uncapitalised(matter))
 
 
 router = APIRouter(prefix="/flags", include_in_schema=False)

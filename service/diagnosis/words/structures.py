@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from estimator.diagnosis.results import Course, Structure
-from estimator.message import joined, say, uncapitalised
+from estimator.message import changed, joined, say, uncapitalised
 
 UNEXPLAINED = "Something is there that no known cause explains"
 COMMON = "Something common to all sensors, of the stand or fixture, that no known cause explains"
@@ -82,7 +82,7 @@ def where_of(structure: Structure) -> str:
     """Where it lives; of a course what it does to the applied vector."""
     if structure.course is not None:
         return say("the applied vector {course}", course=course_in_words(structure.course))
-    return structure.where.removeprefix(IN_COMMON)
+    return changed(structure.where, lambda text: text.removeprefix(IN_COMMON))
 
 
 def component_in_words(component: str) -> str:

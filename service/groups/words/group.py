@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from estimator.groups import GroupFinding
-from estimator.message import joined, say, without_stop
+from estimator.message import joined, say, uncapitalised, without_stop
 from service.diagnosis.words.causes import cause_name, cause_on
 from service.groups.records import Group
 from service.models.records import Scope
@@ -14,6 +14,8 @@ FAILED = (
 )
 LONGEST_PLACE = 200
 """Characters that a flag keeps of its place."""
+SHARED = "They share structure that no known cause explains."
+SOUND = "Nothing wrong found."
 UNKNOWN = "Structure that no known cause explains."
 NO_SESSION = "No accepted session calibrates a block."
 
@@ -30,8 +32,8 @@ def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexpla
     if findings:
         return say("{sessions}: {statement}", sessions=over(sessions), statement=joined(" ", map(statement, findings)))
     if unexplained:
-        return say("{sessions}: they share structure that no known cause explains.", sessions=over(sessions))
-    return say("{sessions}: nothing wrong found.", sessions=over(sessions))
+        return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SHARED))
+    return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SOUND))
 
 
 def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained: bool) -> str:
@@ -54,9 +56,19 @@ def statement(finding: GroupFinding) -> str:
     return say("{sentence}, unless it is {others}.", sentence=without_stop(finding.sentence), others=others)
 
 
+def place_in_words(place: str, subject: str) -> str:
+    """The place of a lasting flag as people read it: it is a key, made of scope, subject, cause and sensors."""
+    scope, known, rest = place.partition(f" {subject}: ")
+    cause, bracket, sensors = rest.partition(" (")
+    if not known:
+        return place
+    of = say(" ({sensors})", sensors=sensors.removesuffix(")")) if bracket else ""
+    return say("{scope} {subject}: {cause}{of}", scope=scope, subject=subject, cause=cause, of=of)
+
+
 def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = None) -> str:
     """``stand ODG-1: beta eccentricity``: where a flag on it is; without a finding how those of a group begin."""
-    whose = say("{scope} {subject}: ", scope=scope, subject=subject)
+    whose = f"{scope} {subject}: "
     return whose if finding is None else f"{whose}{cause_on(finding.cause, finding.sensors)}"[:LONGEST_PLACE]
 
 

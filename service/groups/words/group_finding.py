@@ -14,7 +14,7 @@ from service.diagnosis.words.causes import cause_on, percent
 from service.diagnosis.words.finding import standard_errors
 from service.diagnosis.words.limits import size_of
 from service.groups.records import GroupAnswer, GroupShown
-from service.groups.words.group import over, statement
+from service.groups.words.group import SHARED, SOUND, over, statement
 from service.groups.words.learned_term import TermView, gain_in_words, term_view
 from service.kit.names import day_of
 from service.models.records import SCOPES, ModelRevision
@@ -91,7 +91,7 @@ def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelR
     """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
     return GroupView(
         heading=say("What the simulation gets wrong, {sessions}", sessions=uncapitalised(over(shown.sessions))),
-        summary=answer.summary.partition(": ")[2].capitalize() if not shown.findings else "",
+        summary="" if shown.findings or not shown.sessions else SHARED if shown.structures else SOUND,
         left_out=shown.left_out,
         effects=tuple(_effect(finding, accepted) for finding in shown.findings),
         structures=shown.structures,

@@ -36,13 +36,14 @@ def combination_in_words(known: KnownCombination, kind: str) -> str:
     rest = joined(
         "",
         (
-            say(" {minus} {name}", minus=MINUS if share < 0 else "+", name=_product(abs(share), name))
+            say(" {sign} {product}", sign=MINUS if share < 0 else "+", product=_product(abs(share), name))
             for share, name in others
         ),
     )
     expanded = None if known.sigma is None else COVERAGE * known.sigma
     total = measured(known.value, expanded, Measure(lead.measure.label, 1 / lead.coefficient)).rstrip()
-    return f"{MINUS if first[0] < 0 else ''}{_product(abs(first[0]), first[1])}{rest} = {total}"
+    sign, product = MINUS if first[0] < 0 else "", _product(abs(first[0]), first[1])
+    return say("{sign}{product}{rest} = {total}", sign=sign, product=product, rest=rest, total=total)
 
 
 def _term(name: str, coefficient: float, kind: str) -> _Term:
@@ -57,4 +58,6 @@ def _term(name: str, coefficient: float, kind: str) -> _Term:
 
 def _product(share: float, name: str) -> str:
     """``0.5 × quadratic``, the share above zero."""
-    return name if share == 1 else f"{share:.6f}".rstrip("0").rstrip(".") + f" × {name}"
+    if share == 1:
+        return name
+    return say("{share} × {name}", share=f"{share:.6f}".rstrip("0").rstrip("."), name=name)
