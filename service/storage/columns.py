@@ -4,7 +4,7 @@ import json
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import BigInteger, ColumnElement, DateTime, Dialect, Integer, String, text, type_coerce
+from sqlalchemy import BigInteger, ColumnElement, DateTime, Dialect, Integer, String, Text, text, type_coerce
 from sqlalchemy.orm import InstrumentedAttribute
 from sqlalchemy.types import TypeDecorator
 
@@ -68,6 +68,13 @@ class Sentence(TypeDecorator[str]):
             return value
         message: str = with_messages(json.loads(value))
         return message
+
+
+class LongSentence(Sentence):
+    """The same, declared as TEXT."""
+
+    impl = Text
+    cache_ok = True
 
 
 def is_made_of(sentence: InstrumentedAttribute[str], template: str) -> ColumnElement[bool]:

@@ -18,6 +18,7 @@ from service.errors import AwayError, RefusedError, ServiceError, SignInError, T
 from service.kit.log import log, request_id
 from service.languages.catalogue import catalogue_of
 from service.languages.language import Language, asked
+from service.web.faults import fault_in_words
 
 MEDIA_TYPE = "application/problem+json"
 """RFC 9457."""
@@ -98,7 +99,7 @@ def _service_error(_: Request, error: Exception) -> ProblemAnswer:
 
 def _invalid_request(_: Request, error: Exception) -> ProblemAnswer:
     assert isinstance(error, RequestValidationError)
-    found = [Problem(_place(fault["loc"]), fault["msg"]) for fault in error.errors()]
+    found = [Problem(_place(fault["loc"]), fault_in_words(fault)) for fault in error.errors()]
     return problem(422, "The request cannot be used.", found)
 
 

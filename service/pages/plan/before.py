@@ -29,6 +29,7 @@ from service.sessions.charts import ChartSet
 from service.sessions.words.conditions import Condition
 from service.uploads.arriving import ArrivingOf, LandedFile
 from service.web.dependencies import Reading
+from service.web.faults import fault_in_words
 from service.web.render import render
 
 READY = Condition("pass", "Ready", "ready", "circle", "The measurement may begin.")
@@ -256,5 +257,5 @@ def _read(kind: type[T], brought: Brought) -> T:
     try:
         return kind.model_validate({name: value.strip() for name, value in brought.fields.items()})
     except ValidationError as fault:
-        problems = tuple(Problem(".".join(map(str, one["loc"])), one["msg"]) for one in fault.errors())
+        problems = tuple(Problem(".".join(map(str, one["loc"])), fault_in_words(one)) for one in fault.errors())
         raise RefusedError("The form cannot be used.", problems) from fault
