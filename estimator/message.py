@@ -69,7 +69,7 @@ def say_count(one: str, many: str, number: int, /, **parts: object) -> Message:
 def joined(joint: str, parts: Iterable[str]) -> Message:
     """Texts in a row with a joint between them, ``"; "`` or ``" and "``."""
     listed = tuple(parts)
-    if joint.strip().isalpha() and listed:
+    if any(map(str.isalpha, joint)) and listed:
         return reduce(
             lambda first, last: say(f"{{first}}{joint}{{last}}", first=first, last=last),
             listed[1:],

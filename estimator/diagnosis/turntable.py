@@ -15,7 +15,7 @@ from estimator.causes.catalogue import UNEXPLAINED
 from estimator.causes.turntable import LeverArm as Cause
 from estimator.diagnosis.explanation.detection_limits import required
 from estimator.diagnosis.results import Diagnosis, Finding, Gain, Limit, Rival, Score, Separation, Structure
-from estimator.message import joined, say
+from estimator.message import joined, say, say_count
 from estimator.results import ARCSEC, COVERAGE
 from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.significance import family_wise
@@ -158,14 +158,13 @@ def _limit(arms: LeverArms) -> Limit:
 
 def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -> Iterator[str]:
     if arms.upright:
-        points = "points" if len(arms.upright) == 1 else "point"
-        yield (
-            say(
-                "{upright} {points} along the turn axis: where it stands does not show. Nor does any "
-                "sensor's place along the axis.",
-                upright=joined(" and ", arms.upright),
-                points=points,
-            )
+        yield say_count(
+            "{upright} points along the turn axis: where it stands does not show. Nor does any sensor's place along "
+            "the axis.",
+            "{upright} point along the turn axis: where they stand does not show. Nor does any sensor's place along "
+            "the axis.",
+            len(arms.upright),
+            upright=joined(" and ", arms.upright),
         )
     if arms.origin is not None:
         place, covariance = arms.origin

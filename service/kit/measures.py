@@ -71,9 +71,9 @@ NOISE = {
     ("gyroscope", "random-walk"): Measure("°/h/√h", 3600 * 60 / DEGREE),
 }
 """Of the terms of noise at rest, as data sheets give them."""
-PER_G = Measure("per g", STANDARD_GRAVITY)
+PER_G = Measure(say("per g"), STANDARD_GRAVITY)
 """Of scale factors."""
-PER_RATE = Measure("per °/s", DEGREE)
+PER_RATE = Measure(say("per °/s"), DEGREE)
 """Of the scale factors of gyros."""
 
 
@@ -135,7 +135,7 @@ def signed(value: float | None, expanded: float | None, measure: Measure) -> str
 
 def limit(tolerance: float, measure: Measure, one_sided: bool) -> str:
     """``±40 µg``, or ``30 ″`` for what cannot be negative."""
-    return f"{'' if one_sided else '±'}{number(in_measure(tolerance, measure))}{THIN}{measure.label}"
+    return ("" if one_sided else "±") + number(in_measure(tolerance, measure)) + THIN + measure.label
 
 
 def measured(value: float | None, expanded: float | None, measure: Measure) -> str:
@@ -163,4 +163,4 @@ def in_words(kind: str, parameter: str, si: float, *, signed: bool = False) -> s
         return say("unknown {label}", label=measure.label)
     digits = 0 if shown == 0 else max(0, 1 - floor(log10(abs(shown))))
     sign = "+" if signed and shown > 0 else ""
-    return f"{sign}{shown:,.{digits}f} {measure.label}".replace("-", "−")
+    return f"{sign}{shown:,.{digits}f} ".replace("-", "−") + measure.label

@@ -68,7 +68,7 @@ def moved_in_words(moved: MovedParameter | None) -> str:
 def _shown(value: float, measure: Measure) -> str:
     """With two significant digits."""
     shown = value * measure.factor
-    return f"{number(shown, decimals(abs(shown)))}{THIN}{measure.label}"
+    return f"{number(shown, decimals(abs(shown)))}{THIN}" + measure.label
 
 
 def _counted(count: int, what: str) -> str:

@@ -16,7 +16,7 @@ from estimator.errors import Problem
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.results import EmpiricalTerm
-from estimator.message import say
+from estimator.message import joined, say
 from service.diagnosis.records import StoredDiagnosis
 from service.diagnosis.words.causes import UNKNOWN_CAUSE, cause_on
 from service.errors import ConflictError, RefusedError
@@ -130,7 +130,7 @@ def _subject(new: NewModel, session: StoredSession, unit_type: str, sensors: tup
 
 def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
     if sensors:
-        found = " and ".join(sensors)
+        found = joined(" and ", sensors)
         raise _refused(
             "scope",
             say("is 'stand', but the cause acts on {found}; accept it for the unit or the unit type", found=found),
@@ -280,14 +280,14 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
     if len(found) == 1:
         return found[0]
     if found:
-        places = " or ".join(", ".join(f.sensors) or "none" for f in found)
+        places = joined(" or ", (", ".join(f.sensors) or "none" for f in found))
         raise _refused(
             "sensors",
             say(
                 "must say which is meant: these sessions show {cause} on {places}", cause=repr(new.cause), places=places
             ),
         )
-    names = ", ".join(cause_on(f.cause, f.sensors) for f in shown.findings) or "none"
+    names = joined(", ", (cause_on(f.cause, f.sensors) for f in shown.findings)) or "none"
     raise _refused(
         "cause",
         say(

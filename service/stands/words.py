@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import date, timedelta
 
 from estimator.health.common_motion import AXES
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.session import ACCELEROMETER
 from service.kit.measures import COVERAGE, deviation_measure, in_words, measured, signed
 from service.kit.names import day_of
@@ -22,11 +22,11 @@ def reason_of(
 ) -> str:
     """What the stand does to every block, since when, what to do, and how blocks are seated anyway."""
     if not shifts:
-        return " ".join([STEADY, *_seating(seating)]) if evidence else TOO_FEW
+        return joined(" ", (STEADY, *_seating(seating))) if evidence else TOO_FEW
     lasting = [shift for shift in shifts if shift.until is None]
     told = [_shift(shift) for shift in (*lasting, *(shift for shift in shifts if shift.until is not None))]
     advice = "Check stand and fixture." if lasting else "It is back where it was: note what was done to it."
-    return " ".join([*told, advice, JUDGED, *_seating(seating)])
+    return joined(" ", (*told, advice, JUDGED, *_seating(seating)))
 
 
 def _shift(shift: StandEvidence) -> str:

@@ -12,6 +12,8 @@ from estimator.message import joined, say
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.kit.measures import COVERAGE, HARD, THIN, decimals, measured, number
 
+AT_ROWS = ("from", "at")
+"""What is said of a cause that has its row."""
 NUMBERED = re.compile(r" \d+$")
 """What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
 
@@ -100,17 +102,20 @@ def shape_of(finding: Finding) -> str:
 
 
 def _shape(cause: str, nonlinear: dict[str, float]) -> str:
-    text = joined(" and ", filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
+    places = tuple(filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
     known = find(cause)
-    return joined(" ", filter(None, (known.shape_words if known else "", text))) if text else ""
+    words = known.shape_words if known else ""
+    if words in AT_ROWS and tuple(nonlinear) == ("row",):
+        return say(f"{words} row {{value}}", value=number(nonlinear["row"], 0))
+    return joined(" ", filter(None, (words, joined(" and ", places)))) if places else ""
 
 
 def _place(cause: str, name: str, value: float) -> str:
     """One nonlinear parameter: a row, a side of the range, or a quantity; two of one unit are numbered."""
     si_unit = NUMBERED.sub("", name)
     if si_unit == "row":
-        return say("row {value}", value=number(value, 0))
+        return say("row {number}", number=number(value, 0))
     if si_unit == "side":
         return "upper side" if value > 0 else "lower side" if value < 0 else ""
     measure = amplitude_measure(cause, si_unit, value)
-    return f"{number(value * measure.factor)}{THIN}{measure.label}"
+    return f"{number(value * measure.factor)}{THIN}" + measure.label

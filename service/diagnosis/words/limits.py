@@ -65,4 +65,4 @@ def _amplitude(cause: str, value: float, si_unit: str) -> str:
     if not isfinite(value):
         return ""
     measure = amplitude_measure(cause, si_unit, value)
-    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}" + measure.label

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from estimator.groups import GroupFinding
 from estimator.groups.results import PoolLimit, Rival, SessionAmplitude
-from estimator.message import joined, say, say_count, uncapitalised
+from estimator.message import Message, joined, say, say_count, uncapitalised
 from estimator.moments import moment
 from estimator.session import ACCELEROMETER
 from service.diagnosis.words.amplitudes import amplitudes_of
@@ -148,7 +148,10 @@ def _limit(limit: PoolLimit) -> tuple[str, str, str]:
 
 def with_days(note: str) -> str:
     """A note with its moments as days."""
-    return MOMENT.sub(lambda found: day_in_words(found.group()), note)
+    if isinstance(note, Message):
+        parts = {name: with_days(part) for name, part in note.parts.items()}
+        return Message(note.template, parts, note.many, note.number)
+    return day_in_words(note) if MOMENT.fullmatch(note) else MOMENT.sub(lambda found: day_in_words(found.group()), note)
 
 
 def since_in_words(form: str, since: str | None) -> str:

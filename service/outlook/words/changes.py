@@ -1,6 +1,6 @@
 """What changed in a parameter, in words: a jump between two dates, a drift since one, no steady rate."""
 
-from estimator.message import joined, say
+from estimator.message import say
 from service.kit.measures import Measure, deviation_measure, in_words, signed
 from service.kit.names import PARAMETER_NAMES, day_of
 from service.outlook.records import FoundChange, ParameterTrend, TemperatureCoefficient
@@ -23,7 +23,7 @@ def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
         "drift": say(
             "has been drifting since {after} by {trend}",
             after=after,
-            trend=_sized(trend, change.size, change.sigma, "a year"),
+            trend=_sized(trend, change.size, change.sigma, "{rate} a year"),
         ),
         "aging": say(
             "is aging since {after}, by {moved} in the first year and slower from then on", after=after, moved=moved
@@ -42,11 +42,11 @@ def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
     return say(
         "{trend} follows the temperature of the session, by {trend2}; its trend goes on without that.",
         trend=place_of(trend),
-        trend2=_sized(trend, warm.value, warm.sigma, "per °C"),
+        trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
     )
 
 
-def _sized(trend: ParameterTrend, size: float, sigma: float, per: str = "") -> str:
+def _sized(trend: ParameterTrend, size: float, sigma: float, per: str = "{rate}") -> str:
     """With U, k = 2."""
     measure = deviation_measure(trend.kind, trend.parameter, abs(size))
-    return signed(size, 2 * sigma, Measure(joined(" ", filter(None, (measure.label, per))), measure.factor))
+    return signed(size, 2 * sigma, Measure(say(per, rate=measure.label), measure.factor))

@@ -184,7 +184,7 @@ def _spread(one: Expected, sigma: float | None) -> str:
     if sigma is None:
         return UNSEEN
     measure = MEASURES[one.kind, one.parameter]
-    return f"±{number(float(f'{COVERAGE * sigma * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"±{number(float(f'{COVERAGE * sigma * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
 T = TypeVar("T", bound=BaseModel)

@@ -57,7 +57,7 @@ def sigma_in_words(judged: Judged, coverage: float) -> str:
     if judged.sigma is None:
         return UNSEEN
     measure = MEASURES[judged.kind, judged.parameter]
-    return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
 def tolerance_in_words(judged: Judged) -> str:

@@ -49,7 +49,7 @@ def minutes(seconds: float) -> str:
 def amount(kind: str, value: float) -> str:
     """``12 µg``: of drift."""
     measure = deviation_measure(kind, "bias", abs(value))
-    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
 def clock(seconds: float) -> str:
