@@ -12,7 +12,7 @@ from estimator.message import joined, say
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.kit.measures import COVERAGE, HARD, THIN, decimals, measured, number
 
-AT_ROWS = ("from", "at")
+AT_ROWS = {"from": "from row {value}", "at": "at row {value}"}
 """What is said of a cause that has its row."""
 NUMBERED = re.compile(r" \d+$")
 """What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
@@ -106,7 +106,7 @@ def _shape(cause: str, nonlinear: dict[str, float]) -> str:
     known = find(cause)
     words = known.shape_words if known else ""
     if words in AT_ROWS and tuple(nonlinear) == ("row",):
-        return say(f"{words} row {{value}}", value=number(nonlinear["row"], 0))
+        return say(AT_ROWS[words], value=number(nonlinear["row"], 0))
     return joined(" ", filter(None, (words, joined(" and ", places)))) if places else ""
 
 
