@@ -77,7 +77,7 @@ class LongSentence(Sentence):
     cache_ok = True
 
 
-def is_made_of(sentence: InstrumentedAttribute[str], template: str) -> ColumnElement[bool]:
+def is_made_of(sentence: ColumnElement[str] | InstrumentedAttribute[str], template: str) -> ColumnElement[bool]:
     """Whether a stored sentence is one of a template, which an earlier release kept as a plain text."""
     stored = type_coerce(sentence, String)
     as_message = _line({"message": template}).removesuffix("}")
