@@ -31,7 +31,7 @@ def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
     return (
         ChartSet("positions", "Over the number of positions", _spec("positions a run"), tuple(by_number)),
         ChartSet(
-            "elevation", "Over the elevation of the head", _spec("elevation, °"), (*by_angle, *_rho(plan, degrees))
+            "elevation", "Over the elevation of the head", _spec(say("elevation, °")), (*by_angle, *_rho(plan, degrees))
         ),
     )
 
