@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Literal, Self, TypeVar, Union, get_args, get_o
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.message import Message, as_document, with_messages
 from estimator.moments import in_utc
 
 T = TypeVar("T")
@@ -137,6 +138,8 @@ class Codec:
         kind = type(value)
         if kind in AS_THEY_ARE:
             return value
+        if kind in self._forms:
+            return self._forms[kind].write(value)
         if kind is float:
             return value if isfinite(value) else None
         if kind is tuple or kind is list:
@@ -152,8 +155,8 @@ class Codec:
             return value.value
         if isinstance(value, np.generic):
             return self.written(value.item())
-        if type(value) in self._forms:
-            return self._forms[type(value)].write(value)
+        if isinstance(value, str):
+            return value
         if is_dataclass(value):
             return self._object(value)
         raise TypeError(f"{type(value).__name__} is not kept as JSON")
@@ -342,16 +345,24 @@ def _mapping(read: Reader) -> Reader:
     return entries
 
 
-def _any(value: Any) -> Any:
-    return value
+def _text(value: Any) -> Any:
+    """A text, or a message with its parts."""
+    text = with_messages(value)
+    if isinstance(text, str):
+        return text
+    raise UnreadableError(f"a text is expected, not {value!r:.80}")
 
 
 SIMPLE: dict[Any, Reader] = {
     float: _number,
     int: _whole,
-    str: _of(str, "a text"),
+    str: _text,
     bool: _of(bool, "true or false"),
-    Any: _any,
+    Any: with_messages,
 }
 PLAIN = Codec({})
 """Of the estimator: no types beside those that every document has."""
+WITH_PARTS: Mapping[type, Form] = {Message: Form(as_document, with_messages)}
+"""Messages with their parts, where they are to be said in any language later."""
+KEPT = Codec(WITH_PARTS)
+"""The same with them."""

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.message import joined, say
 from estimator.parameters import ELEMENTS
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import GYROSCOPE, Array, CalibrationSession
@@ -126,14 +127,16 @@ def correction_of(session: CalibrationSession, calibration: Calibration) -> Corr
             axes = np.stack([s.axis for s in sensors])
             blocks.append(BlockCorrection(kind, sensors, np.linalg.pinv(axes), _covariance(calibration, sensors)))
         else:
-            left_out += [(s.name, f"the axes of the {kind}s do not span three directions") for s in sensors]
+            left_out += [
+                (s.name, say("the axes of the {kind}s do not span three directions", kind=kind)) for s in sensors
+            ]
     return Correction(tuple(blocks), tuple(left_out))
 
 
 def _unseen(sensor: SensorCalibration) -> str:
     """What is missing for an inversion; a quadratic term may be."""
     missing = [name for name in ("scale", "bias", "axis") if not sensor.observable.get(name, False)]
-    return f"the session does not observe its {', '.join(missing)}" if missing else ""
+    return say("the session does not observe its {missing}", missing=joined(", ", missing)) if missing else ""
 
 
 def _spans(sensors: Sequence[SensorCorrection]) -> bool:

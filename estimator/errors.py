@@ -10,6 +10,8 @@ ValueError
 
 from dataclasses import dataclass
 
+from estimator.message import joined, say
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -21,8 +23,8 @@ class Problem:
     """Row of the table, counted from 1 as people count; None when the problem is not in one row."""
 
     def __str__(self) -> str:
-        place = self.field if self.row is None else f"{self.field}, row {self.row}"
-        return f"{place}: {self.message}"
+        place = self.field if self.row is None else say("{field}, row {row}", field=self.field, row=self.row)
+        return say("{place}: {message}", place=place, message=self.message)
 
 
 class SessionError(ValueError):
@@ -32,7 +34,7 @@ class SessionError(ValueError):
         self.problems = tuple(problems)
         self.source = source
         head = f"{source}: " if source else ""
-        super().__init__(head + "; ".join(map(str, self.problems)))
+        super().__init__(head + joined("; ", map(str, self.problems)))
 
 
 class FormatError(SessionError):

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
+from estimator.message import joined, say
 from estimator.rest_noise import Indices, energies, mean_variance
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
@@ -140,16 +141,26 @@ def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
     """The same, given in which of them the block ``moves`` (n,)."""
     if 2 * np.count_nonzero(moves) <= len(intervals):
         return intervals
-    rows = ", ".join(
-        f"{a + 1} to {b}" for a, b in zip(intervals.start[moves][:3], intervals.stop[moves][:3], strict=True)
+    rows = joined(
+        ", ",
+        (
+            say("{a} to {b}", a=a + 1, b=b)
+            for a, b in zip(intervals.start[moves][:3], intervals.stop[moves][:3], strict=True)
+        ),
     )
     raise ScheduleError(
         [
             Problem(
                 "table",
-                f"the block moves in {np.count_nonzero(moves)} of {len(intervals)} positions (samples {rows}, …): it "
-                f"turns by more than {MOTION:g} rad while it should rest; label still samples only, "
-                "or check sample_rate_hz",
+                say(
+                    "the block moves in {moves} of {intervals} positions (samples {rows}, …): it turns by "
+                    "more than {motion} rad while it should rest; label still samples only, or check "
+                    "sample_rate_hz",
+                    moves=np.count_nonzero(moves),
+                    intervals=len(intervals),
+                    rows=rows,
+                    motion=f"{MOTION:g}",
+                ),
             )
         ]
     )
@@ -289,10 +300,13 @@ def watched_for_rest(session: CalibrationSession) -> NDArray[np.bool_]:
 
 def no_rests_message(samples: int) -> str:
     """What to tell the person whose log never stands still."""
-    return (
-        f"found fewer than {FEWEST} stretches in {samples} samples in which the block stands still for "
-        f"{WINDOW + SHORTEST:g} s; rest longer in each orientation, check sample_rate_hz, or label the still samples "
-        "in a position column"
+    return say(
+        "found fewer than {fewest} stretches in {samples} samples in which the block stands "
+        "still for {window} s; rest longer in each orientation, check sample_rate_hz, or label "
+        "the still samples in a position column",
+        fewest=FEWEST,
+        samples=samples,
+        window=f"{WINDOW + SHORTEST:g}",
     )
 
 

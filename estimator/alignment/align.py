@@ -39,6 +39,7 @@ from estimator.alignment.strapdown import Motion, Strapdown, strapdown
 from estimator.applied_vector import gravity
 from estimator.arrays import eigh
 from estimator.errors import Problem, ScheduleError
+from estimator.message import say
 from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 from estimator.significance import p_value
@@ -101,7 +102,18 @@ def align(
 def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 0.0)) -> Record:
     """The session as the filter needs it; every fault of it is a ScheduleError."""
     if session.programme != ROTATION_ALIGNMENT:
-        raise ScheduleError([Problem("programme", f"is {session.programme}; an alignment is {ROTATION_ALIGNMENT}")])
+        raise ScheduleError(
+            [
+                Problem(
+                    "programme",
+                    say(
+                        "is {programme}; an alignment is {rotation_alignment}",
+                        programme=session.programme,
+                        rotation_alignment=ROTATION_ALIGNMENT,
+                    ),
+                )
+            ]
+        )
     assert session.turn_angle is not None
     row = interval(session)
     require_alive(session, of_kind(session, ACCELEROMETER))

@@ -14,6 +14,7 @@ from estimator.alignment.strapdown import Motion
 from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
 from estimator.least_squares import least_squares
+from estimator.message import say
 from estimator.session import Array
 
 MOST_HEADING = np.radians(10.0)
@@ -82,6 +83,12 @@ def _require_heading(north: Array, inverse: Array, density: Array, shortest: flo
     size = float(np.hypot(*north))
     if spread > MOST_HEADING * size:
         hours = 180 / np.pi * 3600
-        message = f"the gyros read {size * hours:.2g} ± {spread * hours:.2g} °/h of the Earth's horizontal rotation"
+        message = say(
+            "the gyros read {size} ± {spread} °/h of the Earth's horizontal rotation",
+            size=f"{size * hours:.2g}",
+            spread=f"{spread * hours:.2g}",
+        )
         advice = "stand longer at each angle, or use quieter gyros"
-        raise ScheduleError([Problem("table", f"{message}: too uncertain for a heading; {advice}")])
+        raise ScheduleError(
+            [Problem("table", say("{message}: too uncertain for a heading; {advice}", message=message, advice=advice))]
+        )

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.errors import Problem, ScheduleError
+from estimator.message import joined, say
 from estimator.session import Array, CalibrationSession
 from estimator.wording import counted
 
@@ -48,7 +49,7 @@ class Stop:
     @property
     def rows(self) -> str:
         """The rows as people count."""
-        return f"rows {self.first + 1} to {self.last}"
+        return say("rows {first} to {last}", first=self.first + 1, last=self.last)
 
 
 def interval(session: CalibrationSession) -> float:
@@ -58,14 +59,30 @@ def interval(session: CalibrationSession) -> float:
         return 1.0 / session.sample_rate
     steps = np.diff(session.time)
     if len(steps) < 2:
-        raise ScheduleError([Problem("time_s", f"has {counted(len(session.time), 'row')}; a time series is needed")])
+        raise ScheduleError(
+            [Problem("time_s", say("has {time}; a time series is needed", time=counted(len(session.time), "row")))]
+        )
     usual = float(np.median(steps))
     uneven = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
     if usual <= 0 or len(uneven):
         row = int(uneven[0]) + 2 if len(uneven) else 2
-        message = f"is {steps[row - 2]:.6g} s after the row before, where rows are {usual:.6g} s apart"
+        message = say(
+            "is {steps} s after the row before, where rows are {usual} s apart",
+            steps=f"{steps[row - 2]:.6g}",
+            usual=f"{usual:.6g}",
+        )
         raise ScheduleError(
-            [Problem("time_s", f"{message}; give evenly spaced rows without gaps ({len(uneven)} uneven)", row)]
+            [
+                Problem(
+                    "time_s",
+                    say(
+                        "{message}; give evenly spaced rows without gaps ({uneven} uneven)",
+                        message=message,
+                        uneven=len(uneven),
+                    ),
+                    row,
+                )
+            ]
         )
     return float(session.time[-1] - session.time[0]) / len(steps)
 
@@ -91,9 +108,17 @@ def require_positions(stationary: list[Stop]) -> None:
     turns = {round(float(np.degrees(stop.angle)), 1) for stop in stationary}
     separations = [abs(np.exp(1j * stop.angle) - np.exp(1j * stationary[0].angle)) for stop in stationary]
     if not stationary or max(separations) < 2 * np.sin(LEAST_SEPARATION / 2):
-        where = f"only at {', '.join(f'{turn:g}°' for turn in sorted(turns))}" if turns else "nowhere"
-        advice = f"stop for {SHORTEST:g} s and {FEWEST_ROWS} rows or longer at two angles or more, 180° apart at best"
-        raise ScheduleError([Problem("turn_angle_deg", f"the table stands {where}; {advice}")])
+        where = (
+            say("only at {turn}", turn=joined(", ", (f"{turn:g}°" for turn in sorted(turns)))) if turns else "nowhere"
+        )
+        advice = say(
+            "stop for {shortest} s and {fewest_rows} rows or longer at two angles or more, 180° apart at best",
+            shortest=f"{SHORTEST:g}",
+            fewest_rows=FEWEST_ROWS,
+        )
+        raise ScheduleError(
+            [Problem("turn_angle_deg", say("the table stands {where}; {advice}", where=where, advice=advice))]
+        )
 
 
 def require_rest(stationary: list[Stop], rates: Array, row: float) -> None:
@@ -105,9 +130,16 @@ def require_rest(stationary: list[Stop], rates: Array, row: float) -> None:
         whole = samples[: len(samples) // block * block].reshape(-1, block, 3).mean(axis=1)
         fastest = float(np.linalg.norm(whole, axis=1).max())
         if fastest > MOVING:
-            problem = f"the table stands in {stop.rows}, but the gyros read {np.degrees(fastest):.3g} °/s"
+            problem = say(
+                "the table stands in {rows}, but the gyros read {fastest} °/s",
+                rows=stop.rows,
+                fastest=f"{np.degrees(fastest):.3g}",
+            )
             problems.append(
-                Problem("turn_angle_deg", f"{problem}: the block was moved, or the columns do not belong together")
+                Problem(
+                    "turn_angle_deg",
+                    say("{problem}: the block was moved, or the columns do not belong together", problem=problem),
+                )
             )
     if problems:
         raise ScheduleError(problems)
@@ -121,12 +153,23 @@ def require_turns(stationary: list[Stop], angle: Array, rate_z: Array, row: floa
         table = float(angle[last] - angle[first])
         gyro = float(rate_z[first + 1 : last + 1].sum() * row)
         if abs(gyro - table) > DISAGREEMENT[0] + DISAGREEMENT[1] * abs(table):
-            problem = f"the table turned {np.degrees(table):+.1f}° between {before.rows} and {after.rows}"
-            message = f"{problem}, the gyros {np.degrees(gyro):+.1f}° about the block's Z axis"
+            problem = say(
+                "the table turned {table}° between {rows} and {rows2}",
+                table=f"{np.degrees(table):+.1f}",
+                rows=before.rows,
+                rows2=after.rows,
+            )
+            message = say(
+                "{problem}, the gyros {gyro}° about the block's Z axis",
+                problem=problem,
+                gyro=f"{np.degrees(gyro):+.1f}",
+            )
             advice = (
                 "check the sign and unit of turn_angle_deg, the gyros' scale and range, and that Z is the turn axis"
             )
-            problems.append(Problem("turn_angle_deg", f"{message}; {advice}", after.first + 1))
+            problems.append(
+                Problem("turn_angle_deg", say("{message}; {advice}", message=message, advice=advice), after.first + 1)
+            )
     if problems:
         raise ScheduleError(problems)
 
@@ -135,9 +178,24 @@ def require_level(force: Array, g: float) -> None:
     """ScheduleError unless the mean specific force (3,) at rest, m/s², is gravity, along the turn axis."""
     size = float(np.linalg.norm(force))
     if abs(size - g) > GRAVITY_MISMATCH * g:
-        message = f"at rest the accelerometers read {size:.4g} m/s² where gravity is {g:.4g}"
+        message = say(
+            "at rest the accelerometers read {size} m/s² where gravity is {g}", size=f"{size:.4g}", g=f"{g:.4g}"
+        )
         raise ScheduleError([Problem("sensors", f"{message}; check nominal_scale and nominal_offset")])
     tilt = float(np.arccos(np.clip(force[2] / size, -1, 1)))
     if tilt > STEEPEST:
-        message = f"the turn axis (the block's Z) is {np.degrees(tilt):.1f}° off the upward vertical"
-        raise ScheduleError([Problem("table", f"{message}; alignment needs it within {np.degrees(STEEPEST):g}°")])
+        message = say(
+            "the turn axis (the block's Z) is {tilt}° off the upward vertical", tilt=f"{np.degrees(tilt):.1f}"
+        )
+        raise ScheduleError(
+            [
+                Problem(
+                    "table",
+                    say(
+                        "{message}; alignment needs it within {steepest}°",
+                        message=message,
+                        steepest=f"{np.degrees(STEEPEST):g}",
+                    ),
+                )
+            ]
+        )

@@ -22,6 +22,7 @@ from estimator.alignment.results import RateTableResult
 from estimator.applied_vector import EARTH_RATE
 from estimator.errors import Problem, ScheduleError
 from estimator.least_squares import least_squares
+from estimator.message import say
 from estimator.results import Fit
 from estimator.session import GYROSCOPE, RATE_TABLE, Array, CalibrationSession
 from estimator.significance import p_value
@@ -69,7 +70,18 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
     ScheduleError : no whole turns, turns in one direction only, too few turns, or gyros that do not follow the table.
     """
     if session.programme != RATE_TABLE:
-        raise ScheduleError([Problem("programme", f"is {session.programme}; a rate table is {RATE_TABLE}")])
+        raise ScheduleError(
+            [
+                Problem(
+                    "programme",
+                    say(
+                        "is {programme}; a rate table is {rate_table}",
+                        programme=session.programme,
+                        rate_table=RATE_TABLE,
+                    ),
+                )
+            ]
+        )
     row = interval(session)
     gyros = triad(session, GYROSCOPE, row)
     turns = whole_turns(session, gyros.values, row)
@@ -91,10 +103,14 @@ def whole_turns(session: CalibrationSession, rates: Array, row: float) -> Turns:
         length = TURN / abs(speed) / row
         count = int((last - first + WHOLE) / length)
         if count == 0:
-            part = (
-                f"rows {first + 1} to {last} at {np.degrees(speed):g} °/s cover {(last - first) / length:.2f} of a turn"
+            part = say(
+                "rows {first} to {last} at {speed} °/s cover {length} of a turn",
+                first=first + 1,
+                last=last,
+                speed=f"{np.degrees(speed):g}",
+                length=f"{(last - first) / length:.2f}",
             )
-            short.append(Problem("turn_rate_deg_s", f"{part}; turn through whole turns", first + 1))
+            short.append(Problem("turn_rate_deg_s", say("{part}; turn through whole turns", part=part), first + 1))
         complete += [(speed, first + k * length, first + (k + 1) * length) for k in range(count)]
     if not complete:
         raise ScheduleError(short or [Problem("turn_rate_deg_s", "the table never turns; give its rate in every row")])
@@ -117,13 +133,18 @@ def _at(total: Array, place: Array) -> Array:
 def _require_both_directions(turns: Turns) -> None:
     for sign, word in ((1, "positive"), (-1, "negative")):
         if not (sign * turns.rates > 0).any():
-            message = (
-                f"no whole turn at a {word} rate; turn both ways, so that the zeros and the Earth's rotation cancel"
+            message = say(
+                "no whole turn at a {word} rate; turn both ways, so that the zeros and the Earth's rotation cancel",
+                word=word,
             )
             raise ScheduleError([Problem("turn_rate_deg_s", message)])
     if len(turns.rates) < FEWEST_TURNS:
         held = counted(len(turns.rates), "whole turn")
-        message = f"holds {held}; give {FEWEST_TURNS} or more, so that their scatter is known"
+        message = say(
+            "holds {held}; give {fewest_turns} or more, so that their scatter is known",
+            held=held,
+            fewest_turns=FEWEST_TURNS,
+        )
         raise ScheduleError([Problem("turn_rate_deg_s", message)])
 
 
@@ -131,10 +152,14 @@ def _require_following(turns: Turns) -> None:
     disagrees = np.abs(turns.means[:, 2] - turns.rates) > DISAGREEMENT * np.abs(turns.rates) + EARTH_RATE
     if disagrees.any():
         worst = int(np.argmax(disagrees))
-        problem = f"the table turns at {np.degrees(turns.rates[worst]):+g} °/s"
-        message = f"{problem}, the gyros at {np.degrees(turns.means[worst, 2]):+.4g} °/s about the block's Z axis"
+        problem = say("the table turns at {np} °/s", np=f"{np.degrees(turns.rates[worst]):+g}")
+        message = say(
+            "{problem}, the gyros at {np} °/s about the block's Z axis",
+            problem=problem,
+            np=f"{np.degrees(turns.means[worst, 2]):+.4g}",
+        )
         advice = "check the sign and unit of turn_rate_deg_s, the gyros' scale and range, and Z, the table's axis"
-        raise ScheduleError([Problem("turn_rate_deg_s", f"{message}; {advice}")])
+        raise ScheduleError([Problem("turn_rate_deg_s", say("{message}; {advice}", message=message, advice=advice))])
 
 
 def _result(session: CalibrationSession, turns: Turns, gyros: Triad) -> RateTableResult:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from estimator.calibration.cut_off import require_whole_range
 from estimator.calibration.stand import calibrate_stand
 from estimator.errors import Problem, ScheduleError
+from estimator.message import say
 from estimator.on_demand import function_on_demand
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, TWO_AXIS_STAND, CalibrationSession
@@ -40,7 +41,14 @@ def averaged(session: CalibrationSession) -> CalibrationSession:
     """The session with one row a position; ScheduleError where its programme does not calibrate."""
     if session.programme not in CALIBRATIONS:
         hint = "; compare it with a calibration: imu-health parity" if session.programme == IN_SERVICE else ""
-        raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block{hint}")])
+        raise ScheduleError(
+            [
+                Problem(
+                    "programme",
+                    say("{programme} does not calibrate a block{hint}", programme=session.programme, hint=hint),
+                )
+            ]
+        )
     rows = average(session, residual_per_freedom) if session.is_raw else session
     if session.programme != TWO_AXIS_STAND:
         require_whole_range(rows)

@@ -7,6 +7,7 @@ a channel that is cut off in a good part of the rows spoils every applied vector
 import numpy as np
 
 from estimator.errors import Problem, ScheduleError
+from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 SHARE = 0.2
@@ -57,8 +58,13 @@ def expected(session: CalibrationSession, i: int) -> Array | None:
 
 def cut_off(end: float, rows: Array, change: float) -> str:
     """What happened in ``rows`` (k,), numbers from 0, and what to do; ``end`` in reading units, ``change`` in m/s²."""
-    named = ", ".join(str(row + 1) for row in rows[:SHOWN]) + (", …" if len(rows) > SHOWN else "")
-    return (
-        f"reads exactly {end:g} in {len(rows)} rows ({named}) while the other sensors show its input change by "
-        f"{change:.2g} m/s²: the channel is at the end of its range; widen the range, or leave these rows out"
+    named = joined(", ", (str(row + 1) for row in rows[:SHOWN])) + (", …" if len(rows) > SHOWN else "")
+    return say(
+        "reads exactly {end} in {rows} rows ({named}) while the other sensors show its input "
+        "change by {change} m/s²: the channel is at the end of its range; widen the range, or "
+        "leave these rows out",
+        end=f"{end:g}",
+        rows=len(rows),
+        named=named,
+        change=f"{change:.2g}",
     )

@@ -15,6 +15,7 @@ from typing import ClassVar
 import numpy as np
 
 from estimator.forward import input_of, projected, slope
+from estimator.message import say
 from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
 
@@ -136,7 +137,13 @@ class Setting:
             case "history" | "nominal or history":
                 return True  # not of the session: judged where the history is
             case _:
-                raise ValueError(f"no session can provide {need!r}: causes may need {', '.join(sorted(NEEDS))}")
+                raise ValueError(
+                    say(
+                        "no session can provide {need}: causes may need {needs}",
+                        need=repr(need),
+                        needs=", ".join(sorted(NEEDS)),
+                    )
+                )
 
 
 @dataclass(frozen=True, eq=False)

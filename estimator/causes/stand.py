@@ -3,6 +3,7 @@
 import numpy as np
 
 from estimator.causes.contract import CommonCause, Setting
+from estimator.message import say
 from estimator.session import Array
 
 
@@ -14,7 +15,7 @@ class BetaPattern(CommonCause):
 
     def pattern(self, setting: Setting) -> Array:
         """(R, q) β error, rad per unit amplitude."""
-        raise TypeError(f"{self.identifier} states no pattern")
+        raise TypeError(say("{identifier} states no pattern", identifier=self.identifier))
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, q) m/s² (rad/s) per unit amplitude."""

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from estimator.causes.contract import Cause
+from estimator.message import joined, say
 
 
 class LeverArm(Cause):
@@ -29,12 +30,18 @@ class LeverArm(Cause):
 
     def lever_sentence(self, sensor: str, distance: str) -> str:
         """The sentence with the size: ``A2 stands 4.1 ± 0.4 cm from the turn axis and feels the turns.``"""
-        return f"{sensor} stands {distance} from the turn axis and feels the turns."
+        return say(
+            "{sensor} stands {distance} from the turn axis and feels the turns.", sensor=sensor, distance=distance
+        )
 
     def contradiction_sentence(self, sensor: str, distance: str) -> str:
         """The same where the file states positions, and the turns contradict that of this sensor."""
-        return f"{sensor} stands {distance} from where the file says."
+        return say("{sensor} stands {distance} from where the file says.", sensor=sensor, distance=distance)
 
     def separation_sentence(self, sensors: Sequence[str], distance: str) -> str:
         """The same where the turns cannot tell which of two sensors sits elsewhere."""
-        return f"{' and '.join(sensors)} do not stand to one another as the file says: one of them is {distance} off."
+        return say(
+            "{sensors} do not stand to one another as the file says: one of them is {distance} off.",
+            sensors=joined(" and ", sensors),
+            distance=distance,
+        )

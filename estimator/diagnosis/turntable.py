@@ -15,6 +15,7 @@ from estimator.causes.catalogue import UNEXPLAINED
 from estimator.causes.turntable import LeverArm as Cause
 from estimator.diagnosis.explanation.detection_limits import required
 from estimator.diagnosis.results import Diagnosis, Finding, Gain, Limit, Rival, Score, Separation, Structure
+from estimator.message import joined, say, say_count
 from estimator.results import ARCSEC, COVERAGE
 from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.significance import family_wise
@@ -114,7 +115,7 @@ def _strength(arm: LeverArm, model: str) -> float:
 
 
 def _separation(arm: LeverArm, rival: str) -> Separation:
-    now = _strength(arm, f"lever arm beside {rival}")
+    now = _strength(arm, say("lever arm beside {rival}", rival=rival))
     return Separation(CALLED[rival], (arm.sensor.name,), now, SEPARATING[rival], None)
 
 
@@ -157,19 +158,27 @@ def _limit(arms: LeverArms) -> Limit:
 
 def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -> Iterator[str]:
     if arms.upright:
-        points = "points" if len(arms.upright) == 1 else "point"
-        yield (
-            f"{' and '.join(arms.upright)} {points} along the turn axis: where it stands does not show. Nor does any "
-            "sensor's place along the axis."
+        yield say_count(
+            "{upright} points along the turn axis: where it stands does not show. Nor does any sensor's place along "
+            "the axis.",
+            "{upright} point along the turn axis: where they stand does not show. Nor does any sensor's place along "
+            "the axis.",
+            len(arms.upright),
+            upright=joined(" and ", arms.upright),
         )
     if arms.origin is not None:
         place, covariance = arms.origin
         length, sigma = float(np.hypot(*place)), float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
         if length > DECISIVE**0.5 * sigma:
             text = _centimetres(length, sigma)
-            yield f"The origin of the stated positions lies {text} from the turn axis, and that is taken off."
+            yield say(
+                "The origin of the stated positions lies {text} from the turn axis, and that is taken off.", text=text
+            )
     if arms.named:
-        yield f"Lever arms are part of every alignment's model. Without them {_error_without(without, result)}."
+        yield say(
+            "Lever arms are part of every alignment's model. Without them {without}.",
+            without=_error_without(without, result),
+        )
         yield ALIKE
 
 
@@ -178,7 +187,11 @@ def _error_without(without: AlignmentResult, result: AlignmentResult) -> str:
     moved = {name: _value(without, name) - _value(result, name) for name in ("nabla_x", "nabla_y", "E_xz", "E_yz")}
     zeros = max(abs(moved["nabla_x"]), abs(moved["nabla_y"])) / MICRO_G
     mounting = max(abs(moved["E_xz"]), abs(moved["E_yz"])) / ARCSEC
-    return f"a zero would be off by {zeros:.1f} µg and a mounting error by {mounting:.1f}″"
+    return say(
+        "a zero would be off by {zeros} µg and a mounting error by {mounting}″",
+        zeros=f"{zeros:.1f}",
+        mounting=f"{mounting:.1f}",
+    )
 
 
 def _value(result: AlignmentResult, name: str) -> float:

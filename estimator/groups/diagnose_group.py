@@ -24,6 +24,7 @@ from estimator.groups.separation import Separator
 from estimator.groups.session_statistics import statistics_of
 from estimator.groups.statistics import SessionStatistics
 from estimator.groups.terms import Library, learn, shown
+from estimator.message import joined, say
 from estimator.session import CALIBRATIONS, CalibrationSession
 
 
@@ -58,7 +59,7 @@ def diagnose_statistics(
     ``unexplained``: only the readings tell whether something outside the catalogue fits better.
     """
     if level not in LEVELS:
-        raise ValueError(f"a group is one of {', '.join(LEVELS)}, not {level}")
+        raise ValueError(say("a group is one of {levels}, not {level}", levels=joined(", ", LEVELS), level=level))
     if not statistics:
         raise ValueError("a group needs a session that calibrates a block")
     layout = Layout.of(statistics, level)
@@ -117,11 +118,11 @@ def merged(found: Sequence[GroupFinding]) -> list[GroupFinding]:
     for f in found:
         dates = tuple((s.started_at, s.unit) for s in f.sessions)
         key = (f.cause, f.level, f.subject, f.kind, f.form, f.since, f.shape, dates)
-        kept[key] = f if key not in kept else joined(kept[key], f)
+        kept[key] = f if key not in kept else as_one(kept[key], f)
     return list(kept.values())
 
 
-def joined(a: GroupFinding, b: GroupFinding) -> GroupFinding:
+def as_one(a: GroupFinding, b: GroupFinding) -> GroupFinding:
     """Two findings of one cause as one."""
     return replace(
         a,
@@ -137,17 +138,36 @@ def joined(a: GroupFinding, b: GroupFinding) -> GroupFinding:
 
 def notes(selection: Selection, each: Sequence[Estimated]) -> list[str]:
     """What a reader should know beside the findings."""
-    found = []
+    found: list[str] = []
     for f, h in selection.misfits:
-        where = f" on {f.sensor}" if f.sensor else ""
+        where = say(" on {sensor}", sensor=f.sensor) if f.sensor else ""
         if h.shape is None:
-            found.append(f"{f.cause}{where} is near, but {' + '.join(h.words)} fits better: it has no name")
+            found.append(
+                say(
+                    "{cause}{where} is near, but {words} fits better: it has no name",
+                    cause=f.cause,
+                    where=where,
+                    words=joined(" + ", h.words),
+                )
+            )
         else:
-            found.append(f"{f.cause}{where} is near, but leaves harmonic {h.shape:g} of β: it does not fit")
+            found.append(
+                say(
+                    "{cause}{where} is near, but leaves harmonic {shape} of β: it does not fit",
+                    cause=f.cause,
+                    where=where,
+                    shape=f"{h.shape:g}",
+                )
+            )
     alone = [selection.layout.parts[k].statistics.started_at for k in sorted({k for k, _ in selection.own})]
     if alone:
         dates = dict.fromkeys(date or "one without a date" for date in alone)
-        found.append(f"taken out of single sessions, which show it by themselves: {', '.join(dates)}")
+        found.append(
+            say("taken out of single sessions, which show it by themselves: {dates}", dates=joined(", ", dates))
+        )
     larger = {p.statistics.unit: s for p, s in zip(selection.layout.parts, selection.scale, strict=True) if s > 1.5}
-    found += [f"{u}: the sessions scatter {np.sqrt(s):.1f} times as much as stated" for u, s in larger.items()]
+    found += [
+        say("{u}: the sessions scatter {s} times as much as stated", u=u, s=f"{np.sqrt(s):.1f}")
+        for u, s in larger.items()
+    ]
     return found

@@ -16,6 +16,7 @@ from estimator.groups.results import GroupFinding, GroupStructure, Rival, Sessio
 from estimator.groups.selection import Found, Selection, concerns
 from estimator.groups.weighing import Scale
 from estimator.least_squares import inverse
+from estimator.message import joined, say
 from estimator.session import GYROSCOPE, Array
 
 
@@ -189,7 +190,7 @@ def words_of(h: Hypothesis) -> str:
     """Where a hypothesis acts, for people."""
     every = {"accelerometer": "every accelerometer", "gyroscope": "every gyro"}
     where = every.get(h.kind, "every sensor") if h.sensor == EVERY else h.sensor
-    return f"{where} of type {h.subject}" if h.level == TYPE else where
+    return say("{where} of type {subject}", where=where, subject=h.subject) if h.level == TYPE else where
 
 
 def rival_of(near_by: Near, measurement: str, sessions: int | None) -> Rival:
@@ -219,7 +220,11 @@ def structures(selection: Selection) -> tuple[GroupStructure, ...]:
     """Structure that the sessions share and no cause explains, in words."""
     found = []
     for h, statistic in selection.structures:
-        what = f"harmonic {h.shape:g} of β" if h.shape is not None else " + ".join(h.words)
-        where = f"{words_of(h)}: {what}" if h.sensor else f"the applied vector, common to all sensors: {what}"
+        what = say("harmonic {shape} of β", shape=f"{h.shape:g}") if h.shape is not None else joined(" + ", h.words)
+        where = (
+            say("{h}: {what}", h=words_of(h), what=what)
+            if h.sensor
+            else say("the applied vector, common to all sensors: {what}", what=what)
+        )
         found.append(GroupStructure(where, h.subject, (h.sensor,) if h.sensor else (), float(np.sqrt(statistic))))
     return tuple(found)

@@ -19,6 +19,7 @@ from estimator.causes.lag import lagging
 from estimator.causes.sensor import across
 from estimator.causes.stand import harmonic
 from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.message import say
 from estimator.session import Array
 
 WAVES = 5
@@ -148,7 +149,12 @@ def _of_vector(setting: Setting) -> Iterator[Term]:
         for f in products(list(factors_of_session(setting))):
             change = turn[..., None] * f.values[:, None, None, :]
             unit = f"rad/({f.unit})" if f.unit else "rad"
-            yield Term(tuple(f"{name}: {w}" for w in f.words), unit, variable_of(f), setting.through(change))
+            yield Term(
+                tuple(say("{name}: {w}", name=name, w=w) for w in f.words),
+                unit,
+                variable_of(f),
+                setting.through(change),
+            )
 
 
 def variable_of(factor: Factor) -> str:

@@ -30,6 +30,7 @@ from estimator.groups.candidates import columns_of
 from estimator.groups.scores import beside, eigen_scores, shrinkage, starts_of
 from estimator.groups.statistics import Block, SessionStatistics, quantised, shared
 from estimator.least_squares import orthonormal
+from estimator.message import say
 from estimator.moments import in_utc
 from estimator.session import Array, CalibrationSession
 from estimator.significance import p_value
@@ -95,7 +96,7 @@ def put_right(session: CalibrationSession) -> tuple[Baseline, tuple[str, ...]]:
     refuse_silent(rows)
     clips, whole = unclipped(rows, CATALOGUE)
     errors, right = undo_record_errors(baseline_of(whole), (), CATALOGUE)
-    words = [f"{session.sensors[c.sensor].name} clipped" for c in clips]
+    words: list[str] = [say("{name} clipped", name=session.sensors[c.sensor].name) for c in clips]
     words += [e.undone.cause.identifier for e in errors]
     return with_fitted_flip(right), tuple(words)
 
@@ -144,7 +145,7 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
         whole=of_sensors(seen, seen.z**2),
         whole_freedom=of_sensors(seen, seen.freedom),
         noise_factor=factor,
-        put_right=words + tuple(f"reading {j + 1} left out" for j in seen.outliers),
+        put_right=words + tuple(say("reading {j} left out", j=j + 1) for j in seen.outliers),
     )
 
 

@@ -27,6 +27,7 @@ from estimator.groups.results import EmpiricalTerm
 from estimator.groups.statistics import HARMONIC
 from estimator.least_squares import given as conditional
 from estimator.least_squares import inverse, orthonormal
+from estimator.message import joined
 from estimator.session import Array, CalibrationSession
 
 HELD_OUT = 3
@@ -233,7 +234,7 @@ def equation(terms: Learned, units: Sequence[str]) -> str:
     words = [w for key in terms.keys for w in key]
     sigma = np.sqrt(np.diagonal(terms.covariance))
     parts = [f"({v:.3g} ± {s:.1g}) {u}·{w}" for v, s, u, w in zip(terms.value, sigma, units, words, strict=True)]
-    return " + ".join(parts)
+    return joined(" + ", parts)
 
 
 def nearest_cause(terms: Learned, whole: Sequence[Library]) -> tuple[str, float]:

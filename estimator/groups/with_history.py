@@ -29,6 +29,7 @@ from estimator.groups.fixed import added_by, fixed, taken_out
 from estimator.groups.lasting import ENDED, SURE, Lasting, lasting
 from estimator.groups.session_statistics import kept
 from estimator.groups.statistics import SessionStatistics
+from estimator.message import say
 from estimator.session import CALIBRATIONS, Array, CalibrationSession
 
 MANY = 16
@@ -158,5 +159,10 @@ def finding_of(one: Lasting) -> Finding:
 def words_of_end(one: Lasting) -> str:
     """That the session lacks what the earlier ones have."""
     known = cause(one.finding.cause).name.capitalize()
-    where = f" on {one.finding.sensors[0]}" if one.finding.sensors else ""
-    return f"{known}{where}: {one.sessions - 1} earlier sessions show it together, and this one does not have it."
+    where = say(" on {sensors}", sensors=one.finding.sensors[0]) if one.finding.sensors else ""
+    return say(
+        "{known}{where}: {sessions} earlier sessions show it together, and this one does not have it.",
+        known=known,
+        where=where,
+        sessions=one.sessions - 1,
+    )

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from estimator.errors import FormatError, Problem, ScheduleError
 from estimator.long_logs.tally import Tally, check_alike
+from estimator.message import say
 from estimator.reading.problems import Problems
 from estimator.reading.schedule import check_schedule
 from estimator.rest_noise import block_count
@@ -65,7 +66,11 @@ def labelled_rests(log: LongLog, *, positions: bool) -> Intervals:
 
 def too_many(count: int) -> str:
     """What is wrong with labels that change all the time."""
-    return f"changes {count} times or more; a log of {MOST_RESTS} positions can be averaged, so split it"
+    return say(
+        "changes {count} times or more; a log of {most_rests} positions can be averaged, so split it",
+        count=count,
+        most_rests=MOST_RESTS,
+    )
 
 
 Mask = NDArray[np.bool_]
@@ -106,7 +111,9 @@ def _rows(log: LongLog) -> Iterator[tuple[int, CalibrationSession]]:
         check_alike(head, part, at)
         if part.time is not None:
             if part.time[0] < last:
-                text = f"{part.time[0]:.10g} is earlier than the row before; keep the order measured"
+                text = say(
+                    "{time} is earlier than the row before; keep the order measured", time=f"{part.time[0]:.10g}"
+                )
                 raise FormatError([Problem("time_s", text, at + 1)])
             last = part.time[-1]
         yield at, part

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.errors import FormatError, Problem
+from estimator.message import say
 from estimator.rest_noise import block_count, energies_of, mean_variance
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 from estimator.static import PIECES, Intervals, contiguous, errors_of_kinds, far_turn, long_enough_to_move, turned
@@ -173,5 +174,7 @@ def check_alike(head: CalibrationSession, part: CalibrationSession, at: int) -> 
     """FormatError where a column is empty in some parts only."""
     for name in (*SET, *AVERAGED):
         if (getattr(head, name) is None) != (getattr(part, name) is None):
-            rows = f"rows {at + 1} to {at + len(part.readings)}"
-            raise FormatError([Problem(name, f"is stated in some parts of the log and not in {rows}, or only there")])
+            rows = say("rows {at} to {at2}", at=at + 1, at2=at + len(part.readings))
+            raise FormatError(
+                [Problem(name, say("is stated in some parts of the log and not in {rows}, or only there", rows=rows))]
+            )

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
+from estimator.message import joined, say
 from estimator.parity.ledger import Blocks, Ledger
 from estimator.parity.reference import Reference
 from estimator.session import Array
@@ -190,23 +191,48 @@ def grouped(blocks: Blocks, still: Mask) -> NDArray[np.intp]:
 def too_short(total: int, ledger: Ledger) -> str:
     """What is missing."""
     if ledger.averaged:
-        return f"{few(total, 'row')} to know their noise; give {FEWEST_GROUPS} or more"
+        return say(
+            "{total} to know their noise; give {fewest_groups} or more",
+            total=few(total, "row"),
+            fewest_groups=FEWEST_GROUPS,
+        )
     held = counted(total, "block")
-    return f"the recording holds {held} of one second; parity needs {FEWEST_GROUPS} or more: record longer"
+    return say(
+        "the recording holds {held} of one second; parity needs {fewest_groups} or more: record longer",
+        held=held,
+        fewest_groups=FEWEST_GROUPS,
+    )
 
 
 def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
     """Which channels."""
-    listed = ", ".join(saturated)
-    return (
-        f"{listed} stood at the end of the range in {total - clean} of {total} blocks; nothing can be judged from "
-        "readings that are cut off: repair the channel, or record with less motion or a wider range"
+    listed = joined(", ", saturated)
+    return say(
+        "{listed} stood at the end of the range in {total} of {total2} blocks; nothing can be "
+        "judged from readings that are cut off: repair the channel, or record with less motion "
+        "or a wider range",
+        listed=listed,
+        total=total - clean,
+        total2=total,
     )
 
 
 def never_still(used: int, total: int) -> str:
     """Nothing at rest."""
     return (
-        f"only {used} of {total} blocks {'is' if used == 1 else 'are'} at rest, {FEWEST_GROUPS} are needed; let the "
-        "block stand still for a while, or judge it in motion if its sensors sit in one point"
+        say(
+            "only {used} of {total} blocks is at rest, {fewest_groups} are needed; let the block "
+            "stand still for a while, or judge it in motion if its sensors sit in one point",
+            used=used,
+            total=total,
+            fewest_groups=FEWEST_GROUPS,
+        )
+        if used == 1
+        else say(
+            "only {used} of {total} blocks are at rest, {fewest_groups} are needed; let the block "
+            "stand still for a while, or judge it in motion if its sensors sit in one point",
+            used=used,
+            total=total,
+            fewest_groups=FEWEST_GROUPS,
+        )
     )

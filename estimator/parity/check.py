@@ -6,6 +6,7 @@ import numpy as np
 
 from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
+from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, Selection, select
 from estimator.parity.freed import freed
 from estimator.parity.hypotheses import Evidence
@@ -83,7 +84,9 @@ class ParityAccumulator:
         false_alarm : chance that an unchanged block is called changed.
         """
         if motion not in MOTIONS:
-            raise ValueError(f"motion is {motion!r}; must be one of {', '.join(MOTIONS)}")
+            raise ValueError(
+                say("motion is {motion}; must be one of {motions}", motion=repr(motion), motions=joined(", ", MOTIONS))
+            )
         selection = select(self.ledger, motion, self._norm, self._rate)
         allowed = nuisance_of(
             selection.blocks, selection.rest, self.reference, self._norm, self._rate, arms=motion != ANY

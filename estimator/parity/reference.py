@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.linalg import null_space
 
 from estimator.errors import Problem, ScheduleError
+from estimator.message import say, say_count
 from estimator.parameters import ELEMENTS
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, Sensor
@@ -88,7 +89,10 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
     members = [(k, s) for k, s in enumerate(sensors) if s.kind == kind]
     known = {s.name: s for s in calibration.sensors if s.kind == kind}
     unknown = [
-        Problem(f"sensors[{k + 1}].name", f"{s.name} is not in the reference calibration; name sensors as there")
+        Problem(
+            f"sensors[{k + 1}].name",
+            say("{name} is not in the reference calibration; name sensors as there", name=s.name),
+        )
         for k, s in members
         if s.name not in known
     ]
@@ -103,13 +107,20 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
 def too_few(used: int, present: int, kind: str) -> str:
     """Why there is no parity."""
     if present >= FEWEST:
-        return (
-            f"the reference calibration knows scale, bias and axis of {used} of {present} {kind}s; parity needs "
-            f"{FEWEST}: calibrate the block first in a programme that shows all three"
+        return say(
+            "the reference calibration knows scale, bias and axis of {used} of {present} {kind}s; "
+            "parity needs {fewest}: calibrate the block first in a programme that shows all three",
+            used=used,
+            present=present,
+            kind=kind,
+            fewest=FEWEST,
         )
-    return (
-        f"{present} {kind}{'' if present == 1 else 's'} {'leaves' if present == 1 else 'leave'} no redundancy; "
-        f"parity needs {FEWEST} or more, otherwise calibrate instead"
+    return say_count(
+        "{n} {kind} leaves no redundancy; parity needs {fewest} or more, otherwise calibrate instead",
+        "{n} {kind}s leave no redundancy; parity needs {fewest} or more, otherwise calibrate instead",
+        present,
+        kind=kind,
+        fewest=FEWEST,
     )
 
 

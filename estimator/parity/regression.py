@@ -20,6 +20,7 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.errors import Problem, ScheduleError
+from estimator.message import say, say_count
 from estimator.parity.blocks import FEWEST_GROUPS, Selection
 from estimator.parity.reference import Reference
 from estimator.session import Array
@@ -101,8 +102,14 @@ def regress(selection: Selection, reference: Reference, norm: float | None, *, s
     """
     groups = selection.groups
     if groups < FEWEST_GROUPS:
-        held = f"{groups} separate stretch{'' if groups == 1 else 'es'}"
-        raise ScheduleError([Problem("table", f"{held}; {FEWEST_GROUPS} or more are needed")])
+        held = say_count("{n} separate stretch", "{n} separate stretches", groups)
+        raise ScheduleError(
+            [
+                Problem(
+                    "table", say("{held}; {fewest_groups} or more are needed", held=held, fewest_groups=FEWEST_GROUPS)
+                )
+            ]
+        )
     n = reference.vector(selection.blocks.mean)
     w = selection.blocks.samples / selection.blocks.samples.mean()
     size = norm or max(float(np.sqrt((n**2).sum(axis=1).mean())), np.finfo(float).tiny)

@@ -13,6 +13,7 @@ from estimator.calibration.calibrate import averaged
 from estimator.codec import Document, Form
 from estimator.coverage import finite
 from estimator.errors import Problem, ScheduleError
+from estimator.message import say
 from estimator.planning.expected import expected_sigmas, head_kind, input_noise, planned
 from estimator.planning.orientations import rank_of_orientations
 from estimator.planning.results import Request
@@ -137,7 +138,11 @@ def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple
 
 def _open(expected: tuple[Expected, ...]) -> tuple[str, ...]:
     """``A1 scale``: what is not observed yet."""
-    return tuple(f"{estimate.sensor} {estimate.parameter}" for estimate in expected if estimate.so_far is None)
+    return tuple(
+        say("{sensor} {parameter}", sensor=estimate.sensor, parameter=estimate.parameter)
+        for estimate in expected
+        if estimate.so_far is None
+    )
 
 
 def pointing(rows: CalibrationSession) -> Array:

@@ -17,6 +17,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Limit
 from estimator.diagnosis.selection.start import begin
 from estimator.errors import Problem, ScheduleError
+from estimator.message import say
 from estimator.planning.elevation import conditioning, gyro_errors, optimal_elevation
 from estimator.planning.expected import (
     expected_sigmas,
@@ -64,7 +65,13 @@ def plan(like: CalibrationSession, request: Request | None = None, *, sigma: Arr
     ScheduleError : ``like`` is not on a two-axis stand.
     """
     if like.programme != TWO_AXIS_STAND:
-        raise ScheduleError([Problem("programme", f"{like.programme} has no stand; plan it by its orientations")])
+        raise ScheduleError(
+            [
+                Problem(
+                    "programme", say("{programme} has no stand; plan it by its orientations", programme=like.programme)
+                )
+            ]
+        )
     request = request or Request()
     sigma = input_noise(like) if sigma is None else sigma
     angle = best_elevation(like, request, sigma) if request.elevation is None else request.elevation

@@ -11,6 +11,7 @@ from types import NoneType
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.message import joined, say
 from estimator.reading.bounds import COMPONENT, WITHIN, Interval
 from estimator.reading.fields import NUMBERS, Fields, number_in
 from estimator.reading.problems import Problems, shown
@@ -62,8 +63,13 @@ class Columns:
             return np.array([index[cell] for cell in cells], dtype=np.int64)  # type: ignore[index]
         except (KeyError, TypeError):
             bad = [j for j, cell in enumerate(cells) if not (isinstance(cell, str) and cell in index)]
-            message = f"give {' or '.join(allowed)}"
-            self.problems.add_rows(name, bad, lambda j: f"{_described(cells[j])}; {message}", of=self.rows)
+            message = say("give {allowed}", allowed=joined(" or ", allowed))
+            self.problems.add_rows(
+                name,
+                bad,
+                lambda j: say("{cells}; {message}", cells=_described(cells[j]), message=message),
+                of=self.rows,
+            )
             return np.zeros(self.rows, dtype=np.int64)
 
     def labels(self, name: str) -> NDArray[np.int64]:
@@ -73,7 +79,12 @@ class Columns:
         cells = [_label(cell) for cell in self.values[name]]
         bad = [j for j, cell in enumerate(cells) if isinstance(cell, _Bad)]
         message = "must be a whole number from 0, a name, or -1 or empty where the row belongs to no position"
-        self.problems.add_rows(name, bad, lambda j: f"{_described(self.values[name][j])}; {message}", of=self.rows)
+        self.problems.add_rows(
+            name,
+            bad,
+            lambda j: say("{j}; {message}", j=_described(self.values[name][j]), message=message),
+            of=self.rows,
+        )
         if bad:
             return np.arange(self.rows)
         if not any(isinstance(cell, str) for cell in cells):
@@ -96,11 +107,11 @@ def vector(fields: Fields, key: str, advice: str, within: Interval = COMPONENT) 
     value = fields.values.get(key)
     stand_in = np.full(3, np.nan)
     if value is None:
-        fields.add(key, f"missing; {advice}")
+        fields.add(key, say("missing; {advice}", advice=advice))
         return stand_in
     components = value.tolist() if isinstance(value, np.ndarray) else value
     if not isinstance(components, list | tuple) or len(components) != 3:
-        fields.add(key, f"is {shown(components)}; {advice}")
+        fields.add(key, say("is {components}; {advice}", components=shown(components), advice=advice))
         return stand_in
     read = [number_in(component, within) for component in components]
     for number, (_, fault) in enumerate(read, start=1):
@@ -136,7 +147,7 @@ def _cell_fault(cell: object, within: Interval, holes: bool) -> str:
 
 
 def _described(cell: object) -> str:
-    return "is missing" if cell is None else f"is {shown(cell)}"
+    return "is missing" if cell is None else say("is {cell}", cell=shown(cell))
 
 
 def _numbered(cells: Column) -> NDArray[np.int64] | None:

@@ -11,6 +11,7 @@ from itertools import takewhile
 
 import numpy as np
 
+from estimator.message import say
 from estimator.reading.columns import Column
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems, shown
@@ -32,7 +33,7 @@ def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict
     metadata = "\n".join(line[1:] for line in leading)
     if not metadata.strip():
         if sidecar is None:
-            raise problems.fail("file", f"is a CSV table without metadata; {ADVICE}")
+            raise problems.fail("file", say("is a CSV table without metadata; {advice}", advice=ADVICE))
         metadata = sidecar
     document = parse_json(metadata, problems)
     if "table" in document:
@@ -81,7 +82,13 @@ def _parse_table(text: str, start: int, problems: Problems) -> dict[str, Column]
         rows = [row if len(row) == len(header) else (row + [""] * len(header))[: len(header)] for row in rows]
         for k, cells in enumerate(parts):
             cells.append(_cells([row[k] for row in rows]))
-    problems.add_rows("table", uneven, lambda j: f"has {counted(uneven[j], 'cell')} where the header has {len(header)}")
+    problems.add_rows(
+        "table",
+        uneven,
+        lambda j: say(
+            "has {uneven} where the header has {header}", uneven=counted(uneven[j], "cell"), header=len(header)
+        ),
+    )
     return named_columns(header, [_joined(cells) for cells in parts], problems)
 
 
@@ -90,7 +97,7 @@ def _rows(lines: list[str], separator: str, problems: Problems) -> list[list[str
     try:
         rows = list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
-        raise problems.fail("file", f"is not a readable CSV table: {error}") from error
+        raise problems.fail("file", say("is not a readable CSV table: {error}", error=error)) from error
     if len(rows) != len(lines) or lines[-1].count('"') % 2:
         raise problems.fail("table", "a cell holds a line break, or a quote is not closed; keep each row in one line")
     return rows
@@ -114,11 +121,13 @@ def named_columns(header: list[str], columns: list[Column], problems: Problems) 
     table: dict[str, Column] = {}
     for number, (name, cells) in enumerate(zip(map(str.strip, header), columns, strict=True), start=1):
         if name in table:
-            problems.add(name, f"is the name of two columns of the header, {shown(name)}; names must differ")
+            problems.add(
+                name, say("is the name of two columns of the header, {name}; names must differ", name=shown(name))
+            )
         elif name:
             table[name] = cells
         elif any(cell is not None for cell in cells):
-            problems.add("table", f"column {number} has no name in the header; name it")
+            problems.add("table", say("column {number} has no name in the header; name it", number=number))
     return table
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.message import joined, say
 from estimator.reading.bounds import Interval
 from estimator.reading.problems import Problems, shown
 
@@ -43,11 +44,11 @@ class Fields:
     def text(self, key: str, advice: str) -> str:
         """A required name: one line, not empty."""
         if not self.has(key):
-            self.add(key, f"missing; {advice}")
+            self.add(key, say("missing; {advice}", advice=advice))
             return ""
         text = self._text(key, LONGEST_NAME)
         if text == "":
-            self.add(key, f"empty; {advice}")
+            self.add(key, say("empty; {advice}", advice=advice))
         elif text is not None and not text.isprintable():
             self.add(key, "holds line breaks or characters that cannot be shown; write it in one plain line")
         return text or ""
@@ -61,14 +62,14 @@ class Fields:
         value = self.values.get(key)
         if isinstance(value, str) and value in allowed:
             return value
-        problem = f"{shown(value)} is unknown" if self.has(key) else "missing"
-        self.add(key, f"{problem}; give one of {', '.join(allowed)}")
+        problem = say("{value} is unknown", value=shown(value)) if self.has(key) else "missing"
+        self.add(key, say("{problem}; give one of {allowed}", problem=problem, allowed=joined(", ", allowed)))
         return allowed[0]
 
     def number(self, key: str, within: Interval, advice: str) -> float:
         """A required number; NaN stands in for a bad one."""
         if not self.has(key):
-            self.add(key, f"missing; {advice}")
+            self.add(key, say("missing; {advice}", advice=advice))
             return math.nan
         value = self.optional_number(key, within)
         return math.nan if value is None else value
@@ -88,16 +89,21 @@ class Fields:
         if isinstance(value, Mapping):
             return Fields(value, self.place(key), self.problems)
         if value is not None:
-            self.add(key, f"is {shown(value)}; must be an object in braces")
+            self.add(key, say("is {value}; must be an object in braces", value=shown(value)))
         return None
 
     def _text(self, key: str, longest: int) -> str | None:
         value = self.values[key]
         if not isinstance(value, str):
-            self.add(key, f"is {shown(value)}; must be text in quotes")
+            self.add(key, say("is {value}; must be text in quotes", value=shown(value)))
             return None
         if UNSTORABLE.search(value) or len(value) > longest:
-            self.add(key, f"must be at most {longest} characters of ordinary text, without control characters")
+            self.add(
+                key,
+                say(
+                    "must be at most {longest} characters of ordinary text, without control characters", longest=longest
+                ),
+            )
             return None
         return value.strip()
 
@@ -105,8 +111,10 @@ class Fields:
 def number_in(value: object, within: Interval) -> tuple[float | None, str]:
     """The value as a number of the interval, or None and what is wrong with it."""
     if isinstance(value, str):
-        return None, f"is the text {shown(value)}; write a number, without quotes and with a decimal point"
+        return None, say(
+            "is the text {value}; write a number, without quotes and with a decimal point", value=shown(value)
+        )
     if isinstance(value, bool) or not isinstance(value, NUMBERS):
-        return None, f"is {shown(value)}; must be a number"
+        return None, say("is {value}; must be a number", value=shown(value))
     number = value if isinstance(value, int | float) else float(value)
     return (float(number), "") if number in within else (None, within.fault(number))

@@ -3,6 +3,7 @@
 import json
 import re
 
+from estimator.message import say
 from estimator.reading.problems import Problems, cut
 
 MOST_LISTS = 100_000
@@ -27,8 +28,10 @@ def parse_json(text: str, problems: Problems) -> dict[str, object]:
     try:
         document = json.loads(text, object_pairs_hook=as_object)
     except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise problems.fail("file", f"is not valid JSON at {place}: {error.msg}; it may be cut short") from error
+        place = say("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno)
+        raise problems.fail(
+            "file", say("is not valid JSON at {place}: {msg}; it may be cut short", place=place, msg=error.msg)
+        ) from error
     except RecursionError as error:
         raise problems.fail("file", "is nested far deeper than any session; check what was written") from error
     except ValueError as error:
@@ -44,7 +47,7 @@ def _check_extent(text: str, problems: Problems) -> None:
     """Raises FormatError where the text would become too much in memory, before it becomes that."""
     most = problems.most
     if text.count(",") > most.cells + FURTHER:
-        raise problems.fail("table", f"has more than {most.cells} cells; average or split it")
+        raise problems.fail("table", say("has more than {cells} cells; average or split it", cells=most.cells))
     depth = lists = 0
     for match in STRUCTURE.finditer(text):
         start = text[match.start()]
@@ -53,9 +56,14 @@ def _check_extent(text: str, problems: Problems) -> None:
         elif start != '"':
             depth, lists = depth + 1, lists + 1
             if depth > most.nesting:
-                raise problems.fail("file", f"is nested deeper than {most.nesting} levels; check what was written")
+                raise problems.fail(
+                    "file", say("is nested deeper than {nesting} levels; check what was written", nesting=most.nesting)
+                )
             if lists > MOST_LISTS:
-                raise problems.fail("file", f"holds more than {MOST_LISTS} lists; give each column as one list")
+                raise problems.fail(
+                    "file",
+                    say("holds more than {most_lists} lists; give each column as one list", most_lists=MOST_LISTS),
+                )
 
 
 def _repeated(keys: list[str]) -> list[str]:

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from itertools import islice
 
+from estimator.message import joined, say
 from estimator.reading.fields import Fields
 
 FORMAT = "imu-session/1"
@@ -54,9 +55,9 @@ def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
     """Record unknown keys that look like known ones."""
     for key in islice((str(key) for key in fields.values if key not in known), UNKNOWN_LOOKED_AT):
         if meant := meant_key(key, known):
-            fields.add(key, f"is not a key of {fields.path or 'the file'}; {meant}")
+            fields.add(key, say("is not a key of {path}; {meant}", path=fields.path or "the file", meant=meant))
         elif key in HOME and HOME[key] != fields.path:
-            fields.add(key, f"stands in the wrong place; it belongs in {HOME[key]}")
+            fields.add(key, say("stands in the wrong place; it belongs in {home}", home=HOME[key]))
 
 
 def meant_key(key: str, known: Iterable[str]) -> str | None:
@@ -66,9 +67,9 @@ def meant_key(key: str, known: Iterable[str]) -> str | None:
     plain = key.strip().lower().replace("-", "_").replace(" ", "_")
     in_other_unit = [name for name in known if _same_but_unit(plain, name)]
     if in_other_unit:
-        return f"give the value as {' or '.join(in_other_unit)}, in that unit"
+        return say("give the value as {in_other_unit}, in that unit", in_other_unit=joined(" or ", in_other_unit))
     close = get_close_matches(plain, list(known), n=1, cutoff=ALIKE)
-    return f"did you mean {close[0]}? Otherwise give it a name of its own" if close else None
+    return say("did you mean {close}? Otherwise give it a name of its own", close=close[0]) if close else None
 
 
 def _same_but_unit(key: str, known: str) -> bool:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from estimator.errors import FormatError, Problem, ScheduleError
+from estimator.message import say, say_count
 
 
 @dataclass(frozen=True)
@@ -61,15 +62,19 @@ class Problems:
         """Record the same kind of fault in several rows, ``of`` so many; they count from 0 here, as for the message."""
         faulty = list(rows)
         if of is not None and len(faulty) == of > ROWS_SHOWN:
-            self.add(field, f"all {of} rows have such a fault; the first {message(0)}")
+            self.add(field, say("all {of} rows have such a fault; the first {message}", of=of, message=message(0)))
             return
         for index in faulty[:ROWS_SHOWN]:
             self.add(field, message(index), index + 1)
         if more := len(faulty[ROWS_SHOWN:]):
             self.add(
                 field,
-                f"{more} more row{'' if more == 1 else 's'} {'has' if more == 1 else 'have'} such a fault, "
-                f"up to row {faulty[-1] + 1}",
+                say_count(
+                    "{n} more row has such a fault, up to row {faulty}",
+                    "{n} more rows have such a fault, up to row {faulty}",
+                    more,
+                    faulty=faulty[-1] + 1,
+                ),
             )
 
     def fail(self, field: str, message: str) -> FormatError:
@@ -87,14 +92,14 @@ class Problems:
             self._unsaid += 1
             return
         if row is not None and self.lines_before_table is not None:
-            message = f"{message} (line {row + self.lines_before_table} of the file)"
+            message = say("{message} (line {row} of the file)", message=message, row=row + self.lines_before_table)
         if self._where is not None and (place := self._where(field, row)):
-            message = f"{message} ({place})"
+            message = say("{message} ({place})", message=message, place=place)
         self._found.append(Problem(printable(field), printable(message), row))
 
     def _all(self) -> list[Problem]:
         unsaid = self._unsaid
-        more = [Problem("file", f"{unsaid} more problem{'' if unsaid == 1 else 's'}")] if unsaid else []
+        more = [Problem("file", say_count("{n} more problem", "{n} more problems", unsaid))] if unsaid else []
         return self._found + more
 
 
@@ -114,11 +119,11 @@ def shown(value: object) -> str:
         case str():
             return f"'{cut(value)}'"
         case int() if value.bit_length() > 100:
-            return f"an integer of {value.bit_length()} bits"
+            return say("an integer of {value} bits", value=value.bit_length())
         case int() | float():
             return f"{value:.10g}" if isinstance(value, float) else str(value)
         case list() | tuple():
-            return f"a list of {len(value)}"
+            return say("a list of {value}", value=len(value))
         case dict():
             return "an object"
         case _:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from estimator.message import say
 from estimator.reading.problems import Problems
 from estimator.reading.table import Table
 from estimator.session import (
@@ -38,9 +39,12 @@ def _check_turning(programme: str, table: Rows, kinds: set[str], raw: bool, prob
     """A time series on a turntable: it needs times, and the sensors that the programme works with."""
     for kind in NEEDED_KINDS[programme]:
         if kind not in kinds:
-            problems.add("sensors", f"none of kind {kind}; {programme} needs them")
+            problems.add("sensors", say("none of kind {kind}; {programme} needs them", kind=kind, programme=programme))
     if table.time is None and not raw:
-        problems.add("time_s", f"the column is missing; {programme} needs it, or sample_rate_hz for a raw log")
+        problems.add(
+            "time_s",
+            say("the column is missing; {programme} needs it, or sample_rate_hz for a raw log", programme=programme),
+        )
 
 
 def _check_beta(table: Rows, problems: Problems) -> None:
@@ -55,7 +59,11 @@ def _check_positions(table: Rows, raw: bool, problems: Problems) -> None:
         labels = np.unique(table.position[table.position >= 0])
         if labels.size < FEWEST_POSITIONS:
             problem = "a single position" if labels.size else "no position"
-            problems.add_to_schedule("position", f"the rows belong to {problem}; a calibration needs several")
+            problems.add_to_schedule(
+                "position", say("the rows belong to {problem}; a calibration needs several", problem=problem)
+            )
     elif len(table.readings) < FEWEST_POSITIONS:
         needs = "the samples of a whole log" if raw else "several orientations"
-        problems.add_to_schedule("table", f"has a single row, a single position; a calibration needs {needs}")
+        problems.add_to_schedule(
+            "table", say("has a single row, a single position; a calibration needs {needs}", needs=needs)
+        )

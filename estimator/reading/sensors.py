@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from estimator.message import say
 from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import vector
 from estimator.reading.fields import Fields
@@ -30,18 +31,22 @@ def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:
     """The declared sensors; records every fault of the list and of each sensor."""
     entries = document.values.get("sensors")
     if not isinstance(entries, list | tuple):
-        problem = "missing" if entries is None else f"is {shown(entries)}"
-        document.add("sensors", f"{problem}; give a list with one object per sensor")
+        problem = "missing" if entries is None else say("is {entries}", entries=shown(entries))
+        document.add("sensors", say("{problem}; give a list with one object per sensor", problem=problem))
         return ()
     if len(entries) > MOST:
-        document.add("sensors", f"holds {len(entries)} sensors; a block has at most {MOST}")
+        document.add(
+            "sensors", say("holds {entries} sensors; a block has at most {most}", entries=len(entries), most=MOST)
+        )
         return ()
     sensors = []
     for number, entry in enumerate(entries, start=1):
         if isinstance(entry, dict):
             sensors.append(_read_sensor(Fields(entry, f"sensors[{number}]", document.problems), block))
         else:
-            document.problems.add(f"sensors[{number}]", f"is {shown(entry)}; must be an object in braces")
+            document.problems.add(
+                f"sensors[{number}]", say("is {entry}; must be an object in braces", entry=shown(entry))
+            )
     _check_names(sensors, document.problems)
     _check_axes(sensors, block, document.problems)
     return tuple(sensors)
@@ -82,7 +87,10 @@ def _read_axis(entry: Fields) -> Array:
     if length == 0:
         entry.add("nominal_axis", "has length zero; give a unit vector")
     elif abs(length - 1) > LENGTH_TOLERANCE:
-        entry.add("nominal_axis", f"has length {length:.6g}; must be a unit vector, so divide it by its length")
+        entry.add(
+            "nominal_axis",
+            say("has length {length}; must be a unit vector, so divide it by its length", length=f"{length:.6g}"),
+        )
     return axis / length if length else axis
 
 
@@ -97,7 +105,10 @@ def _read_repeatability(entry: Fields, kind: str) -> float:
     field = REPEATABILITY[kind]
     for other, key in REPEATABILITY.items():
         if other != kind and entry.has(key):
-            entry.add(key, f"is for a {other}; this sensor is a {kind}, so give {field}")
+            entry.add(
+                key,
+                say("is for a {other}; this sensor is a {kind}, so give {field}", other=other, kind=kind, field=field),
+            )
     value = entry.optional_number(field, WITHIN[f"sensors[].{field}"])
     return 0.0 if value is None else value
 
@@ -108,9 +119,14 @@ def _check_names(sensors: list[Sensor], problems: Problems) -> None:
     for number, name in enumerate((sensor.name for sensor in sensors), start=1):
         field = f"sensors[{number}].name"
         if name and name in seen:
-            problems.add(field, f"{shown(name)} is also the name of sensors[{seen[name]}]; names must differ")
+            problems.add(
+                field,
+                say("{name} is also the name of sensors[{seen}]; names must differ", name=shown(name), seen=seen[name]),
+            )
         elif name in taken:
-            problems.add(field, f"{shown(name)} is the name of another column of the table; rename the sensor")
+            problems.add(
+                field, say("{name} is the name of another column of the table; rename the sensor", name=shown(name))
+            )
         seen.setdefault(name, number)
 
 
@@ -118,9 +134,14 @@ def _check_axes(sensors: list[Sensor], block: str, problems: Problems) -> None:
     for kind in sorted({sensor.kind for sensor in sensors} or {block}):
         axes = np.array([sensor.nominal_axis for sensor in sensors if sensor.kind == kind])
         if len(axes) < FEWEST:
-            problems.add("sensors", f"{len(axes)} of kind {kind}; a block needs at least {FEWEST}")
+            problems.add(
+                "sensors",
+                say("{axes} of kind {kind}; a block needs at least {fewest}", axes=len(axes), kind=kind, fewest=FEWEST),
+            )
         elif np.isfinite(axes).all() and _flatness(axes) < FLATTEST:
-            problems.add("sensors", f"the nominal axes of kind {kind} lie in one plane; they must span space")
+            problems.add(
+                "sensors", say("the nominal axes of kind {kind} lie in one plane; they must span space", kind=kind)
+            )
 
 
 def _flatness(axes: Array) -> float:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from estimator.message import say
 from estimator.reading.bounds import WITHIN
 from estimator.reading.fields import Fields
 from estimator.reading.keys import FORMAT, TOP, check_keys
@@ -96,5 +97,5 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
 def _check_format(document: Fields) -> None:
     declared = document.values.get("format")
     if not (isinstance(declared, str) and declared == FORMAT):
-        stated = "missing" if declared is None else f"is {shown(declared)}"
-        document.add("format", f'{stated}; must be "{FORMAT}"')
+        stated = "missing" if declared is None else say("is {declared}", declared=shown(declared))
+        document.add("format", say('{stated}; must be "{format}"', stated=stated, format=FORMAT))

@@ -6,6 +6,7 @@ from datetime import datetime
 
 import numpy as np
 
+from estimator.message import say
 from estimator.moments import written
 from estimator.reading.bounds import WITHIN, Interval
 from estimator.reading.columns import vector
@@ -78,7 +79,7 @@ def read_mounting(document: Fields) -> Array:
         return np.eye(3)
     rows = value.tolist() if isinstance(value, np.ndarray) else value
     if not isinstance(rows, list | tuple) or len(rows) != 3:
-        document.add("mounting", f"is {shown(rows)}; must be three rows of three numbers")
+        document.add("mounting", say("is {rows}; must be three rows of three numbers", rows=shown(rows)))
         return np.eye(3)
     row_fields = Fields({f"[{i}]": row for i, row in enumerate(rows, 1)}, "", document.problems)
     matrix = np.array([_mounting_row(row_fields, f"[{i}]", document.problems) for i in (1, 2, 3)])
@@ -95,12 +96,14 @@ def read_started_at(document: Fields) -> str | None:
     try:
         at = datetime.fromisoformat(text)
     except ValueError:
-        document.add("started_at", f"is {shown(text)}; write it like 2026-03-01T09:00:00Z")
+        document.add("started_at", say("is {text}; write it like 2026-03-01T09:00:00Z", text=shown(text)))
         return None
     if at.tzinfo is None:
-        document.add("started_at", f"{shown(text)} has no offset; end it with Z for UTC or with one like +03:00")
+        document.add(
+            "started_at", say("{text} has no offset; end it with Z for UTC or with one like +03:00", text=shown(text))
+        )
     elif at.year not in YEARS:
-        document.add("started_at", f"is in the year {at.year}; must be {YEARS}")
+        document.add("started_at", say("is in the year {year}; must be {years}", year=at.year, years=YEARS))
     else:
         return written(at)
     return None
@@ -118,7 +121,11 @@ def _read_elevation(stand: Fields, key: str, required: bool, programme: str) -> 
         return None
     if programme == TWO_AXIS_STAND and not FLATTEST <= abs(degrees) <= 90 - FLATTEST:
         stand.add(
-            key, f"is {degrees:g}; must be strictly between 0 and 90 degrees, else parameters cannot be separated"
+            key,
+            say(
+                "is {degrees}; must be strictly between 0 and 90 degrees, else parameters cannot be separated",
+                degrees=f"{degrees:g}",
+            ),
         )
     return math.radians(degrees)
 

@@ -7,6 +7,7 @@ from itertools import islice
 
 import numpy as np
 
+from estimator.message import say
 from estimator.reading.columns import Column, Columns
 from estimator.reading.fields import Fields
 from estimator.reading.keys import COLUMNS, UNKNOWN_LOOKED_AT, meant_key
@@ -22,14 +23,16 @@ def read_columns(document: Fields) -> Columns | None:
     problems = document.problems
     table = document.values.get("table")
     if not isinstance(table, Mapping):
-        problem = "missing" if table is None else f"is {shown(table)}"
-        document.add("table", f"{problem}; give the columns of readings, each with one value per row")
+        problem = "missing" if table is None else say("is {table}", table=shown(table))
+        document.add(
+            "table", say("{problem}; give the columns of readings, each with one value per row", problem=problem)
+        )
         return None
     check_extent(0, len(table), problems)
     given = {str(name): cells for name, cells in table.items() if cells is not None}
     lists = {name: cells for name, cells in given.items() if _is_column(cells)}
     for name in (name for name in given if name not in lists):
-        problems.add(name, f"is {shown(given[name])}; must be a list with one value per row")
+        problems.add(name, say("is {given}; must be a list with one value per row", given=shown(given[name])))
     rows = _row_count(lists, problems)
     if rows == 0:
         return None
@@ -41,11 +44,25 @@ def check_extent(rows: int, columns: int, problems: Problems) -> None:
     """Raises FormatError where a table of this size is too large."""
     most, advice = problems.most, "can be read, so average or split it"
     if rows > most.rows:
-        raise problems.fail("table", f"has {rows} rows; at most {most.rows} {advice}")
+        raise problems.fail(
+            "table", say("has {rows} rows; at most {rows2} {advice}", rows=rows, rows2=most.rows, advice=advice)
+        )
     if columns > most.columns:
-        raise problems.fail("table", f"has {columns} columns; at most {most.columns} can be read")
+        raise problems.fail(
+            "table",
+            say("has {columns} columns; at most {columns2} can be read", columns=columns, columns2=most.columns),
+        )
     if rows * columns > most.cells:
-        raise problems.fail("table", f"has {rows} rows × {columns} columns; at most {most.cells} cells {advice}")
+        raise problems.fail(
+            "table",
+            say(
+                "has {rows} rows × {columns} columns; at most {cells} cells {advice}",
+                rows=rows,
+                columns=columns,
+                cells=most.cells,
+                advice=advice,
+            ),
+        )
 
 
 def check_unknown(columns: Columns, names: list[str]) -> None:
@@ -57,7 +74,7 @@ def check_unknown(columns: Columns, names: list[str]) -> None:
         if _pattern(name.removesuffix("_se")) in patterns or SENSOR_LIKE.fullmatch(name) or name.endswith("_se"):
             columns.problems.add(name, "belongs to no declared sensor; declare it in sensors or take the column out")
         elif meant := meant_key(name, COLUMNS):
-            columns.problems.add(name, f"is not a column of the table; {meant}")
+            columns.problems.add(name, say("is not a column of the table; {meant}", meant=meant))
 
 
 def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
@@ -72,7 +89,9 @@ def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
     for name, cells in lists.items():
         if len(cells) != rows:
             held = counted(len(cells), "value")
-            problems.add(name, f"has {held} where the other columns have {rows}; give one per row")
+            problems.add(
+                name, say("has {held} where the other columns have {rows}; give one per row", held=held, rows=rows)
+            )
     return rows
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.message import joined, say
 from estimator.reading.bounds import WITHIN, Interval
 from estimator.reading.columns import Columns
 from estimator.reading.fields import Fields
@@ -120,7 +121,9 @@ def _time(columns: Columns) -> Array | None:
     if time is not None:
         back = np.flatnonzero(np.diff(time) < 0) + 1
         columns.problems.add_rows(
-            "time_s", back.tolist(), lambda j: f"{time[j]:.10g} is earlier than the row before; keep the order measured"
+            "time_s",
+            back.tolist(),
+            lambda j: say("{time} is earlier than the row before; keep the order measured", time=f"{time[j]:.10g}"),
         )
     return time
 
@@ -158,5 +161,11 @@ def _direction_sigma(document: Fields, columns: Columns) -> float | None:
     if any(columns.has(name) for name in DIRECTIONS):
         return math.radians(document.number(key, WITHIN[key], "give how well the stated directions are known"))
     if document.has(key):
-        document.add(key, f"is given without directions; add the columns {', '.join(DIRECTIONS)} or take it out")
+        document.add(
+            key,
+            say(
+                "is given without directions; add the columns {directions} or take it out",
+                directions=joined(", ", DIRECTIONS),
+            ),
+        )
     return None

@@ -26,8 +26,9 @@ TIMEOUT = httpx.Timeout(300.0, connect=5.0)
 
 
 @contextmanager
-def connect(server: str = LOCAL, token: str | None = None) -> "Iterator[Client]":
-    """A client of the service at an address, with a token or the environment's; ServiceError when it is no address."""
+def connect(server: str = LOCAL, token: str | None = None, language: str = "en") -> "Iterator[Client]":
+    """A client of the service at an address, with a token or the environment's, refused in a language; ServiceError
+    when it is no address."""
     try:
         http = httpx.Client(base_url=f"{server.rstrip('/')}/api/v1", timeout=TIMEOUT)
     except httpx.InvalidURL as fault:
@@ -35,6 +36,7 @@ def connect(server: str = LOCAL, token: str | None = None) -> "Iterator[Client]"
     shown = os.environ.get(TOKEN, "") if token is None else token
     if shown:
         http.headers["Authorization"] = f"Bearer {shown}"
+    http.headers["Accept-Language"] = language
     with http:
         yield Client(server, http)
 

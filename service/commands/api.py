@@ -15,7 +15,7 @@ from rich.markup import escape
 from service.client import Client, connect
 from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
 from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, Listing, Server, screen
-from service.commands.speech import said
+from service.commands.speech import said, spoken
 from service.errors import ServiceError
 from service.flags.records import FlagState
 
@@ -57,7 +57,7 @@ def open_page(
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Print the address alone.")] = True,
 ) -> None:
     """Open the page of a unit or a session in the browser, and print its address; without one the fleet."""
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         if what is None:
             client.get("/me")
             page = "/"
@@ -74,7 +74,7 @@ def open_page(
 
 def choose_reference(id: SessionId, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
     """Choose and approve a session as what all others of its time are judged against."""
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         unit = client.get(f"/sessions/{id}").json()["unit"]
         _show_session(client.post(f"/units/{unit}/reference", {"session": id, "by": by, "why": why}))
 
@@ -88,7 +88,7 @@ def attach_files(
     server: Server = DEFAULT_SERVER,
 ) -> None:
     """Attach files to a unit or a session: photographs, protocols. They are kept as they are and never opened."""
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         subject = "session" if is_session(client, to) else "unit"
         for file in files:
             form = {subject: to, "by": by, "text": text}
@@ -106,7 +106,7 @@ def write_note(
 ) -> None:
     """Write a note on a unit's history, or on a session."""
     note = {"text": text, "by": by}
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         if not is_session(client, unit):
             when = {} if at is None else {"at": at.isoformat()}
             _show_event(client.post(in_address("/units/{unit}/notes", {"unit": unit}), note | when))
@@ -132,7 +132,7 @@ def list_flags(
     if context.invoked_subcommand is not None:
         return
     wanted = {"unit": unit, "state": state, "assigned": assigned}
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         found = client.every("/flags", "flags", limit=1000, **{name: value for name, value in wanted.items() if value})
         shown = list(found if state else takewhile(lambda flag: flag["state"] != FlagState.RESOLVED, found))
     columns = Columns("flags", "There is none." if state else "No flag is open.", FLAG_CELLS)
@@ -148,7 +148,7 @@ def assign_flags(
     server: Server = DEFAULT_SERVER,
 ) -> None:
     """Say who is to look after flags; `imu-health flags --assigned NAME` finds them."""
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         for id in ids:
             _show_flag(client.post(f"/flags/{id}/assign", {"to": to, "by": by, "why": why}))
 

@@ -13,7 +13,7 @@ from estimator.wording import counted
 from service.client import Point, connect
 from service.commands.calls import Answer
 from service.commands.console import DEFAULT_SERVER, AsLines, FormOf, Listing, Server, table_of
-from service.commands.speech import said
+from service.commands.speech import said, spoken
 from service.commands.upload import coloured
 from service.kit.measures import deviation_measure, measured, number
 from service.sessions.decision import Verdict
@@ -49,7 +49,7 @@ def fleet(
     """Show every unit with its condition, the worst first; some of them by stand, type, due date or flag."""
     due = None if due_before is None else f"{due_before.isoformat()}Z"
     wanted = {"stand": stand, "unit_type": unit_type, "due_before": due, "flagged": flagged or None}
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         condition = client.get("/fleet").json()
         found = [unit.document for unit in client.units(**wanted)]
     is_whole = len(found) == condition["units"]
@@ -103,7 +103,7 @@ def history(
     The terms of noise at rest, of sessions that were sent as raw logs, stand beside them: their size and where it lies
     with 95 %.
     """
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         found = list(client.history(unit, sensor=sensor, parameter=parameter, since=since, until=until))
     Listing(form, as_json).show([point.document for point in found], lambda: _history_table(found))
 

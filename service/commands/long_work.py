@@ -14,7 +14,7 @@ from service.client import connect
 from service.commands.api import By, WhyHandled
 from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
-from service.commands.speech import FAILED, problems_said, say
+from service.commands.speech import FAILED, problems_said, say, spoken
 from service.commands.upload import followed
 from service.errors import RefusedError, ServiceError
 from service.groups.records import Level
@@ -40,7 +40,7 @@ def show_job(
     id: JobId, server: Server = DEFAULT_SERVER, as_json: AsJson = False, wait: Wait = False, out: Out = None
 ) -> None:
     """Show how far a job has come; --out writes the file that it made."""
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         job = followed(client, id, quiet=as_json) if wait else client.get(f"/jobs/{id}").json()
         if out is not None:
             deliver(client.get(f"/jobs/{id}/file").content, out)
@@ -61,7 +61,7 @@ def accept_cause(
 ) -> None:
     """Accept what sessions show together; every session that it concerns is computed again."""
     body = {"cause": cause, "sensors": sensor or [], "by": by, "note": why}
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         try:
             made = client.post(in_address(f"/{PATHS[level]}/{{name}}/diagnosis/accept", {"name": name}), body)
         except RefusedError as refused:

@@ -21,7 +21,7 @@ from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 from service.client import connect
 from service.commands.console import AsJson, print_json, screen, usable
-from service.commands.speech import FAILED
+from service.commands.speech import FAILED, spoken
 from service.ingest import read_file
 from service.kit.measures import number
 from service.planning.question import PlanQuestion
@@ -271,7 +271,7 @@ def _there(file: Path, asked: ReadyQuestion, server: str) -> dict[str, Any]:
     query = urlencode(asked.model_dump(exclude_none=True))
     with usable(file):
         content = file.read_bytes()
-        with connect(server) as client:
+        with connect(server, language=spoken()) as client:
             return dict(client.answer("POST", f"/plan/ready?{query}", files={"file": (file.name, content)}).json())
 
 

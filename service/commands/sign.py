@@ -12,7 +12,7 @@ from rich.markup import escape
 from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server, screen
 from service.commands.documents import Session
-from service.commands.speech import say
+from service.commands.speech import say, spoken
 from service.errors import ConflictError
 from service.papers.changes import NOT_ISSUED
 from service.papers.records import Meaning
@@ -33,7 +33,7 @@ def sign(
 ) -> None:
     """Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password."""
     path = f"/sessions/{quote(session, safe='')}/certificate"
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         issued = client.get(f"{path}s").json()["certificates"]
         if not issued:
             raise ConflictError(NOT_ISSUED)

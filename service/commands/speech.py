@@ -44,6 +44,11 @@ def choose(language: Language) -> None:
     os.environ[CHOSEN] = language.value
 
 
+def spoken() -> str:
+    """The language of what this command says, as HTTP has it."""
+    return of_environment(os.environ).value
+
+
 def said(text: str) -> str:
     """A sentence that was made in English, in the language of whoever reads it."""
     language = of_environment(os.environ)

@@ -27,7 +27,7 @@ from rich.progress import (
 from estimator.errors import Problem
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
-from service.commands.speech import said, say
+from service.commands.speech import said, say, spoken
 from service.errors import RefusedError, ServiceError
 from service.jobs.records import KILOBYTE, OPEN, JobKind, JobState
 from service.sessions.decision import Verdict
@@ -180,7 +180,7 @@ def upload_files(
     given = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
     stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
-    with connect(server) as client:
+    with connect(server, language=spoken()) as client:
         sending = Sending(client, stated, wait=wait, quiet=as_json)
         for_each(files, lambda file: _uploaded(sending, file), show, "uploading", quiet=as_json or are_large(files))
 

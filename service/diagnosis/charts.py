@@ -9,6 +9,7 @@ import altair as alt
 import numpy as np
 
 from estimator.diagnosis.results import Course
+from estimator.message import say
 from estimator.results import Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER
 from service.diagnosis.words.structures import SIZE, component_in_words
@@ -89,7 +90,7 @@ def _chart_set(sides: Sides, across: Across, columns: list[int], several: bool) 
     measure = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"diagnosis-{kind}-{across.name}",
-        heading=f"{across.heading}, {kind}s" if several else across.heading,
+        heading=say("{heading}, {kind}", heading=across.heading, kind=f"{kind}s") if several else across.heading,
         spec=_spec(across, measure, largest * measure.factor, wider=noise.times is not None),
         panels=tuple(_panel(sides, i, across, measure) for i in columns),
     )
@@ -99,7 +100,7 @@ def _panel(sides: Sides, column: int, across: Across, measure: Measure) -> Panel
     shown = [_rms(side, column, measure) for side in (sides.before, sides.after) if side is not None]
     return Panel(
         title=sides.sensors[column].name,
-        description=f"rms {' → '.join(shown)}{THIN}{measure.label}",
+        description=say("rms {shown}{thin}{label}", shown=" → ".join(shown), thin=THIN, label=measure.label),
         condition=None,
         datasets={DATA_FORM: _points(sides, column, across, measure)},
     )
@@ -165,7 +166,7 @@ def _marks(base: alt.Chart, y: alt.Y, measure: Measure, model: str) -> alt.Chart
                 alt.Tooltip("row:Q", title="row"),
                 alt.Tooltip("run:N", title="run"),
                 alt.Tooltip("model:N", title="model"),
-                alt.Tooltip("y:Q", title=f"measured − simulated, {measure.label}"),
+                alt.Tooltip("y:Q", title=say("measured − simulated, {label}", label=measure.label)),
             ],
         )
     )
@@ -221,7 +222,13 @@ def _course_panel(component: str, value: np.ndarray, residuals: Residuals, acros
     reach = float(np.abs(known).max(initial=0.0))
     return Panel(
         title=component,
-        description=f"{component_in_words(component)}, up to {number(reach, decimals(reach))}{THIN}{measure.label}",
+        description=say(
+            "{component}, up to {reach}{thin}{label}",
+            component=component_in_words(component),
+            reach=number(reach, decimals(reach)),
+            thin=THIN,
+            label=measure.label,
+        ),
         condition=None,
         datasets={DATA_FORM: _course_points(value, residuals, across)},
     )
@@ -246,7 +253,7 @@ def _filled(across: Across, measure: Measure, largest: float, *, is_joined: bool
     low, high = padded(-largest, largest)
     blanks = {LEFT: left, RIGHT: right, LOW: low, HIGH: high, UNIT: measure.label}
     spec = _course_spec(across.name, across.title, is_joined=is_joined)
-    found: dict[str, Any] = filled(spec, {**blanks, CHANGE: f"off by, {measure.label}"})
+    found: dict[str, Any] = filled(spec, {**blanks, CHANGE: say("off by, {label}", label=measure.label)})
     return found
 
 

@@ -8,6 +8,7 @@ from math import isclose, isfinite, nan
 import numpy as np
 
 from estimator.diagnosis.results import Gain, Score
+from estimator.message import say
 from estimator.moments import moment
 from estimator.results import Calibration, Estimate, SensorCalibration
 from service.kit.measures import deviation_measure, leading_kind, measured, number
@@ -117,8 +118,12 @@ def _rms(before: Score, after: Score, kind: str, *, several: bool) -> GainRow:
     """Of one kind of sensor; earlier versions stated that of the leading kind alone."""
     own = tuple(score.rms_by_kind.get(kind, nan if several else score.rms) for score in (before, after))
     measure = deviation_measure(kind, "bias", max((x for x in own if isfinite(x)), default=0.0))
-    who = f" of {kind}s" if several else ""
-    return GainRow("rms", f"error of prediction{who}, {measure.label}", *(number(x * measure.factor, 3) for x in own))
+    who = say(" of {kind}s", kind=kind) if several else ""
+    return GainRow(
+        "rms",
+        say("error of prediction{who}, {label}", who=who, label=measure.label),
+        *(number(x * measure.factor, 3) for x in own),
+    )
 
 
 def _has_moved(before: SensorCalibration, after: SensorCalibration) -> bool:

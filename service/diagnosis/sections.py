@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.diagnosis.results import Course, Structure
+from estimator.message import say
 from estimator.results import Residuals
 from service.diagnosis.charts import course_charts, measure_of
 from service.diagnosis.words.structures import course_in_words
@@ -66,7 +67,9 @@ def _view(course: Course, residuals: Residuals, name: str) -> CourseView:
         runs=residuals.flipped is not None,
         charts=course_charts(course, residuals, name),
         table=ResidualTable(
-            heads=tuple(f"{c}, {m.label}" for c, m in zip(course.components, measures, strict=True)),
+            heads=tuple(
+                say("{c}, {label}", c=c, label=m.label) for c, m in zip(course.components, measures, strict=True)
+            ),
             beta=residuals.beta is not None,
             rows=rows_of(shown, residuals),
         ),

@@ -6,7 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.columns import IS_FAILED, only_where
+from service.storage.columns import IS_FAILED, Sentence, only_where
 from service.storage.tables import Base
 
 
@@ -18,7 +18,7 @@ class DiagnosisRow(Base):
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
     model_revision: Mapped[int]
     state: Mapped[str] = mapped_column(String(20))
-    summary: Mapped[str]
+    summary: Mapped[str] = mapped_column(Sentence)
     document: Mapped[bytes | None]
     verdict_after: Mapped[str | None] = mapped_column(String(20))
     estimator_version: Mapped[str] = mapped_column(String(40))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import Problem
+from estimator.message import joined, say
 from service.errors import ConflictError, RefusedError
 from service.flags.records import NOBODY, Assignee, Flag, FlagState, NoticeKind
 from service.flags.store import Flags, Notices
@@ -35,7 +36,7 @@ def assign_flag(storage: Storage, id: int, said: Assignment, now: datetime) -> F
         unit, assignee = Units(store).hold(Flags(store).unit_of(id)), assignee_of(store, said.to)
         flag = Flags(store).get(id)
         if flag.state is FlagState.RESOLVED:
-            raise ConflictError(f"Flag {id} is resolved already, so nobody has to look after it.")
+            raise ConflictError(say("Flag {id} is resolved already, so nobody has to look after it.", id=id))
         _put(store, flag, unit, assignee, said=said, now=now)
         return Flags(store).get(id)
 
@@ -73,8 +74,10 @@ def _put(store: Store, flag: Flag, unit: int, assignee: Assignee, *, said: Assig
     if Flags(store).assignee_of(flag.id) == assignee:
         return False
     Flags(store).put(flag.id, now, assignee=assignee.name, assignee_login=assignee.login)
-    text = f"To {assignee.name}." if assignee.name else "To nobody in particular."
-    Notices(store).add(unit, NoticeKind.ASSIGNED, now, said.who, f"{text} {said.why}".strip(), flag=flag.id)
+    text = say("To {name}.", name=assignee.name) if assignee.name else "To nobody in particular."
+    Notices(store).add(
+        unit, NoticeKind.ASSIGNED, now, said.who, joined(" ", filter(None, (text, said.why))), flag=flag.id
+    )
     details = {"flag": flag.id, "to": assignee.name, "login": assignee.login, "why": said.why}
     Audit(store).write(now, said.who, NoticeKind.ASSIGNED, flag.unit, details)
     return True
@@ -132,7 +135,14 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
         unit = Units(store).hold(Flags(store).unit_of(id))
         flag = Flags(store).get(id)
         if flag.state not in POSSIBLE[state]:
-            raise ConflictError(f"Flag {id} is {flag.state.value} already, so it cannot be {state.value} now.")
+            raise ConflictError(
+                say(
+                    "Flag {id} is {value} already, so it cannot be {value2} now.",
+                    id=id,
+                    value=flag.state.value,
+                    value2=state.value,
+                )
+            )
         return _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
 
 

@@ -8,6 +8,7 @@ from itertools import groupby
 from sqlalchemy import ColumnElement, Row, and_, bindparam, case, insert, literal, or_, select, update
 from sqlalchemy.orm import aliased
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.flags.records import AT_FAULT, Assignee, Concern, Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.tables import DeliveryRow, FlagRow, NoticeRow, WebhookRow
@@ -163,7 +164,7 @@ class Flags(Queries):
         query = select(UnitRow.serial).join(FlagRow, FlagRow.unit_id == UnitRow.id).where(FlagRow.id == id)
         serial = self._session.scalar(query)
         if serial is None:
-            raise NotFoundError(f"There is no flag {id}.")
+            raise NotFoundError(say("There is no flag {id}.", id=id))
         return serial
 
     def get(self, id: int) -> Flag:
@@ -177,7 +178,7 @@ class Flags(Queries):
         )
         found = _with_lives(self._session.execute(query))
         if not found:
-            raise NotFoundError(f"There is no flag {id}.")
+            raise NotFoundError(say("There is no flag {id}.", id=id))
         return found[0]
 
     def page(self, wanted: FlagQuery) -> tuple[Flag, ...]:

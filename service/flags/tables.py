@@ -5,7 +5,7 @@ from datetime import datetime
 from sqlalchemy import ForeignKey, Index, String, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.columns import IS_FAILED, IS_OPEN, IS_WAITING, only_where
+from service.storage.columns import IS_FAILED, IS_OPEN, IS_WAITING, Sentence, only_where
 from service.storage.tables import Base
 
 
@@ -25,8 +25,8 @@ class FlagRow(Base):
     place: Mapped[str] = mapped_column(String(200))
     state: Mapped[str] = mapped_column(String(20))
     severity: Mapped[int]
-    summary: Mapped[str]
-    proposal: Mapped[str]
+    summary: Mapped[str] = mapped_column(Sentence)
+    proposal: Mapped[str] = mapped_column(Sentence)
     session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"))
     raised_at: Mapped[datetime]
     changed_at: Mapped[datetime]
@@ -47,7 +47,7 @@ class NoticeRow(Base):
     kind: Mapped[str] = mapped_column(String(20))
     at: Mapped[datetime]
     who: Mapped[str]
-    text: Mapped[str]
+    text: Mapped[str] = mapped_column(Sentence)
     session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"))
 
 

@@ -5,6 +5,7 @@ from datetime import datetime
 import httpx
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import RefusedError
 from service.flags.records import Webhook
 from service.flags.webhooks_store import Webhooks
@@ -44,9 +45,10 @@ def fault_of(url: str, hosts: tuple[str, ...]) -> str:
     host = f"[{parsed.host}]" if ":" in parsed.host else parsed.host
     wanted = host if parsed.port is None else f"{host}:{parsed.port}"
     if wanted.lower() not in {allowed.lower() for allowed in hosts}:
-        return (
-            f"leads to {wanted}, which this service may not call; "
-            "whoever runs it can allow it with IMU_HEALTH_WEBHOOK_HOSTS"
+        return say(
+            "leads to {wanted}, which this service may not call; whoever runs it can allow it with "
+            "IMU_HEALTH_WEBHOOK_HOSTS",
+            wanted=wanted,
         )
     return ""
 

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from pydantic import computed_field
 
+from estimator.message import joined
 from service.groups.records import FoundTogether
 from service.kit.answer import answer
 from service.sessions.decision import Verdict
@@ -137,7 +138,7 @@ class Usable:
     @property
     def reservation(self) -> str:
         """The same as one text; empty where there is none."""
-        return " ".join(self.reservations)
+        return joined(" ", self.reservations)
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property

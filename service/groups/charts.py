@@ -15,6 +15,7 @@ import altair as alt
 from estimator.groups import GroupFinding
 from estimator.groups.layout import EVERY
 from estimator.groups.pictures import ANGLES
+from estimator.message import joined, say
 from estimator.moments import moment
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.diagnosis.words.amplitudes import part_of
@@ -66,13 +67,13 @@ def elements_of(finding: GroupFinding) -> Iterator[Element]:
     each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
     for k, (value, sigma) in enumerate(zip(finding.amplitude, finding.sigma, strict=True)):
         if sigma is not None:
-            who = f"{finding.sensors[k // each]} " if len(finding.sensors) > 1 else ""
+            who = finding.sensors[k // each] if len(finding.sensors) > 1 else ""
             which = part_of(finding.cause, k % each) if each > 1 else ""
             unit = finding.units[k % len(finding.units)]
             largest = max(abs(value), COVERAGE * sigma)
             yield Element(
                 k,
-                f"{who}{which.removesuffix(' =')}".strip() or "Amplitude",
+                (joined(" ", filter(None, (who, which.removesuffix(" ="))))) or "Amplitude",
                 amplitude_measure(finding.cause, unit, largest),
             )
 
@@ -117,10 +118,10 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
     start = _iso(moment(since)) if since else span[0]
     reach = _reach(finding, element)
     beyond = sum(value > reach for value, _ in _spreads(finding, element))
-    left = f"; {beyond} too unsure to be drawn are in the table" if beyond else ""
+    left = say("; {beyond} too unsure to be drawn are in the table", beyond=beyond) if beyond else ""
     return Panel(
         title=element.name,
-        description=f"{measured(value, spread, element.measure)} together{left}",
+        description=say("{value} together{left}", value=measured(value, spread, element.measure), left=left),
         condition=None,
         datasets={
             DATA_FORM: list(_session_points(finding, element)),
@@ -185,7 +186,14 @@ def picture_chart(picture: dict[str, Any], kind: str, name: str) -> ChartSet:
     by_angle = picture["variable"] == BY_ANGLE
     left, right = (0.0, 360.0) if by_angle else padded(min(at), max(at))
     title = _title(picture)
-    blanks = {LEFT: left, RIGHT: right, LOW: low, HIGH: high, UNIT: measure.label, VALUE: f"mean, {measure.label}"}
+    blanks = {
+        LEFT: left,
+        RIGHT: right,
+        LOW: low,
+        HIGH: high,
+        UNIT: measure.label,
+        VALUE: say("mean, {label}", label=measure.label),
+    }
     return ChartSet(
         name=f"{name}-picture",
         heading="What all sessions leave",
@@ -230,8 +238,8 @@ def _picture_panel(picture: dict[str, Any], side: str, at: Sequence[float], meas
     values = picture["before" if side == SIDES[0] else "after"]
     outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture["sigma"], strict=True))
     return Panel(
-        title=f"{WHAT.get(picture['of'], picture['of'])} {side}",
-        description=f"{outside} of {len(values)} outside ±2σ",
+        title=say("{what} {side}", what=WHAT.get(picture["of"], picture["of"]), side=side),
+        description=say("{outside} of {values} outside ±2σ", outside=outside, values=len(values)),
         condition=None,
         datasets={
             DATA_FORM: [

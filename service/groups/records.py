@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from estimator.codec import MOMENT, Document, Form
 from estimator.groups.results import EmpiricalTerm, GroupFinding, GroupGain, PoolLimit
+from estimator.message import say, with_messages
 
 
 class Level(StrEnum):
@@ -94,7 +95,12 @@ class FoundTogether:
     own: str
 
 
-STRUCTURES = Form(list, lambda listed: tuple(f"{one['where']} ({one['subject']})" for one in listed))
+STRUCTURES = Form(
+    list,
+    lambda listed: tuple(
+        say("{where} ({subject})", where=with_messages(one["where"]), subject=one["subject"]) for one in listed
+    ),
+)
 """Read from what the estimator found; never written."""
 
 

@@ -26,6 +26,7 @@ from sqlalchemy.orm import aliased
 
 from estimator.groups import SessionStatistics
 from estimator.groups.statistics import FORMAT
+from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.groups.records import Group, GroupAnswer, Level, Member, Members
@@ -36,6 +37,7 @@ from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
+from service.storage.documents import STORED
 from service.storage.json_text import json_text
 from service.storage.queries import Queries
 from service.types.tables import UnitTypeRow
@@ -57,7 +59,7 @@ class Groups(Queries):
         """A unit by its serial number, a unit type or stand by its name."""
         key = self._session.scalar(select(KEYS[level]).where(CALLED[level] == name))
         if key is None:
-            raise NotFoundError(f"There is no {WORDS[level]} {name!r}.")
+            raise NotFoundError(say("There is no {words} {name}.", words=WORDS[level], name=repr(name)))
         return Group(level, key, name)
 
     def at(self, place: str) -> Group:
@@ -119,7 +121,7 @@ class Groups(Queries):
         query = select(number, row, again, failed.scalar_subquery()).select_from(number.class_).outerjoin(row, stored)
         found = self._session.execute(query.where(CALLED[level] == name)).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no {WORDS[level]} {name!r}.")
+            raise NotFoundError(say("There is no {words} {name}.", words=WORDS[level], name=repr(name)))
         return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2], found[3] or ""
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
@@ -218,7 +220,7 @@ class Statistics(Queries):
 
     def keep(self, session: str, record: SessionStatistics) -> None:
         """Stores what was made."""
-        self._put(session, document=zlib.compress(json_text(record.to_dict()).encode()), attempts=0)
+        self._put(session, document=zlib.compress(json_text(STORED.written(record)).encode()), attempts=0)
 
     def fail(self, session: str, why: str) -> None:
         """Stores why there are none: this version does not try again."""

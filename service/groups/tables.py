@@ -8,6 +8,7 @@ from datetime import datetime
 from sqlalchemy import ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from service.storage.columns import Sentence
 from service.storage.tables import Base
 
 
@@ -19,7 +20,7 @@ class SessionStatisticsRow(Base):
     format: Mapped[str] = mapped_column(String(40))
     document: Mapped[bytes | None]
     """None while they are being made, or where they cannot be."""
-    why: Mapped[str]
+    why: Mapped[str] = mapped_column(Sentence)
     """They cannot be made; empty else."""
     attempts: Mapped[int]
     """How often they were begun: a process that dies of them says nothing."""
@@ -35,8 +36,8 @@ class GroupDiagnosisRow(Base):
     rests_on: Mapped[str] = mapped_column(String(64))
     """Digest of its sessions."""
     sessions: Mapped[int]
-    summary: Mapped[str]
-    own: Mapped[str]
+    summary: Mapped[str] = mapped_column(Sentence)
+    own: Mapped[str] = mapped_column(Sentence)
     """Of what they show, that which is of the group itself; empty for nothing."""
     document: Mapped[bytes | None]
     """None where it could not be made."""

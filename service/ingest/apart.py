@@ -20,7 +20,9 @@ from pathlib import Path
 from threading import Condition, Lock, local
 from typing import Any
 
+from estimator.codec import KEPT
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.message import say
 from service.errors import BusyError
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
 from service.ingest.scanned import Heard, listener
@@ -98,8 +100,12 @@ def _refused_if_it_fell(filename: str, most: Limits) -> Iterator[None]:
             raise
         raise refusal(
             filename,
-            f"cannot be read with {most.memory // 1024**2} MiB of memory in {most.seconds} s: it is damaged, or "
-            "much larger inside than outside; write it again, or average or split it",
+            say(
+                "cannot be read with {memory} MiB of memory in {seconds} s: it is damaged, or much "
+                "larger inside than outside; write it again, or average or split it",
+                memory=most.memory // 1024**2,
+                seconds=most.seconds,
+            ),
         ) from error
 
 
@@ -154,7 +160,7 @@ def _ask(child: socket.socket, request: dict[str, Any], content: bytes | Path) -
 
 def _refused(found: dict[str, Any]) -> FormatError | ScheduleError:
     kind = ScheduleError if found["schedule"] else FormatError
-    return kind([Problem(str(field), str(text), row) for field, text, row in found["problems"]], found["source"])
+    return kind([KEPT.read(Problem, problem) for problem in found["problems"]], found["source"])
 
 
 def _send(child: socket.socket, line: bytes) -> None:

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from estimator.errors import FormatError, Problem
+from estimator.message import say
 from estimator.moments import moment, written
 from estimator.session import CalibrationSession
 from service.ingest import read_upload
@@ -104,7 +105,9 @@ def _text_problems(session: CalibrationSession) -> list[Problem]:
 
 def _fault(text: str) -> str | None:
     if len(text) > LONGEST_NOTES:
-        return f"is {len(text)} characters long; at most {LONGEST_NOTES} are kept"
+        return say(
+            "is {text} characters long; at most {longest_notes} are kept", text=len(text), longest_notes=LONGEST_NOTES
+        )
     if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
         return "holds characters that are not text (NUL or half of a pair); remove them"
     return None
@@ -116,5 +119,10 @@ def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:
     except (ValueError, OverflowError):
         return [Problem("started_at", "is not a date and time; write it like 2026-03-01T09:00:00Z")]
     if at > now + CLOCK_LEEWAY:
-        return [Problem("started_at", f"lies in the future ({at:%Y-%m-%d}); check the date or the clock that wrote it")]
+        return [
+            Problem(
+                "started_at",
+                say("lies in the future ({at}); check the date or the clock that wrote it", at=f"{at:%Y-%m-%d}"),
+            )
+        ]
     return []

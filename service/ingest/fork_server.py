@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from estimator.codec import KEPT
 from estimator.errors import ScheduleError, SessionError
 from service.ingest import jobs, scanned
 from service.ingest.apart import END, READY, SCANNED, SIZE, WAITING
@@ -128,7 +129,7 @@ def _too_large(filename: str, most: Limits) -> SessionError:
 
 
 def _refusal(error: SessionError) -> bytes:
-    found = [(problem.field, problem.message, problem.row) for problem in error.problems]
+    found = KEPT.written(list(error.problems))
     schedule = isinstance(error, ScheduleError)
     return json.dumps({"refused": {"schedule": schedule, "problems": found, "source": error.source}}).encode()
 

@@ -11,6 +11,7 @@ from io import BytesIO
 import h5py
 import numpy as np
 
+from estimator.message import say
 from service.ingest.metadata import KEY, with_metadata
 from service.kit.limits import check_table, refusal
 
@@ -28,7 +29,9 @@ def read_hdf5(content: bytes, filename: str) -> dict[str, object]:
     with _damage_refused(filename), h5py.File(BytesIO(content), "r") as file:
         metadata = file.attrs.get(KEY)
         if not isinstance(metadata, str):
-            raise refusal(filename, f"has no text attribute {KEY}; put the session's JSON without its table there")
+            raise refusal(
+                filename, say("has no text attribute {key}; put the session's JSON without its table there", key=KEY)
+            )
         columns = _columns(file, filename)
     return with_metadata(metadata, columns, filename)
 
@@ -47,7 +50,7 @@ def table_of(content: bytes, filename: str) -> dict[str, object]:
 
 def _columns(file: h5py.File, filename: str) -> dict[str, object]:
     if not isinstance(file.get(GROUP, getlink=True), h5py.HardLink) or not isinstance(file[GROUP], h5py.Group):
-        raise refusal(filename, f"has no group {GROUP}; put one dataset per column there")
+        raise refusal(filename, say("has no group {group}; put one dataset per column there", group=GROUP))
     return _datasets(file[GROUP], filename)
 
 
@@ -71,10 +74,10 @@ def _damage_refused(filename: str) -> Iterator[None]:
 def _dataset(group: h5py.Group, name: str, filename: str) -> h5py.Dataset:
     """The column of this name, when it is a plain one."""
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-        raise refusal(filename, f"is a link; {PLAIN}", name)
+        raise refusal(filename, say("is a link; {plain}", plain=PLAIN), name)
     item = group[name]
     if not isinstance(item, h5py.Dataset) or item.ndim != 1 or item.is_virtual or item.external:
-        raise refusal(filename, f"is not a plain column; {PLAIN}", name)
+        raise refusal(filename, say("is not a plain column; {plain}", plain=PLAIN), name)
     return item
 
 
@@ -83,7 +86,15 @@ def _values(name: str, column: h5py.Dataset, filename: str) -> object:
     if column.dtype.kind in "fiu":
         return np.asarray(column[()])
     if h5py.check_string_dtype(column.dtype) is None:
-        raise refusal(filename, f"is of type {column.dtype}; {PLAIN}", name)
+        raise refusal(filename, say("is of type {dtype}; {plain}", dtype=column.dtype, plain=PLAIN), name)
     if column.size > MOST_LABELS:
-        raise refusal(filename, f"has {column.size} texts; at most {MOST_LABELS}, so use whole numbers", name)
+        raise refusal(
+            filename,
+            say(
+                "has {size} texts; at most {most_labels}, so use whole numbers",
+                size=column.size,
+                most_labels=MOST_LABELS,
+            ),
+            name,
+        )
     return [column[row].decode("utf-8") or None for row in range(column.size)]

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from estimator.message import say
 from estimator.reading import read_session
 from service.ingest import hdf5, mat, parquet, xlsx
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
@@ -66,7 +67,14 @@ def _read(content: bytes, filename: str, *, part: bool = False) -> object:
 def _whole(path: Path, filename: str) -> bytes:
     size, most = path.stat().st_size, in_force().whole
     if size > most:
-        raise refusal(filename, f"has {size:,} bytes; but for raw logs (sample_rate_hz) at most {most:,} can be read")
+        raise refusal(
+            filename,
+            say(
+                "has {size} bytes; but for raw logs (sample_rate_hz) at most {most} can be read",
+                size=f"{size:,}",
+                most=f"{most:,}",
+            ),
+        )
     return path.read_bytes()
 
 

@@ -11,6 +11,7 @@ from typing import Protocol
 
 import polars as pl
 
+from estimator.message import say
 from service.ingest.formats import PARQUET, may_be_log
 from service.ingest.metadata import KEY
 from service.ingest.scanned import teller
@@ -91,7 +92,9 @@ def parquet_rows(path: Path, filename: str) -> ParquetRows:
     except UNREADABLE as error:
         raise refusal(filename, PARQUET_DAMAGED) from error
     if metadata is None:
-        raise refusal(filename, f"has no key-value entry {KEY}; put the session's JSON without its table there")
+        raise refusal(
+            filename, say("has no key-value entry {key}; put the session's JSON without its table there", key=KEY)
+        )
     return ParquetRows(path, filename, metadata, names)
 
 
@@ -161,7 +164,9 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
         separator = max(SEPARATORS, key=header.decode().count)
         names = [name.strip().strip('"') for name in header.decode().split(separator)]
     except UnicodeDecodeError as error:
-        raise refusal(filename, f"is not UTF-8 text (byte {error.start + 1}); save it as UTF-8") from error
+        raise refusal(
+            filename, say("is not UTF-8 text (byte {start}); save it as UTF-8", start=error.start + 1)
+        ) from error
     if len(set(names)) < len(names) or not all(names):
         raise refusal(filename, "has columns without a name or of the same name; names must differ", "table")
     begins = marked + sum(len(line) + 1 for line in lines[: len(leading) + 1])
@@ -169,7 +174,7 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
     try:
         first = next(rows.stretches(names), pl.DataFrame()).head(SEEN)
     except UNREADABLE as error:
-        raise refusal(filename, f"cannot be read as a table: {error}", "table") from error
+        raise refusal(filename, say("cannot be read as a table: {error}", error=error), "table") from error
     texts = frozenset(name for name in first.columns if numbers(first[name]).dtype == pl.String)
     return CsvRows(path, metadata, names, separator, begins, texts)
 

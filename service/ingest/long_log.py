@@ -11,6 +11,7 @@ import polars as pl
 from estimator.calibration.free import residual_per_freedom
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from estimator.long_logs import LongLog, average_long
+from estimator.message import say
 from estimator.reading import Extent, read_session
 from estimator.reading.csv_text import cell_of
 from estimator.reading.keys import COLUMNS
@@ -117,12 +118,16 @@ class _Scan:
                 at += len(frame)
                 if at * columns > most:
                     raise refusal(
-                        self.filename, f"has more than {most} cells, the most of a raw log; split it", "table"
+                        self.filename,
+                        say("has more than {most} cells, the most of a raw log; split it", most=most),
+                        "table",
                     )
                 if len(frame):
                     yield frame
         except UNREADABLE as error:
-            raise refusal(self.filename, f"cannot be read to its end: {str(error)[:200]}", "table") from error
+            raise refusal(
+                self.filename, say("cannot be read to its end: {error}", error=str(error)[:200]), "table"
+            ) from error
 
     def _checked(self, table: Mapping[str, object], at: int) -> CalibrationSession:
         """The rows from ``at`` on; every problem names its row of the whole log."""

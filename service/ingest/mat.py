@@ -14,6 +14,7 @@ from scipy.io import loadmat, whosmat
 from scipy.io.matlab import MatReadError, matfile_version
 
 from estimator.errors import FormatError
+from estimator.message import say
 from service.ingest.metadata import with_metadata
 from service.kit.limits import check_table, in_force, refusal
 
@@ -47,7 +48,10 @@ def read_mat(content: bytes, filename: str) -> dict[str, object]:
     metadata = columns.pop(VARIABLE, None)
     text = None if metadata is None else metadata.ravel().tolist()
     if text is None or metadata is None or metadata.dtype.kind != "U" or len(text) != 1 or not text[0].strip():
-        raise refusal(filename, f"has no text variable {VARIABLE}; put the session's JSON without its table there")
+        raise refusal(
+            filename,
+            say("has no text variable {variable}; put the session's JSON without its table there", variable=VARIABLE),
+        )
     return with_metadata(text[0].strip(), {name: cells(column) for name, column in columns.items()}, filename)
 
 
@@ -60,7 +64,7 @@ def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.
         raise refusal(filename, "is of a MATLAB version that is not read; save it with save(…, '-v7')")
     most = in_force().unpacked
     if _unpacked_size(content, most) > most:
-        raise refusal(filename, f"unpacks to more than {most // 1024**2} MiB; average or split the log")
+        raise refusal(filename, say("unpacks to more than {most} MiB; average or split the log", most=most // 1024**2))
     try:
         declared = _declared(content)
         _check_declared(declared, filename, most_rows)
@@ -84,13 +88,23 @@ def _check_declared(declared: list[Declared], filename: str, most_rows: int) -> 
     names = [name for name, _, _ in declared]
     for name, shape, kind in declared:
         if kind not in PLAIN or names.count(name) > 1:
-            raise refusal(filename, f"is of kind {kind}; give each column once, as numbers or as a char matrix", name)
+            raise refusal(
+                filename,
+                say("is of kind {kind}; give each column once, as numbers or as a char matrix", kind=kind),
+                name,
+            )
         if len(shape) != 2 or (kind != "char" and min(shape) > most_rows):
-            raise refusal(filename, f"has the shape {tuple(shape)}; a column is a vector, or a char matrix", name)
+            raise refusal(
+                filename, say("has the shape {shape}; a column is a vector, or a char matrix", shape=tuple(shape)), name
+            )
     check_table(filename, 0, len(declared))
     cells, most = sum(prod(shape) for _, shape, _ in declared), in_force().cells
     if cells > most + MOST_TEXT:
-        raise refusal(filename, f"has {cells} cells; at most {most} can be read, so average or split it", "table")
+        raise refusal(
+            filename,
+            say("has {cells} cells; at most {most} can be read, so average or split it", cells=cells, most=most),
+            "table",
+        )
 
 
 def cells(column: np.ndarray[Any, Any]) -> Any:

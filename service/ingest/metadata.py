@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
 from service.kit.limits import in_force, refusal
@@ -16,5 +17,7 @@ def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> di
     document = parse_json(text, problems)
     problems.raise_if_any()
     if "table" in document:
-        raise refusal(filename, f"stands in the {KEY} metadata; keep the readings in the columns only", "table")
+        raise refusal(
+            filename, say("stands in the {key} metadata; keep the readings in the columns only", key=KEY), "table"
+        )
     return document | {"table": dict(columns)}

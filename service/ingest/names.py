@@ -2,6 +2,8 @@
 
 import unicodedata
 
+from estimator.message import say
+
 LONGEST_NAME = 200
 """Characters of a name that the store keeps: the width of its columns."""
 UNSEEN = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
@@ -19,7 +21,9 @@ def plain_name(text: str) -> str:
 def fault_of_name(text: str) -> str | None:
     """What is wrong with a name; None where nothing is."""
     if len(text) > LONGEST_NAME:
-        return f"is {len(text)} characters long; at most {LONGEST_NAME} are kept"
+        return say(
+            "is {text} characters long; at most {longest_name} are kept", text=len(text), longest_name=LONGEST_NAME
+        )
     if any(unicodedata.category(c) in UNSEEN for c in text):
         return "holds characters that nobody sees, such as control characters or marks of direction; remove them"
     if text and any(part in STEPS for part in text.split("/")):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import polars as pl
 
+from estimator.message import say
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
 from service.ingest.log_rows import UNREADABLE, Rows, numbers, rows_of
@@ -33,7 +34,7 @@ def _head(rows: Rows, filename: str) -> CalibrationSession:
     try:
         first = next(rows.stretches(rows.names), pl.DataFrame()).head(HEAD)
     except UNREADABLE as error:
-        raise refusal(filename, f"cannot be read as a table: {str(error)[:200]}", "table") from error
+        raise refusal(filename, say("cannot be read as a table: {error}", error=str(error)[:200]), "table") from error
     first = first.with_columns(numbers(column) for column in first if column.dtype == pl.String)
     document = with_metadata(rows.metadata, columns_of(first, filename), filename)
     return read_session(document, name=filename, part=True)
@@ -46,7 +47,9 @@ def _frames(rows: Rows, names: list[str], filename: str) -> Iterator[pl.DataFram
         for frame in rows.stretches(names):
             at += len(frame)
             if at * columns > most:
-                raise refusal(filename, f"has more than {most} cells, the most of a recording; split it", "table")
+                raise refusal(
+                    filename, say("has more than {most} cells, the most of a recording; split it", most=most), "table"
+                )
             yield frame.cast(pl.Float64)
     except UNREADABLE as error:
-        raise refusal(filename, f"cannot be read to its end: {str(error)[:200]}", "table") from error
+        raise refusal(filename, say("cannot be read to its end: {error}", error=str(error)[:200]), "table") from error

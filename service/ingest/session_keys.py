@@ -1,5 +1,7 @@
 """What the fields and columns of a session file hold, in a line each, for people who fill one in."""
 
+from estimator.message import say
+
 NEEDED_HERE = "Needed."
 KEY_HINTS = {
     "format": "Leave as it is.",
@@ -58,9 +60,9 @@ COLUMN_HINTS = {
 
 def reading_hint(sensor: str, unit: str) -> str:
     """Of a sensor's column."""
-    return f"Reading of {sensor}, {unit}: the mean at this position."
+    return say("Reading of {sensor}, {unit}: the mean at this position.", sensor=sensor, unit=unit)
 
 
 def standard_error_hint(sensor: str, unit: str) -> str:
     """Of the column of its standard errors."""
-    return f"Standard error of the mean reading of {sensor}, {unit}. May stay empty."
+    return say("Standard error of the mean reading of {sensor}, {unit}. May stay empty.", sensor=sensor, unit=unit)

@@ -12,6 +12,7 @@ from pathlib import PurePosixPath
 from xml.parsers import expat
 from zipfile import BadZipFile, ZipFile, ZipInfo
 
+from estimator.message import say
 from service.kit.limits import check_table, in_force, refusal
 
 MOST_MEMBERS = 1000
@@ -40,7 +41,7 @@ def check_workbook(content: bytes, filename: str) -> None:
     try:
         _look_through(content, lengths, shared, extents)
     except TooMuchError as error:
-        raise refusal(filename, f"{error}; average or split it") from error
+        raise refusal(filename, say("{error}; average or split it", error=error)) from error
     except DAMAGED as error:
         raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
     for rows, columns in extents:
@@ -54,7 +55,7 @@ def _look_through(content: bytes, lengths: list[int], shared: Counter[int], exte
     with ZipFile(BytesIO(content)) as archive:
         members = archive.infolist()
         if len(members) > MOST_MEMBERS:
-            raise TooMuchError(f"has {len(members)} parts, where a workbook has some twenty")
+            raise TooMuchError(say("has {members} parts, where a workbook has some twenty", members=len(members)))
         for member in members:
             part = _Part(lengths, shared)
             left -= _streamed(archive, member, part, left)
@@ -69,7 +70,7 @@ def _streamed(archive: ZipFile, member: ZipInfo, part: "_Part", left: int) -> in
         while chunk := stream.read(CHUNK):
             total += len(chunk)
             if total > left:
-                raise TooMuchError(f"unpacks to more than {in_force().unpacked // 1024**2} MiB")
+                raise TooMuchError(say("unpacks to more than {unpacked} MiB", unpacked=in_force().unpacked // 1024**2))
             if is_xml:
                 part.parser.Parse(chunk, False)
     if is_xml and total:
@@ -134,8 +135,15 @@ class _Part:
         most = self._most
         if self.rows > most.rows or self.columns > most.columns or self.rows * self.columns > most.cells:
             raise TooMuchError(
-                f"has {self.rows} rows × {self.columns} columns in a sheet; at most {most.cells} cells, {most.rows} "
-                f"rows and {most.columns} columns can be read"
+                say(
+                    "has {rows} rows × {columns} columns in a sheet; at most {cells} cells, {rows2} rows and "
+                    "{columns2} columns can be read",
+                    rows=self.rows,
+                    columns=self.columns,
+                    cells=most.cells,
+                    rows2=most.rows,
+                    columns2=most.columns,
+                )
             )
 
 

@@ -8,6 +8,7 @@ import fastexcel
 import numpy as np
 import polars as pl
 
+from estimator.message import say
 from estimator.reading.columns import Column
 from estimator.reading.csv_text import named_columns
 from estimator.reading.problems import Problems, Where
@@ -50,10 +51,14 @@ def _places(names: Names, keys: list[str], header: list[str]) -> Where:
 
     def where(field: str, row: int | None) -> str:
         if row is not None and field in letters:
-            return f"cell {letters[field]}{row + 1} of the sheet {readings}"
+            return say(
+                "cell {letters}{row} of the sheet {readings}", letters=letters[field], row=row + 1, readings=readings
+            )
         if row is None and field in letters:
-            return f"column {letters[field]} of the sheet {readings}"
-        return f"cell B{lines[field]} of the sheet {session}" if field in lines else ""
+            return say("column {letters} of the sheet {readings}", letters=letters[field], readings=readings)
+        return (
+            say("cell B{lines} of the sheet {session}", lines=lines[field], session=session) if field in lines else ""
+        )
 
     return where
 
@@ -92,7 +97,10 @@ def _sheets(content: bytes, filename: str) -> tuple[Names, list[tuple[str, Cell]
         missing = [name for name in SHEETS if name not in book.sheet_names]
     except fastexcel.FastExcelError as error:
         raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
-    text = f"has no sheet {' and no sheet '.join(missing)}; a session needs both, a table of your own a mapping"
+    text = say(
+        "has no sheet {missing}; a session needs both, a table of your own a mapping",
+        missing=" and no sheet ".join(missing),
+    )
     raise refusal(filename, text)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import BusyError, ConflictError, ForbiddenError, RefusedError
 from service.jobs.failures_store import Failures
 from service.jobs.records import Job, JobKind, NewJob
@@ -46,7 +47,7 @@ def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:
 def require_room(store: Store) -> None:
     """BusyError where too many jobs wait already."""
     if Jobs(store).open_count() >= MOST_OPEN:
-        raise BusyError(f"{MOST_OPEN} jobs wait already. Cancel one, or ask again later.")
+        raise BusyError(say("{most_open} jobs wait already. Cancel one, or ask again later.", most_open=MOST_OPEN))
 
 
 def tell_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
@@ -64,7 +65,10 @@ def _pieces(store: Store, new: NewJob) -> int:
         return 1
     units = Jobs(store).units(new.scope, new.subject)
     if new.scope is not None and not units:
-        raise RefusedError("There is nothing to compute again.", (Problem("subject", f"no unit is {new.subject!r}'s"),))
+        raise RefusedError(
+            "There is nothing to compute again.",
+            (Problem("subject", say("no unit is {subject}'s", subject=repr(new.subject))),),
+        )
     return units
 
 
@@ -80,7 +84,9 @@ def cancel_job(storage: Storage, id: int, person: Person, who: str, now: datetim
         if not may_cancel(job, person):
             raise ForbiddenError("Only whoever asked for a job, or an engineer, cancels it.")
         if not Jobs(store).cancel(id, who, now):
-            raise ConflictError(STORING if job.is_open else f"Job {id} has ended already: it is {job.state}.")
+            raise ConflictError(
+                STORING if job.is_open else say("Job {id} has ended already: it is {state}.", id=id, state=job.state)
+            )
         if job.kind is JobKind.MODEL:
             Recomputations(store).cancel(job.revision, now)
         Audit(store).write(now, who, "cancel job", job.subject or "fleet", {"job": id, "done": job.done})
@@ -93,7 +99,9 @@ def cancel_job(storage: Storage, id: int, person: Person, who: str, now: datetim
 def file_of(files: Files, job: Job) -> bytes:
     """What a job made; ConflictError where it made none or keeps it no longer."""
     if job.made is None:
-        raise ConflictError(f"Job {job.id} has no file to give out: it is {job.state}, or its time is over.")
+        raise ConflictError(
+            say("Job {id} has no file to give out: it is {state}, or its time is over.", id=job.id, state=job.state)
+        )
     return read_made(files, job.id, job.made.sha256)
 
 

@@ -7,7 +7,7 @@ from sqlalchemy import ColumnElement, Select, String, cast, delete, func, litera
 from sqlalchemy.orm import InstrumentedAttribute
 
 from service.diagnosis.tables import DiagnosisRow
-from service.diagnosis.words.diagnosis import cannot_be_diagnosed
+from service.diagnosis.words.diagnosis import CANNOT
 from service.flags.records import DeliveryState
 from service.flags.tables import DeliveryRow
 from service.groups.tables import GroupDiagnosisRow
@@ -20,6 +20,7 @@ from service.queue.records import WorkKind
 from service.queue.store import ANEW, WorkQueue
 from service.queue.tables import WorkRow
 from service.sessions.records import DiagnosisState
+from service.storage.columns import is_made_of
 from service.storage.queries import Queries
 
 RECENT = timedelta(days=7)
@@ -81,7 +82,7 @@ class Failures(Queries):
 
 _HAS_FAILED = WorkRow.failed.is_not(None) & WorkRow.kind.not_in((WorkKind.JOB, WorkKind.UPLOAD, WorkKind.MESSAGE))
 """Jobs and messages keep by themselves how they ended; until then they are tried again."""
-_GIVEN_UP = (DiagnosisRow.state == DiagnosisState.FAILED) & ~DiagnosisRow.summary.startswith(cannot_be_diagnosed(""))
+_GIVEN_UP = (DiagnosisRow.state == DiagnosisState.FAILED) & ~is_made_of(DiagnosisRow.summary, CANNOT)
 """A session that lacks something is no failure of the program, and no other try helps it."""
 _PLACE = GroupDiagnosisRow.level + literal(" ") + cast(GroupDiagnosisRow.group_id, String)
 """`Group.place`."""

@@ -6,6 +6,7 @@ from typing import Any
 
 from sqlalchemy import Select, func, or_, select, update
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.jobs.records import Job, JobFailure, JobKind, JobState, Made, NewJob, Piece
 from service.jobs.tables import JobRow
@@ -75,7 +76,7 @@ class Jobs(Queries):
         """One job; NotFoundError."""
         found = self._found(_JOBS.where(JobRow.id == id))
         if not found:
-            raise NotFoundError(f"There is no job {id}.")
+            raise NotFoundError(say("There is no job {id}.", id=id))
         return found[0]
 
     def page(self, most: int, *, before: int | None = None, account: str = "", subject: str = "") -> tuple[Job, ...]:

@@ -1,5 +1,6 @@
 """Long work in words: what it is, how far it has come, and what it did."""
 
+from estimator.message import say
 from estimator.wording import counted
 from service.jobs.records import KILOBYTE, Job, JobKind, JobState
 from service.kit.measures import number
@@ -26,25 +27,26 @@ def title_of(job: Job) -> str:
     if job.kind is JobKind.REPORT:
         return FLEET_REPORTS[job.form]
     if job.kind is JobKind.UPLOAD:
-        return f"Upload of {job.subject}"
+        return say("Upload of {subject}", subject=job.subject)
     if job.kind is JobKind.MODEL:
-        return f"Accepted cause, revision {job.revision}: sessions computed again"
+        return say("Accepted cause, revision {revision}: sessions computed again", revision=job.revision)
     match job.scope:
         case None:
             return WHOLE_FLEET
         case Scope.UNIT:
-            return f"Unit {job.subject} computed again"
+            return say("Unit {subject} computed again", subject=job.subject)
         case Scope.UNIT_TYPE:
-            return f"All units of type {job.subject} computed again"
+            return say("All units of type {subject} computed again", subject=job.subject)
         case Scope.STAND:
-            return f"All units measured on stand {job.subject} computed again"
+            return say("All units measured on stand {subject} computed again", subject=job.subject)
 
 
 def left_in_words(left: int) -> str:
     """Why sessions of a unit keep what they had, and what helps."""
-    return (
-        f"{counted(left, 'session')} left as before: the file is lost, or cannot be calibrated under the model in "
-        "force. Upload a lost file again; withdraw an accepted cause that does not fit."
+    return say(
+        "{left} left as before: the file is lost, or cannot be calibrated under the model in "
+        "force. Upload a lost file again; withdraw an accepted cause that does not fit.",
+        left=counted(left, "session"),
     )
 
 
@@ -54,7 +56,7 @@ def progress_of(job: Job) -> str:
         return _read_so_far(job)
     if job.kind is JobKind.REPORT:
         return "" if job.state is not JobState.DONE else "The report is made."
-    return f"Units: {job.done} of {job.total}"
+    return say("Units: {done} of {total}", done=job.done, total=job.total)
 
 
 def _read_so_far(job: Job) -> str:
@@ -65,9 +67,14 @@ def _read_so_far(job: Job) -> str:
         return "It is read; its session is calibrated and is being stored."
     done, total = number(job.done / KILOBYTE, 1), number(job.total / KILOBYTE, 1)
     if not job.cursor:
-        return f"Read: {done} of {total} MB."
+        return say("Read: {done} of {total} MB.", done=done, total=total)
     times = counted(job.cursor, "time")
-    return f"Read again: {done} of {total} MB; all of it was read {times} already. A log takes several."
+    return say(
+        "Read again: {done} of {total} MB; all of it was read {times} already. A log takes several.",
+        done=done,
+        total=total,
+        times=times,
+    )
 
 
 def outcome_of(job: Job) -> str:
@@ -78,8 +85,12 @@ def outcome_of(job: Job) -> str:
         return ""
     if job.state is JobState.DONE and not job.recomputed and not job.failed:
         return "No session needed it: all rest on the models in force already."
-    other = f"{counted(job.verdicts, 'session')} with another verdict" if job.verdicts else "no verdict moved"
-    return f"{counted(job.recomputed, 'session')} computed again, {other}."
+    other = (
+        say("{verdicts} with another verdict", verdicts=counted(job.verdicts, "session"))
+        if job.verdicts
+        else "no verdict moved"
+    )
+    return say("{recomputed} computed again, {other}.", recomputed=counted(job.recomputed, "session"), other=other)
 
 
 def _became(job: Job) -> str:

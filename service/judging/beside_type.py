@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.health.population import spread
+from estimator.message import joined, say
 from estimator.results import SensorCalibration
 from estimator.session import Array
 from service.kit.measures import MEASURES, in_words
@@ -68,8 +69,16 @@ def beside_type(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doub
         away = {s.name: d for s in sensors if (d := _distance(s, parameter, of)) is not None}
         if away:
             kind = next(s.kind for s in sensors if s.name in away)
-            who, most = ", ".join(away), in_words(kind, parameter, max(away.values(), key=abs))
-            yield Doubt(f"The {name} of {who} lies {most} from those of the type's other units", ANOTHER)
+            who, most = joined(", ", away), in_words(kind, parameter, max(away.values(), key=abs))
+            yield Doubt(
+                say(
+                    "The {name} of {who} lies {most} from those of the type's other units",
+                    name=name,
+                    who=who,
+                    most=most,
+                ),
+                ANOTHER,
+            )
     yield from _directions(sensors, of)
     yield from _uncertainties(sensors, of)
 
@@ -95,10 +104,14 @@ def _directions(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doub
         if angle <= of.far(sensor.kind, "axis", float(np.median(others)) / RAYLEIGH):
             continue
         other = next((o for o, mean in means.items() if o != sensor.name and sensor.axis @ mean > NEAR), None)
-        where = "" if other is None else f", along that of {other}"
+        where = "" if other is None else say(", along that of {other}", other=other)
         yield Doubt(
-            f"{sensor.name} points {in_words(sensor.kind, 'axis', angle)} from where it does in the type's other units"
-            f"{where}",
+            say(
+                "{name} points {kind} from where it does in the type's other units{where}",
+                name=sensor.name,
+                kind=in_words(sensor.kind, "axis", angle),
+                where=where,
+            ),
             "sensors or axes are named otherwise than in the type" if other else "nominal axis or mounting is wrong",
         )
 
@@ -112,9 +125,13 @@ def _uncertainties(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[D
             ratios.append(sensor.bias.sigma / float(np.median(usual)))
     ratio = float(np.median(ratios)) if ratios else 1.0
     if not 1 / COARSE < ratio < COARSE:
-        times = f"{max(ratio, 1 / ratio):.0f} times {'less' if ratio > 1 else 'more'} certain"
+        times = (
+            say("{ratio} times less certain", ratio=f"{max(ratio, 1 / ratio):.0f}")
+            if ratio > 1
+            else say("{ratio} times more certain", ratio=f"{max(ratio, 1 / ratio):.0f}")
+        )
         yield Doubt(
-            f"Its zeros are {times} than those of the type's other units",
+            say("Its zeros are {times} than those of the type's other units", times=times),
             "standard errors are stated in another unit, or the readings are not what was measured",
         )
 

@@ -8,6 +8,7 @@ from estimator.health.common_motion import common_motion
 from estimator.health.parity import RULE as PARITY_RULE
 from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
+from estimator.message import say
 from estimator.results import Calibration
 from service.judging.calibrate import Comparison
 from service.judging.in_service_words import reason as recording_in_words
@@ -65,5 +66,5 @@ def judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, 
 
 def _decisions(judgements: Iterable[Judgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:
     """Judgements with the rule and the revision of the tolerances that they rest on."""
-    basis = f"{rule} ({unit_type.name} rev {unit_type.revision})"
+    basis = say("{rule} ({name} rev {revision})", rule=rule, name=unit_type.name, revision=unit_type.revision)
     return tuple(Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), rule=basis) for own in judgements)

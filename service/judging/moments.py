@@ -8,6 +8,7 @@ and as left are two measurements, however they are dated, and so are those of ot
 from collections.abc import Collection, Iterator
 from datetime import UTC, datetime, timedelta
 
+from estimator.message import say
 from service.ingest.checked import Checked
 from service.judging.known_unit import KnownUnit
 from service.kit.names import day_of
@@ -28,12 +29,12 @@ def of_date(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[Do
     """A doubt for a date before the unit existed; ``but`` are sessions that say nothing of that."""
     at, day = new.measured_at, day_of(new.measured_at)
     if at < FIRST_CLOCK or MILLENNIUM <= at < MILLENNIUM + RUNNING:
-        yield Doubt(f"It is dated {day}", LOST)
+        yield Doubt(say("It is dated {day}", day=day), LOST)
         return
     first = next((one.at for one in known.records.counted if one.id not in but), None)
     if first is not None and first - at > LONGEST_LIFE:
         years = (first - at).days // 365
-        yield Doubt(f"It is dated {day}, {years} years before the unit's first session", LOST)
+        yield Doubt(say("It is dated {day}, {years} years before the unit's first session", day=day, years=years), LOST)
 
 
 def of_moment(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
@@ -48,7 +49,11 @@ def of_moment(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[
         rival = Sessions(known.store).get(one.id)
         if not _are_apart(known, rival, new):
             yield Doubt(
-                f"The session of {rival.filename} was measured at the same moment, {_moment(new.measured_at)}",
+                say(
+                    "The session of {filename} was measured at the same moment, {measured_at}",
+                    filename=rival.filename,
+                    measured_at=_moment(new.measured_at),
+                ),
                 "this file corrects that one or is a copy of it, or one of both has a wrong time",
                 stands_for=rival.id,
             )
@@ -57,7 +62,7 @@ def of_moment(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[
 
 def _moment(at: datetime) -> str:
     """``1 May 2026, 09:00:00 UTC``."""
-    return f"{day_of(at)}, {at:%H:%M:%S} UTC"
+    return say("{day}, {time} UTC", day=day_of(at), time=f"{at:%H:%M:%S}")
 
 
 def _are_apart(known: KnownUnit, rival: StoredSession, new: Checked) -> bool:

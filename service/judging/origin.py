@@ -4,6 +4,7 @@ What was simulated says nothing of hardware: it must not move a measured unit's 
 """
 
 from estimator.errors import FormatError, Problem
+from estimator.message import say
 from estimator.session import CalibrationSession
 from service.sessions.store import Sessions
 from service.storage.store import Store
@@ -29,7 +30,7 @@ def require_one_origin(store: Store, session: CalibrationSession) -> bool:
     if known is None or known == session.is_simulated:
         return False
     if session.is_simulated:
-        raise FormatError([Problem("origin", OTHERS_MEASURED.format(unit=session.unit))])
+        raise FormatError([Problem("origin", say(OTHERS_MEASURED, unit=session.unit))])
     if Sessions(store).any_stands(session.unit):
-        raise FormatError([Problem("origin", OTHERS_SIMULATED.format(unit=session.unit))])
+        raise FormatError([Problem("origin", say(OTHERS_SIMULATED, unit=session.unit))])
     return True

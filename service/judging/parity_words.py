@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from estimator.message import capitalised, joined, say
 from estimator.parity import ParityResult
 from service.judging.in_service_words import (
     CHANGED,
@@ -33,37 +34,54 @@ def agreement_in_words(result: ParityResult) -> FitWords:
     chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
     quiet = TOO_MUCH_MOTION if result.moving else SAME
     return FitWords(
-        headline=f"{CHANGED if result.detected else quiet}.",
-        detail=f"χ² = {number(result.chi2, 1)} for {result.dof} numbers; an unchanged block gives this much or more "
-        f"in {chance} % of recordings.",
+        headline=say("{found}.", found=CHANGED if result.detected else quiet),
+        detail=say(
+            "χ² = {chi2} for {dof} numbers; an unchanged block gives this much or more in {chance} % of recordings.",
+            chi2=number(result.chi2, 1),
+            dof=result.dof,
+            chance=chance,
+        ),
         warnings=tuple(_warnings(result)),
     )
 
 
 def _warnings(result: ParityResult) -> Iterator[str]:
     can = PER_SENSOR * len(result.sensors)
-    yield f"Parity sees {result.dof} of {can} numbers that can change. It never sees {COMMON}."
+    yield say(
+        "Parity sees {dof} of {can} numbers that can change. It never sees {common}.",
+        dof=result.dof,
+        can=can,
+        common=COMMON,
+    )
     if not result.complete:
         yield ONE_ORIENTATION
     if result.moving:
         yield _suspicion(result)
-    yield from (f"{clipped_in_words(result, name)}." for name in result.clipped)
-    left = [f"{count} {_why(reason, result)}" for reason, count in result.left_out.items() if count]
+    yield from (say("{clipped}.", clipped=clipped_in_words(result, name)) for name in result.clipped)
+    left = [
+        say("{count} {reason}", count=count, reason=_why(reason, result))
+        for reason, count in result.left_out.items()
+        if count
+    ]
     if left:
-        yield f"Left out of {result.blocks} blocks: {', '.join(left)}."
+        yield say("Left out of {blocks} blocks: {left}.", blocks=result.blocks, left=joined(", ", left))
 
 
 def _suspicion(result: ParityResult) -> str:
     """What would be said if nothing moved, and how to know."""
     suspects = list(dict.fromkeys(c.sensor for c in result.suspects))[:MOST_CANDIDATES]
     act = stillness(result)
-    return (
-        f"If motion did nothing to sound sensors, χ² would be {number(result.chi2_unmoved, 1)} for {result.dof} "
-        f"numbers and {' or '.join(suspects)} would be suspected. {act[0].upper()}{act[1:]}."
+    return say(
+        "If motion did nothing to sound sensors, χ² would be {chi2_unmoved} for {dof} numbers "
+        "and {suspects} would be suspected. {act}.",
+        chi2_unmoved=number(result.chi2_unmoved, 1),
+        dof=result.dof,
+        suspects=joined(" or ", suspects),
+        act=capitalised(act),
     )
 
 
 def _why(reason: str, result: ParityResult) -> str:
     if reason == "saturated":
-        return f"in which {', '.join(result.saturated)} stood at the end of the range"
+        return say("in which {saturated} stood at the end of the range", saturated=joined(", ", result.saturated))
     return "in which the block moved, because its sensors do not sit in one point"

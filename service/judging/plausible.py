@@ -13,6 +13,7 @@ import numpy as np
 
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.diagnosis.record.silent import dead_channels
+from estimator.message import joined, say
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import CALIBRATIONS, Array, CalibrationSession, Sensor
 from service.ingest.checked import Checked
@@ -69,13 +70,16 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
     fit = calibration.fit
     if fit.dof > 0 and 0 < fit.chi2 / fit.dof < TOO_QUIET and new.session.standard_errors is not None:
         times = (fit.dof / fit.chi2) ** 0.5
-        yield Doubt(f"The readings scatter {times:.0f} times less than their standard errors", "another unit is stated")
+        yield Doubt(
+            say("The readings scatter {times} times less than their standard errors", times=f"{times:.0f}"),
+            "another unit is stated",
+        )
 
 
 def _of_dead(session: CalibrationSession) -> Iterator[Doubt]:
     """Channels that read the same at every position of a stand."""
     for name in dead_channels(session):
-        what = f"{name} reads the same in every row, although its input changes"
+        what = say("{name} reads the same in every row, although its input changes", name=name)
         yield Doubt(what, "it is dead, or its channel is not connected")
 
 
@@ -125,8 +129,12 @@ def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy =
     for alike in _alike(off):
         ratio = off[alike[0]]
         slip, correction = _slip(ratio, alike, remedy)
-        who = "Every scale factor is" if len(alike) == len(ratios) else f"The scale factor of {', '.join(alike)} is"
-        yield Doubt(f"{who} {ratio:.4g} times its {what}", slip, correction)
+        who = (
+            "Every scale factor is"
+            if len(alike) == len(ratios)
+            else say("The scale factor of {alike} is", alike=joined(", ", alike))
+        )
+        yield Doubt(say("{who} {ratio} times its {what}", who=who, ratio=f"{ratio:.4g}", what=what), slip, correction)
 
 
 def _alike(ratios: dict[str, float]) -> Iterator[tuple[str, ...]]:
@@ -152,7 +160,7 @@ def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, 
     for factors, slip in ((IN_G, "g and m/s² were taken for one another"), (IN_DEGREES, "degrees stand for radians")):
         for factor in factors:
             if factor / LIKE < ratio < factor * LIKE:
-                return f"{slip} in the nominal scale factor", Correction(Remedy.NOMINAL, sensors, factor)
+                return say("{slip} in the nominal scale factor", slip=slip), Correction(Remedy.NOMINAL, sensors, factor)
     return "unit, sensor or nominal scale factor is another one than the file says", None
 
 
@@ -171,15 +179,24 @@ def _of_axes(found: Found) -> Iterator[Doubt]:
         if name in done:
             continue
         if -(axis @ nominal[name]) > NEAR:
-            yield Doubt(f"{name} reads backwards", "its sign is reversed", Correction(Remedy.READINGS, (name,), -1.0))
+            yield Doubt(
+                say("{name} reads backwards", name=name),
+                "its sign is reversed",
+                Correction(Remedy.READINGS, (name,), -1.0),
+            )
         elif other is not None:
             done |= {name, other}
             pair = Correction(Remedy.EXCHANGE, (name, other))
-            yield Doubt(f"{name} feels along the axis of {other}, and {other} along that of {name}", EXCHANGED, pair)
+            yield Doubt(
+                say("{name} feels along the axis of {other}, and {other} along that of {name}", name=name, other=other),
+                EXCHANGED,
+                pair,
+            )
         else:
             angle = np.degrees(np.arccos(np.clip(axis @ nominal[name], -1, 1)))
             yield Doubt(
-                f"{name} feels {angle:.0f}° from its nominal axis", "nominal axis, mounting or channel is wrong"
+                say("{name} feels {angle}° from its nominal axis", name=name, angle=f"{angle:.0f}"),
+                "nominal axis, mounting or channel is wrong",
             )
 
 

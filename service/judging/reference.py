@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import Problem, ScheduleError
+from estimator.message import say
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
 from service.ingest.checked import Checked
@@ -53,9 +54,11 @@ def calibration_to_compare_with(store: Store, recording: Checked) -> Calibration
 
 def _uncalibrated(unit: str, since: datetime | None) -> ScheduleError:
     """That the unit has no calibration, and what to do first."""
-    service = "" if since is None else f" since its service of {since:%Y-%m-%d}"
-    message = (
-        f"{unit} has no calibration yet{service}, and a recording in service is compared with one: "
-        "upload a calibration session of the unit first, then this file again"
+    service = "" if since is None else say(" since its service of {since}", since=f"{since:%Y-%m-%d}")
+    message = say(
+        "{unit} has no calibration yet{service}, and a recording in service is compared with "
+        "one: upload a calibration session of the unit first, then this file again",
+        unit=unit,
+        service=service,
     )
     return ScheduleError([Problem("unit", message)])

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import gammainc
 
 from estimator.health.population import spread
+from estimator.message import say
 from estimator.results import SensorCalibration
 from estimator.session import CALIBRATIONS
 from service.ingest.checked import Checked
@@ -41,8 +42,15 @@ def of_unit(
     copy = Sessions(known.store).of_readings(new.readings_digest, known.unit, but)
     if copy is not None:
         yield Doubt(
-            f"These readings are stored already as session {copy.id} of {copy.unit}, {day_of(copy.started_at)}",
-            f"is this {copy.unit}? The serial number is mistyped in one of both files, or this is a copy",
+            say(
+                "These readings are stored already as session {id} of {unit}, {started_at}",
+                id=copy.id,
+                unit=copy.unit,
+                started_at=day_of(copy.started_at),
+            ),
+            say(
+                "is this {unit}? The serial number is mistyped in one of both files, or this is a copy", unit=copy.unit
+            ),
             Correction(Remedy.UNIT, unit=copy.unit),
             stands_for=copy.id,
         )
@@ -52,8 +60,8 @@ def of_unit(
         near = _near(known, new, sensors)
         if near is not None:
             yield Doubt(
-                f"{new.session.unit} is new, and {near[0]} is known; {near[1]}",
-                f"is this {near[0]}? The serial number is probably mistyped",
+                say("{unit} is new, and {near} is known; {near2}", unit=new.session.unit, near=near[0], near2=near[1]),
+                say("is this {near}? The serial number is probably mistyped", near=near[0]),
                 Correction(Remedy.UNIT, unit=near[0]),
             )
 

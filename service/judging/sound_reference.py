@@ -6,6 +6,7 @@ it, could neither be judged nor judge another.
 
 from collections.abc import Iterator, Mapping
 
+from estimator.message import say
 from estimator.results import Calibration, Estimate, SensorCalibration
 from service.sessions.records import PARAMETERS
 
@@ -21,7 +22,7 @@ def left_uncertain(
                 continue
             expanded = _expanded(sensor, parameter, coverage_factor)
             if expanded is None or expanded > tolerance:
-                yield f"{sensor.name} {parameter}"
+                yield say("{name} {parameter}", name=sensor.name, parameter=parameter)
 
 
 def _expanded(sensor: SensorCalibration, parameter: str, k: float) -> float | None:

@@ -23,6 +23,7 @@ from sqlalchemy import (
 )
 from sqlalchemy.orm import Session
 
+from estimator.message import with_messages
 from service.diagnosis.tables import DiagnosisRow
 from service.flags.records import Concern, FlagState, Matter, NoticeKind
 from service.flags.tables import FlagRow, NoticeRow
@@ -35,6 +36,7 @@ from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.store import NOT_JUDGED, is_waiting, worst_columns
 from service.sessions.tables import CalibrationRow, CommonMotionRow, DecisionRow, ReferenceChoiceRow, SessionRow
+from service.storage.documents import STORED
 from service.storage.queries import Queries
 from service.units.tables import ServiceRow, UnitRow
 
@@ -257,18 +259,19 @@ def _motion_rows(one: Decided) -> Iterator[dict[str, Any]]:
         yield {"session_id": one.session, "revision": one.revision, **vars(motion)}
 
 
-def told_to_dict(told: Told) -> dict[str, list[list[str | int]]]:
+def told_to_dict(told: Told) -> dict[str, list[list[Any]]]:
     """As the store keeps it."""
-    concerns: list[list[str | int]] = [[c.matter.value, c.place, c.severity, c.summary] for c in told.concerns]
-    return {"concerns": concerns, "clear": [list(line) for line in told.clear]}
+    concerns = [[c.matter.value, c.place, c.severity, c.summary] for c in told.concerns]
+    document: dict[str, list[list[Any]]] = STORED.written({"concerns": concerns, "clear": told.clear})
+    return document
 
 
-def _told(document: dict[str, list[list[str | int]]] | None) -> Told | None:
+def _told(document: dict[str, list[list[Any]]] | None) -> Told | None:
     if document is None:
         return None
     concerns = tuple(
-        Concern(Matter(str(matter)), str(place), int(severity), str(summary))
+        Concern(Matter(str(matter)), str(place), int(severity), with_messages(summary))
         for matter, place, severity, summary in document["concerns"]
     )
-    clear = tuple((str(matter), str(place), str(why)) for matter, place, why in document["clear"])
+    clear = tuple((str(matter), str(place), with_messages(why)) for matter, place, why in document["clear"])
     return Told(concerns, clear)

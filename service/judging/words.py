@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Structure
+from estimator.message import capitalised, joined, say, uncapitalised, without_stop
 from estimator.results import Calibration
 from service.diagnosis.words.causes import cause_on, choice_of
-from service.diagnosis.words.structures import MIXED_UP, UNEXPLAINED
+from service.diagnosis.words.structures import MIXED_UP
 from service.fleet.condition import UnitSummary
 from service.kit.measures import COVERAGE, HARD, THIN, deviation_measure, in_measure, in_words, measured, number
 from service.kit.names import PARAMETER_NAMES
@@ -45,7 +46,7 @@ def advice_on(cause: str) -> str:
 def named(finding: Finding, size: str) -> str:
     """``the zero of A2 jumps once and stays (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
     what = choice_of(finding) if finding.alternatives else finding.sentence
-    return f"{within(what)}{f' ({size})' if size else ''}"
+    return say("{what}{size}", what=within(what), size=say(" ({size})", size=size) if size else "")
 
 
 def unexplained(structures: Sequence[Structure], size: str) -> str:
@@ -53,8 +54,8 @@ def unexplained(structures: Sequence[Structure], size: str) -> str:
     first = structures[0]
     if first.of_record:
         return within(MIXED_UP)
-    where = f" in {', '.join(first.sensors)}" if first.sensors else " in all sensors"
-    return f"{within(UNEXPLAINED).replace('something is there', f'something is there{where}')} ({size})"
+    where = say(" in {sensors}", sensors=joined(", ", first.sensors)) if first.sensors else " in all sensors"
+    return say("something is there{where} that no known cause explains ({size})", where=where, size=size)
 
 
 def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *, named: bool = False) -> str:
@@ -62,40 +63,57 @@ def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *
 
     ``named``: the causes are those that the diagnosis names.
     """
-    word = condition_of(verdict).word.lower()
+    word = uncapitalised(condition_of(verdict).word)
     if named:
-        return f"it would be {word} with what was found in the model"
+        return say("it would be {word} with what was found in the model", word=word)
     if not causes:
-        return f"it would be {word} if what acts were none of the known causes"
+        return say("it would be {word} if what acts were none of the known causes", word=word)
     names = [cause_on(causes[0], sensors), *(cause_on(cause, ()) for cause in causes[1:])]
-    return f"it would be {word} with {' and '.join(names)} in the model"
+    return say("it would be {word} with {names} in the model", word=word, names=joined(" and ", names))
 
 
 def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], tolerance: float) -> str:
     """``51 ± 4 µg, tolerance 50 µg``, with U at k = 2; SI in."""
     value, sigma = size
     measure = deviation_measure(kind, parameter, max(value, tolerance))
-    allowed = f"tolerance {number(in_measure(tolerance, measure))}{THIN}{measure.label}"
+    allowed = say(
+        "tolerance {tolerance}{thin}{label}",
+        tolerance=number(in_measure(tolerance, measure)),
+        thin=THIN,
+        label=measure.label,
+    )
     if sigma is None:
-        return f"about {number(float(f'{value * measure.factor:.2g}'))}{THIN}{measure.label}, {allowed}"
-    return f"{measured(value, COVERAGE * sigma, measure)}, {allowed}"
+        return say(
+            "about {value}{thin}{label}, {allowed}",
+            value=number(float(f"{value * measure.factor:.2g}")),
+            thin=THIN,
+            label=measure.label,
+            allowed=allowed,
+        )
+    return say("{value}, {allowed}", value=measured(value, COVERAGE * sigma, measure), allowed=allowed)
 
 
 def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
     """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
     here, by, at = _degrees(now), _degrees(abs(outside)), _between(*covered)
     if outside > 0:
-        away = f"it was measured at {here}, {by} above its reference and earlier sessions ({at})"
+        away = say(
+            "it was measured at {here}, {by} above its reference and earlier sessions ({at})", here=here, by=by, at=at
+        )
     else:
-        away = f"it was measured at {here}, {by} below its reference and earlier sessions ({at})"
+        away = say(
+            "it was measured at {here}, {by} below its reference and earlier sessions ({at})", here=here, by=by, at=at
+        )
     if worth:
-        return f"{away}, and the temperature alone may be worth {worth}"
-    return f"{away}, and the temperature alone can make or hide a change"
+        return say("{away}, and the temperature alone may be worth {worth}", away=away, worth=worth)
+    return say("{away}, and the temperature alone can make or hide a change", away=away)
 
 
 def worth_in(parameter: str, sensor: str, size: str) -> str:
     """``A2 bias: 80 ± 10 µg, tolerance 50 µg``."""
-    return f"{sensor} {PARAMETER_NAMES[parameter]}: {size}"
+    return say(
+        "{sensor} {parameter_names}: {size}", sensor=sensor, parameter_names=PARAMETER_NAMES[parameter], size=size
+    )
 
 
 def _between(lowest: float, highest: float) -> str:
@@ -106,7 +124,7 @@ def _between(lowest: float, highest: float) -> str:
 
 def at_about(celsius: float) -> str:
     """Where to measure again."""
-    return f"measure again at about {_degrees(celsius)}, or calibrate over temperature"
+    return say("measure again at about {celsius}, or calibrate over temperature", celsius=_degrees(celsius))
 
 
 def _degrees(celsius: float) -> str:
@@ -115,9 +133,8 @@ def _degrees(celsius: float) -> str:
 
 def within(sentence: str) -> str:
     """A sentence as a clause within another: names of sensors keep their capitals."""
-    head, _, rest = sentence.rstrip(".").partition(" ")
-    plain = head[1:].islower() or len(head) == 1
-    return f"{head.lower() if plain else head} {rest}".rstrip()
+    clause, head = without_stop(sentence), sentence.split()[0].rstrip(".")
+    return uncapitalised(clause) if head[1:].islower() or len(head) == 1 else clause
 
 
 FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
@@ -130,7 +147,7 @@ ALL_PASS = "Every parameter is within its tolerance by more than U; closest to i
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
     """A verdict as it is said wherever it stands: ``Fit, but the zero of A2 jumps once: repeat the session``."""
-    return f"{condition.word}{but(reservations)}"
+    return say("{word}{but}", word=condition.word, but=but(reservations)) if reservations != () else condition.word
 
 
 def unit_in_words(unit: UnitSummary) -> str:
@@ -140,7 +157,7 @@ def unit_in_words(unit: UnitSummary) -> str:
 
 def first_in_words(calibration: Calibration, opening: Opening) -> str:
     """That a session is the reference, and what of the unit it leaves open."""
-    return " ".join(filter(None, (OPENINGS[opening], left_open(calibration))))
+    return joined(" ", filter(None, (OPENINGS[opening], left_open(calibration))))
 
 
 def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
@@ -154,41 +171,77 @@ def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
 
 
 def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
-    place = f"{worst.sensor} {_name(worst)}"
+    place = say("{sensor} {worst}", sensor=worst.sensor, worst=_name(worst))
     if worst.deviation is None or worst.expanded is None:
         return _unseen(worst, decisions)
     moved = _words(worst, worst.deviation, signed=worst.parameter != "axis")
     spread, allowed = _words(worst, worst.expanded), _words(worst, worst.tolerance)
     if worst.verdict is Verdict.PASS:
-        return ALL_PASS.format(closest=f"{place}, moved {moved} (U {spread}) of {allowed} allowed")
+        return say(
+            ALL_PASS,
+            closest=say(
+                "{place}, moved {moved} (U {spread}) of {allowed} allowed",
+                place=place,
+                moved=moved,
+                spread=spread,
+                allowed=allowed,
+            ),
+        )
     if worst.verdict is Verdict.FAIL:
-        return f"{place} moved {moved} (U {spread}) beyond the tolerance of {allowed}."
+        return say(
+            "{place} moved {moved} (U {spread}) beyond the tolerance of {allowed}.",
+            place=place,
+            moved=moved,
+            spread=spread,
+            allowed=allowed,
+        )
     if worst.verdict is Verdict.CONDITIONAL_FAIL:
-        return f"{place} moved {moved} (U {spread}): beyond the tolerance of {allowed}, by less than U."
+        return say(
+            "{place} moved {moved} (U {spread}): beyond the tolerance of {allowed}, by less than U.",
+            place=place,
+            moved=moved,
+            spread=spread,
+            allowed=allowed,
+        )
     if worst.verdict is Verdict.CONDITIONAL_PASS:
-        return f"{place} moved {moved} (U {spread}): within the tolerance of {allowed}, by less than U."
+        return say(
+            "{place} moved {moved} (U {spread}): within the tolerance of {allowed}, by less than U.",
+            place=place,
+            moved=moved,
+            spread=spread,
+            allowed=allowed,
+        )
     return _too_uncertain(place, moved, spread, allowed, worst)
 
 
 def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
     if worst.expanded is not None and worst.expanded > worst.tolerance:
-        return (
-            f"{place} is known to U {spread} only, more than its tolerance of {allowed}: "
-            "measure more positions or better averages, or set a tolerance that can be decided."
+        return say(
+            "{place} is known to U {spread} only, more than its tolerance of {allowed}: measure more "
+            "positions or better averages, or set a tolerance that can be decided.",
+            place=place,
+            spread=spread,
+            allowed=allowed,
         )
-    return (
-        f"{place} moved {moved} (U {spread}), beyond the tolerance of {allowed} but no more than noise "
-        "makes the largest of so many numbers: measure again."
+    return say(
+        "{place} moved {moved} (U {spread}), beyond the tolerance of {allowed} but no more than "
+        "noise makes the largest of so many numbers: measure again.",
+        place=place,
+        moved=moved,
+        spread=spread,
+        allowed=allowed,
     )
 
 
 def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     sensors = [d.sensor for d in decisions if d.parameter == worst.parameter and d.deviation is None]
-    named = ", ".join(sensors[:6]) + (f" and {len(sensors) - 6} more" if len(sensors) > 6 else "")
+    named = joined(", ", sensors[:6]) + (
+        say(" and {sensors} more", sensors=len(sensors) - 6) if len(sensors) > 6 else ""
+    )
     missing = "has none in the reference session to compare with"
     if worst.value is None:
         missing = "is not observable in this session: add the positions that show it"
-    return f"{_name(worst).capitalize()} of {named} {missing}."
+    return say("{worst} of {named} {missing}.", worst=capitalised(_name(worst)), named=named, missing=missing)
 
 
 def _name(decision: Decision) -> str:

@@ -1,6 +1,7 @@
 """The coverage factor that expanded uncertainties are stated with, in words."""
 
 from estimator.coverage import coverage_factor
+from estimator.message import say
 from estimator.results import Calibration, SensorCalibration
 from service.kit.measures import number
 
@@ -12,8 +13,12 @@ def coverage_in_words(calibration: Calibration, k: float) -> str:
         return f"k = {number(k)}"
     most, least = (coverage_factor(k, dof) for dof in (min(dofs), max(dofs)))
     told = _range(min(dofs), max(dofs), 0)
-    degrees = "one effective degree" if told == "1" else f"{told} effective degrees"
-    return f"k = {_range(least, most, 2)}, by Student's t: the readings tell their noise to {degrees} of freedom"
+    degrees = "one effective degree" if told == "1" else say("{told} effective degrees", told=told)
+    return say(
+        "k = {least}, by Student's t: the readings tell their noise to {degrees} of freedom",
+        least=_range(least, most, 2),
+        degrees=degrees,
+    )
 
 
 def noise_is_estimated(calibration: Calibration) -> bool:
@@ -34,4 +39,4 @@ def _of_numbers(sensor: SensorCalibration) -> tuple[float | None, ...]:
 def _range(low: float, high: float, digits: int) -> str:
     """``2.1 to 2.9``, or one number where both read the same."""
     first, last = number(low, digits), number(high, digits)
-    return first if first == last else f"{first} to {last}"
+    return first if first == last else say("{first} to {last}", first=first, last=last)

@@ -1,5 +1,6 @@
 """Work beside the requests that has failed, in words: what, why, and who must act."""
 
+from estimator.message import say, without_stop
 from service.kit.failure import FailedKind
 
 UNIT = (
@@ -25,19 +26,19 @@ NAMES = {
 
 def with_last_try(text: str, why: str) -> str:
     """What was given up, and how its last try ended where that is known."""
-    return f"{text} The last try: {why.rstrip('.')}." if why else text
+    return say("{text} The last try: {why}.", text=text, why=without_stop(why)) if why else text
 
 
 def unit_failed(reason: str) -> str:
     """Of a unit."""
-    return UNIT.format(why=reason.rstrip("."))
+    return say(UNIT, why=without_stop(reason))
 
 
 def session_failed(reason: str) -> str:
     """Of a session."""
-    return SESSION.format(why=reason.rstrip("."))
+    return say(SESSION, why=without_stop(reason))
 
 
 def group_failed(reason: str) -> str:
     """Of a unit, a unit type or a stand."""
-    return GROUP.format(why=reason.rstrip("."))
+    return say(GROUP, why=without_stop(reason))

@@ -8,6 +8,7 @@ operator chooses the size of the machine and not each of them.
 from dataclasses import dataclass, replace
 
 from estimator.errors import FormatError, Problem
+from estimator.message import say
 from estimator.reading import Extent
 from service.settings import Settings
 
@@ -106,9 +107,22 @@ def check_table(filename: str, rows: int, columns: int) -> None:
     """Raises when a table of this size is beyond the limits."""
     most = in_force()
     if rows > most.rows:
-        raise refusal(filename, f"has {rows} rows; at most {most.rows} can be read, so average or split it", "table")
+        raise refusal(
+            filename,
+            say("has {rows} rows; at most {rows2} can be read, so average or split it", rows=rows, rows2=most.rows),
+            "table",
+        )
     if columns > most.columns:
-        raise refusal(filename, f"has {columns} columns; at most {most.columns} can be read", "table")
+        raise refusal(
+            filename,
+            say("has {columns} columns; at most {columns2} can be read", columns=columns, columns2=most.columns),
+            "table",
+        )
     if rows * columns > most.cells:
-        text = f"has {rows} rows × {columns} columns; at most {most.cells} cells can be read, so average or split it"
+        text = say(
+            "has {rows} rows × {columns} columns; at most {cells} cells can be read, so average or split it",
+            rows=rows,
+            columns=columns,
+            cells=most.cells,
+        )
         raise refusal(filename, text, "table")

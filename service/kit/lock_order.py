@@ -16,6 +16,8 @@ from functools import wraps
 from threading import local
 from typing import ParamSpec, TypeVar
 
+from estimator.message import say
+
 WATCHED = "IMU_WATCH_WRITING"
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -42,7 +44,9 @@ def outside_writing(function: Callable[Given, Result]) -> Callable[Given, Result
     @wraps(function)
     def watched(*args: Given.args, **kwargs: Given.kwargs) -> Result:
         if getattr(_own, "is_writing", False) and WATCHED in os.environ:
-            raise ComputedWhileWritingError(f"{function.__qualname__} is called in a write transaction")
+            raise ComputedWhileWritingError(
+                say("{qualname} is called in a write transaction", qualname=function.__qualname__)
+            )
         return function(*args, **kwargs)
 
     return watched

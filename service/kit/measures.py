@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import floor, isfinite, log10, pi
 
 from estimator.applied_vector import STANDARD_GRAVITY
+from estimator.message import say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 
 DEGREE = pi / 180
@@ -70,9 +71,9 @@ NOISE = {
     ("gyroscope", "random-walk"): Measure("°/h/√h", 3600 * 60 / DEGREE),
 }
 """Of the terms of noise at rest, as data sheets give them."""
-PER_G = Measure("per g", STANDARD_GRAVITY)
+PER_G = Measure(say("per g"), STANDARD_GRAVITY)
 """Of scale factors."""
-PER_RATE = Measure("per °/s", DEGREE)
+PER_RATE = Measure(say("per °/s"), DEGREE)
 """Of the scale factors of gyros."""
 
 
@@ -129,12 +130,12 @@ def number(value: float | None, digits: int | None = None) -> str:
 def signed(value: float | None, expanded: float | None, measure: Measure) -> str:
     """The same for a change: with a plus where it is not negative."""
     text = measured(value, expanded, measure)
-    return text if value is None or text.startswith(MINUS) else f"+{text}"
+    return text if value is None or text.startswith(MINUS) else "+" + text
 
 
 def limit(tolerance: float, measure: Measure, one_sided: bool) -> str:
     """``±40 µg``, or ``30 ″`` for what cannot be negative."""
-    return f"{'' if one_sided else '±'}{number(in_measure(tolerance, measure))}{THIN}{measure.label}"
+    return ("" if one_sided else "±") + number(in_measure(tolerance, measure)) + THIN + measure.label
 
 
 def measured(value: float | None, expanded: float | None, measure: Measure) -> str:
@@ -142,8 +143,8 @@ def measured(value: float | None, expanded: float | None, measure: Measure) -> s
     shown, spread = in_measure(value, measure), in_measure(expanded, measure)
     digits = decimals(spread)
     if digits is None:
-        return f"{number(shown)}{THIN}{measure.label}"
-    return f"{number(shown, digits)}{HARD}±{HARD}{number(spread, digits)}{THIN}{measure.label}"
+        return number(shown) + THIN + measure.label
+    return f"{number(shown, digits)}{HARD}±{HARD}{number(spread, digits)}{THIN}" + measure.label
 
 
 def size_in_words(count: int) -> str:
@@ -151,7 +152,7 @@ def size_in_words(count: int) -> str:
     for size, label in ((1e6, "MB"), (1e3, "kB")):
         if count >= size:
             return f"{count / size:.1f}{THIN}{label}"
-    return f"{count} bytes"
+    return say("{count} bytes", count=count)
 
 
 def in_words(kind: str, parameter: str, si: float, *, signed: bool = False) -> str:
@@ -159,7 +160,7 @@ def in_words(kind: str, parameter: str, si: float, *, signed: bool = False) -> s
     measure = MEASURES[kind, parameter]
     shown = si * measure.factor
     if not isfinite(shown):
-        return f"unknown {measure.label}"
+        return say("unknown {label}", label=measure.label)
     digits = 0 if shown == 0 else max(0, 1 - floor(log10(abs(shown))))
     sign = "+" if signed and shown > 0 else ""
-    return f"{sign}{shown:,.{digits}f} {measure.label}".replace("-", "−")
+    return f"{sign}{shown:,.{digits}f} ".replace("-", "−") + measure.label

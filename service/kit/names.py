@@ -1,7 +1,8 @@
 """What parameters, programmes and methods are called, and dates as people write them."""
 
-from datetime import date, timedelta
+from datetime import date, datetime, timedelta
 
+from estimator.message import joined, say
 from estimator.parity.results import SEVERAL
 
 YEAR = timedelta(days=365.25)
@@ -31,14 +32,19 @@ def spaced(identifier: str) -> str:
 
 def method_name(method: str) -> str:
     """``turntable, analytic`` of ``turntable/analytic``."""
-    return spaced(method.replace("/", ", "))
+    return joined(", ", map(spaced, method.split("/")))
 
 
 def day_of(at: date) -> str:
     """``7 Mar 2026``."""
-    return f"{at.day} {at:%b %Y}"
+    return say("{day} {month} {year}", day=at.day, month=f"{at:%b}", year=at.year)
+
+
+def minute_of(at: datetime) -> str:
+    """``7 Mar 2026, 09:30 UTC``."""
+    return say("{day}, {time} UTC", day=day_of(at), time=f"{at:%H:%M}")
 
 
 def month_of(at: date) -> str:
     """``Mar 2026``."""
-    return f"{at:%b %Y}"
+    return say("{month} {year}", month=f"{at:%b}", year=at.year)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from estimator.message import say
 from service.kit.answer import Hidden, answer
 
 
@@ -99,7 +100,7 @@ class Person:
     @property
     def account(self) -> str:
         """As the audit trail names it: the account, and the token that acted for it."""
-        return f"{self.login}, token {self.token}" if self.token else self.login
+        return say("{login}, token {token}", login=self.login, token=self.token) if self.token else self.login
 
 
 UNNAMED = "whoever is at this machine"

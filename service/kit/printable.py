@@ -11,6 +11,8 @@ from functools import lru_cache
 from typing import Any
 from unicodedata import category
 
+from estimator.message import changed
+
 RANGES = ((0x0020, 0x04FF), (0x1E00, 0x1FFF), (0x2000, 0x20CF), (0x2190, 0x22FF))
 """First and last code point of what can be printed."""
 ABSENT = frozenset("\u2041\u2043\u2053")
@@ -51,7 +53,7 @@ def printable_data(record: Any) -> Any:
 def _printable(value: Any) -> Any:
     match value:
         case str():
-            return printable(value)
+            return changed(value, printable)
         case dict():
             return {key: _printable(inner) for key, inner in value.items()}
         case list() | tuple():

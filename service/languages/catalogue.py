@@ -1,7 +1,7 @@
 """The catalogue of a language, read once from its gettext file."""
 
-from collections.abc import Iterator, Sequence
-from functools import cached_property, lru_cache
+from collections.abc import Sequence
+from functools import lru_cache
 from gettext import c2py
 from pathlib import Path
 from typing import Any
@@ -10,13 +10,15 @@ from babel.messages import Catalog
 from babel.messages import Message as Stored
 from babel.messages.pofile import read_po
 
+from estimator.message import Message, filled
 from service.languages.charts import chart_in
-from service.languages.grammar import DAYS, JOINTS, MONTHS, NAMES_OF_MONTHS, Grammar
+from service.languages.entry import Entry
 from service.languages.language import Language
-from service.languages.message import PLACE, Message
-from service.languages.recognise import Entry, Recogniser
+from service.languages.time import TIME
 
 FOLDER = Path(__file__).parent
+NAMED = frozenset(("unit", "serial", "subject", "stand", "operator", "login", "account", "customer", "filename", "who"))
+"""Places of what people named: a unit may be called as a word of ours."""
 
 
 class Catalogue:
@@ -24,35 +26,38 @@ class Catalogue:
 
     def __init__(self, language: Language, stored: Catalog) -> None:
         self._stored = stored
-        self._grammar = Grammar(
-            c2py(stored.plural_expr), JOINTS[language], MONTHS[language], NAMES_OF_MONTHS[language], DAYS[language]
-        )
-        self.plural = self._grammar.plural
+        self._known = {texts[0]: forms_of(one) for one in stored if (texts := _texts(one.id)) and forms_of(one)}
+        self._time = TIME[language]
+        self.plural = c2py(stored.plural_expr)
 
-    def forms(self, message: Message) -> Sequence[str]:
+    def forms(self, message: Entry) -> Sequence[str]:
         """A message's translation, one text for every plural form; empty where it has none."""
         found = self._stored.get(message.id) or self._stored.get(message.text)
         return forms_of(found) if found else ()
 
     def say(self, text: str) -> str:
-        """A text that was made in English; what is not known stays as it is."""
-        return self._recogniser.say(text)
+        """A text that was made in English; what the catalogue does not have stays as it is."""
+        if not isinstance(text, Message):
+            return self._forms(text)[0]
+        forms = self._forms(text.template)
+        form = forms[self.plural(text.number)] if text.number is not None and len(forms) > 1 else forms[0]
+        return filled(form, {name: part if name in NAMED else self.say(part) for name, part in text.parts.items()})
 
     def chart(self, definition: Any) -> Any:
         """A chart's definition with its words in the language."""
-        return chart_in(definition, self.say, self._grammar.time)
+        return chart_in(definition, self.say, self._time)
 
-    @cached_property
-    def _recogniser(self) -> Recogniser:
-        return Recogniser(self._entries(), self._grammar)
-
-    def _entries(self) -> Iterator[Entry]:
-        """What is recognised. A page's sentences with places are exchanged in its template, and made nowhere else."""
-        for one in self._stored:
-            texts = _texts(one.id)
-            only_pages = one.locations and all(str(place).endswith(".html") for place, _ in one.locations)
-            if texts and forms_of(one) and not (only_pages and PLACE.search(texts[0])):
-                yield Entry(texts, forms_of(one))
+    def _forms(self, english: str) -> Sequence[str]:
+        """Of a whole text or template, also where it begins as within a sentence, or has lost its full stop."""
+        if known := self._known.get(english):
+            return known
+        turned = english[:1].swapcase() + english[1:]
+        if known := self._known.get(turned):
+            change = str.upper if english[0].isupper() else str.lower
+            return [change(form[:1]) + form[1:] for form in known]
+        if not english.endswith(".") and (f"{english}." in self._known or f"{turned}." in self._known):
+            return [form.removesuffix(".") for form in self._forms(f"{english}.")]
+        return [english]
 
 
 def forms_of(stored: Stored) -> tuple[str, ...]:

@@ -1,6 +1,5 @@
 """Documents in another language: every text of the data that a template is filled with."""
 
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,17 +9,13 @@ NOT_SAID = frozenset(
 """Fields that name something for the template, or hold what people named or wrote."""
 VALUE, BY_SOMEBODY = "value", "is_written"
 """Of a line of a paper: its value, and whether somebody wrote that."""
-DRAWING = "<svg"
-WRITTEN = re.compile(r"(<text\b[^>]*>)([^<]+)(</text>)")
-"""A text in a drawing."""
 
 
 def document_in(data: Any, say: Callable[[str], str]) -> Any:
-    """Plain dicts and lists with their texts said in another language; drawings keep their layout."""
+    """Plain dicts and lists with their texts said in another language."""
     match data:
         case str():
-            is_drawing = data.lstrip().startswith(DRAWING)
-            return WRITTEN.sub(lambda m: f"{m[1]}{say(m[2])}{m[3]}", data) if is_drawing else say(data)
+            return say(data)
         case dict():
             kept = NOT_SAID | {VALUE} if data.get(BY_SOMEBODY) else NOT_SAID
             return {key: value if key in kept else document_in(value, say) for key, value in data.items()}

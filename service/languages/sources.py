@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
+from estimator.message import PLACE
 from service.languages import python_sources, typst_sources
-from service.languages.message import LETTERS, PLACE, Message
+from service.languages.entry import LETTERS, Entry
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
 from service.languages.template import Template
 from service.languages.templates import literals
@@ -33,8 +34,6 @@ SILENT = (
     "service/demo",
     "service/pages/feeds.py",
     "service/flags/messages.py",
-    "service/records/flagging/overdue_units.py",
-    "service/records/flagging/shifted_stands.py",
     "service/ingest/convert",
     "service/ingest/fork_server.py",
     "service/ingest/layout/units.py",
@@ -54,6 +53,7 @@ SILENT = (
     "service/papers/seal/trial.py",
     "service/papers/seal/xml.py",
     "service/people/access.py",
+    "service/records/flagging/overdue_units.py",
     "service/records/many.py",
     "service/sessions/schema.py",
     "service/storage/backup",
@@ -77,29 +77,30 @@ SILENT = (
     "estimator/hiding",
     "estimator/on_demand.py",
     "estimator/reading/bounds.py",
+    "estimator/wording.py",
     "estimator/published",
 )
 """What speaks to programs, to whoever runs the service, or in a form that a standard fixes."""
 
 
-def messages() -> Iterator[Message]:
+def messages() -> Iterator[Entry]:
     """Every message of the product, in the order of its files; some stand in several."""
     return (one for one in _all() if LETTERS.search(PLACE.sub(" ", one.text)) and one.text not in NAMES)
 
 
-def _all() -> Iterator[Message]:
-    yield from (Message(word, place="service/languages/short.py") for word in STANDING_ALONE)
+def _all() -> Iterator[Entry]:
+    yield from (Entry(word, place="service/languages/short.py") for word in STANDING_ALONE)
     yield from (
-        Message(text, place="estimator/causes") for cause in (*CATALOGUE, *ON_TURNTABLE) for text in _names_of(cause)
+        Entry(text, place="estimator/causes") for cause in (*CATALOGUE, *ON_TURNTABLE) for text in _names_of(cause)
     )
-    yield from (Message(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
+    yield from (Entry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
     for path in sorted((ROOT / TEMPLATES).glob("*.html")):
         template = Template(path.read_text("utf-8"), path.name)
         yield from (found.message for found in template.messages())
-        yield from (Message(text, place=path.name) for text in literals(template))
+        yield from (Entry(text, place=path.name) for text in literals(template))
     for path in sorted((ROOT / PAPERS).glob("*.typ")):
         yield from typst_sources.messages(path.read_text("utf-8"), path.name)
-    for path in _modules():
+    for path in modules():
         name = path.relative_to(ROOT).as_posix()
         source = path.read_text("utf-8")
         headings, described = SAID.match(name) is not None and not name.endswith("api.py"), name == SETTINGS
@@ -111,7 +112,8 @@ def _names_of(cause: Cause) -> Iterator[str]:
     yield from filter(re.compile(r"[a-z]{2}").search, (cause.name, cause.shape_words, *cause.amplitude_words))
 
 
-def _modules() -> Iterator[Path]:
+def modules() -> Iterator[Path]:
+    """Those that say something to people."""
     for path in sorted(p for room in ALSO for p in (ROOT / room).rglob("*.py")):
         if not path.relative_to(ROOT).as_posix().startswith(SILENT):
             yield path

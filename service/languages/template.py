@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from service.languages.message import Message
+from service.languages.entry import Entry
 from service.languages.pieces import Piece
 
 INLINE = frozenset(("a", "abbr", "b", "em", "i", "small", "strong", "sub", "sup", "span", "time"))
@@ -42,7 +42,7 @@ class Found:
 
     start: int
     end: int
-    message: Message
+    message: Entry
     piece: Piece
 
 

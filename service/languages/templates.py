@@ -3,10 +3,12 @@
 import re
 from collections.abc import Callable, Iterator, Sequence
 
-from service.languages.message import Message
+from service.languages.entry import Entry
 from service.languages.pieces import Piece
 from service.languages.template import Found, Template, speaking
 
+SAID = re.compile(r"\bsay\(\"([^\"]+)\"")
+"""A template with parts: ``{{ say("its {sessions} sessions show", sessions=n) }}``."""
 LITERAL = re.compile(r"\"([^\"\\]*)\"|'([^'\\]*)'")
 ALONE = re.compile(r"(?:^\{\{\s*\(?|\belse\s+|\bor\s+)$")
 """After what a literal of an expression is its value."""
@@ -16,7 +18,7 @@ WORDS = re.compile(r"[\w ,;:.]*[a-z]{2,}[\w ,;:.]*")
 NOT_SAID = re.compile(r"[/<>=&?#_]|^[a-z]+(-[a-z]+)+$")
 """What an address or a key has, and words have not."""
 IN_MESSAGE = re.compile(r"\{(\w+)\}|</?([a-z]\w*)>")
-Forms = Callable[[Message], Sequence[str]]
+Forms = Callable[[Entry], Sequence[str]]
 """What a catalogue has for a message: a text, or one for every plural form; empty where it has nothing."""
 
 
@@ -54,6 +56,7 @@ def _filled(template: Template, piece: Piece, text: str) -> str:
 def literals(template: Template) -> Iterator[str]:
     """Words inside of expressions and statements, ``{{ "before" if early else "after" }}``."""
     for part, is_told in template.jinja():
+        yield from SAID.findall(part)
         for match in LITERAL.finditer(part):
             text = match[1] or match[2] or ""
             lone = is_told and part.startswith("{{") and ALONE.search(part[: match.start()])

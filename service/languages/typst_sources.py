@@ -3,11 +3,11 @@
 import re
 from collections.abc import Iterator
 
-from service.languages.message import Message
+from service.languages.entry import Entry
 
 SAID = re.compile(r"\bsay\(\"([^\"]+)\"")
 
 
-def messages(source: str, name: str) -> Iterator[Message]:
+def messages(source: str, name: str) -> Iterator[Entry]:
     """The messages of a template, in order."""
-    yield from (Message(text, place=name) for text in SAID.findall(source))
+    yield from (Entry(text, place=name) for text in SAID.findall(source))

@@ -7,15 +7,15 @@ from babel.messages import Catalog
 from babel.messages.pofile import read_po, write_po
 
 from service.languages.catalogue import forms_of, path_of
+from service.languages.entry import Entry
 from service.languages.language import Language
-from service.languages.message import Message
 from service.languages.sources import messages
 
 WIDTH = 120
 """Columns of a line in the file."""
 
 
-def updated(language: Language, extracted: Iterable[Message]) -> Catalog:
+def updated(language: Language, extracted: Iterable[Entry]) -> Catalog:
     """The catalogue of exactly what the sources say, with the translations that were there."""
     with path_of(language).open("rb") as file:
         before = read_po(file, locale=language.value)

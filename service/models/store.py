@@ -6,6 +6,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, String, and_, bindparam, cast, func, or_, select, update
 
+from estimator.message import say
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
 from service.models.evidence_document import evidence_from_dict, evidence_to_dict
@@ -74,7 +75,7 @@ class Models(Queries):
         """One revision; NotFoundError."""
         row = self._session.get(ModelRow, id)
         if row is None:
-            raise NotFoundError(f"There is no model revision {id}.")
+            raise NotFoundError(say("There is no model revision {id}.", id=id))
         return _revision(row)
 
     def of_subject(self, scope: Scope, subject: str) -> tuple[ModelRevision, ...]:

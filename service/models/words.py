@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from estimator.message import say, without_stop
 from service.kit.measures import COVERAGE, HARD, THIN, Measure, decimals, deviation_measure, number
 from service.kit.names import PARAMETER_NAMES
 from service.models.records import MovedParameter, Progress, Recomputation
@@ -22,10 +23,18 @@ def progress_of(found: Sequence[Recomputation]) -> str:
     done = [one.outcome for one in found if one.outcome is not None]
     waiting = sum(one.state is Progress.WAITING for one in found)
     sessions, moved = sum(one.recomputed for one in done), sum(len(one.verdicts) for one in done)
-    units = f"{len(done)} of {_counted(len(found), 'unit')}"
-    verdicts = f"the verdict of {_counted(moved, 'session')} is another" if moved else "no verdict moved"
-    still = f" {_counted(waiting, 'unit')} still to come." if waiting else ""
-    return f"{_counted(sessions, 'session')} of {units} computed again: {verdicts}.{still}"
+    units = say("{done} of {found}", done=len(done), found=_counted(len(found), "unit"))
+    verdicts = (
+        say("the verdict of {moved} is another", moved=_counted(moved, "session")) if moved else "no verdict moved"
+    )
+    still = say(" {waiting} still to come.", waiting=_counted(waiting, "unit")) if waiting else ""
+    return say(
+        "{sessions} of {units} computed again: {verdicts}.{still}",
+        sessions=_counted(sessions, "session"),
+        units=units,
+        verdicts=verdicts,
+        still=still,
+    )
 
 
 def left_in_words(one: Recomputation) -> str:
@@ -36,7 +45,7 @@ def left_in_words(one: Recomputation) -> str:
         case Progress.CANCELLED:
             return CANCELLED
         case _:
-            return AGAIN.format(why=one.failed.rstrip(".")) if one.failed else ""
+            return say(AGAIN, why=without_stop(one.failed)) if one.failed else ""
 
 
 def moved_in_words(moved: MovedParameter | None) -> str:
@@ -46,13 +55,20 @@ def moved_in_words(moved: MovedParameter | None) -> str:
     u = COVERAGE * moved.u
     measure = deviation_measure(moved.kind, moved.parameter, max(abs(moved.change), u))
     by, unsure = (_shown(value, measure) for value in (moved.change, u))
-    return f"{PARAMETER_NAMES[moved.parameter]} of {moved.sensor} by {by} (U{HARD}={HARD}{unsure})"
+    return say(
+        "{parameter} of {sensor} by {by} (U{hard}={hard}{unsure})",
+        parameter=PARAMETER_NAMES[moved.parameter],
+        sensor=moved.sensor,
+        by=by,
+        hard=HARD,
+        unsure=unsure,
+    )
 
 
 def _shown(value: float, measure: Measure) -> str:
     """With two significant digits."""
     shown = value * measure.factor
-    return f"{number(shown, decimals(abs(shown)))}{THIN}{measure.label}"
+    return f"{number(shown, decimals(abs(shown)))}{THIN}" + measure.label
 
 
 def _counted(count: int, what: str) -> str:

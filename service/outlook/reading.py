@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.kit.failure_words import unit_failed
 from service.outlook.populations import Population
@@ -25,7 +26,7 @@ def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
     own = Outlooks(store).of_unit(serial)
     if own is None:
         if not Units(store).exists(serial):
-            raise NotFoundError(f"There is no unit {serial!r}.")
+            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         own = nothing_known(serial)
     why = WorkQueue(store, WorkKind.OUTLOOK).failed(serial)
     return replace(

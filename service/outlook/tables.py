@@ -14,6 +14,7 @@ from typing import Any
 from sqlalchemy import ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from service.storage.columns import Sentence
 from service.storage.tables import Base
 
 
@@ -23,7 +24,7 @@ class OutlookRow(Base):
     __tablename__ = "outlooks"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
     due: Mapped[datetime | None] = mapped_column(index=True)
-    reason: Mapped[str]
+    reason: Mapped[str] = mapped_column(Sentence)
     """Why then, in one sentence."""
     rates: Mapped[list[Any]]
     """How every parameter drifts, for the type: ``[sensor, kind, parameter, rate, sigma, significance, tolerance]``."""

@@ -9,12 +9,14 @@ from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 from pydantic import Field
 
+from estimator.message import say, uncapitalised
 from service.flags.assigned import ME, active_names, assignee_meant
 from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, bring_flags, resolve_flag
 from service.flags.records import Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.store import Flags
 from service.flags.view import ORDERS, PAGE_SIZE, FlagsAsked, FlagsView, choices_of
 from service.flags.view import STATES as CHOICES
+from service.groups.words.group import place_in_words
 from service.models.records import Scope
 from service.pages.saved import Saved, saved
 from service.people.admission import PersonOf
@@ -152,7 +154,10 @@ def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:
 
 def _heading(flag: Flag) -> str:
     matter = MATTERS[flag.matter]
-    return f"{flag.place}: {matter[0].lower()}{matter[1:]}" if flag.place else matter
+    if not flag.place:
+        return matter
+    place = place_in_words(flag.place, flag.subject or flag.unit) if flag.matter is Matter.LASTING else flag.place
+    return say("{place}: {matter}", place=place, matter=uncapitalised(matter))
 
 
 router = APIRouter(prefix="/flags", include_in_schema=False)

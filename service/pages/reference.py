@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from estimator.message import say
+
 SCHEMAS = "#/components/schemas/"
 JSON = "application/json"
 WITHOUT = ("401", "403", "422")
@@ -144,7 +146,7 @@ def _kind(schema: Mapping[str, Any]) -> str:
     if "const" in schema:
         return str(schema["const"])
     if schema.get("type") == "array":
-        return f"list of {_kind(schema.get('items', {}))}"
+        return say("list of {schema}", schema=_kind(schema.get("items", {})))
     return str(schema.get("format") or schema.get("type") or "anything")
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from estimator.message import joined, say
 from service.settings import PREFIX, VERSION, Origin, Settings
 from service.storage.engine import shown_url
 
@@ -52,7 +53,9 @@ def _row(settings: Settings, name: str) -> SettingRow:
     return SettingRow(
         variable=f"{PREFIX}{name.upper()}",
         value=(HIDDEN if value else NONE) if is_secret else _value(settings, name, value),
-        origin=f"{ORIGINS[origin]}, from a file" if name.endswith(FILES) and value else ORIGINS[origin],
+        origin=say("{origins}, from a file", origins=ORIGINS[origin])
+        if name.endswith(FILES) and value
+        else ORIGINS[origin],
         is_default=origin is Origin.DEFAULT,
         text=field.description or "",
     )
@@ -71,7 +74,7 @@ def _plain(value: Any) -> str:
     if value is None or value == "" or value == ():
         return NONE
     if isinstance(value, tuple):
-        return ", ".join("=".join(one) if isinstance(one, tuple) else str(one) for one in value)
+        return joined(", ", ("=".join(one) if isinstance(one, tuple) else str(one) for one in value))
     if isinstance(value, Mapping | Path):
         return str(value)
     return (

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from datetime import timedelta
 
+from estimator.message import say
 from estimator.results import Calibration
 from estimator.session import AS_LEFT, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis
@@ -101,7 +102,7 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
         report = session_report(store, id)
         stored = report.session
         if stored.state is not RecordState.ACCEPTED:
-            raise ConflictError(NOT_ACCEPTED.format(state=stored.state))
+            raise ConflictError(say(NOT_ACCEPTED, state=stored.state))
         until = stored.started_at + JUST_AFTER
         return CertifiedSession(
             report=report,

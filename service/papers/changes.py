@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, SignInError
 from service.kit.person import Role
 from service.papers.records import CertificateFile, Issue, Meaning, Signature
@@ -106,7 +107,14 @@ def require_signer(storage: Storage, signing: Signing) -> str:
     if not is_password(stored, signing.password):
         raise SignInError(WRONG)
     if not account.role.may(NEEDED):
-        raise ForbiddenError(f"To sign a certificate needs the role {NEEDED}; {account.login} is {account.role}.")
+        raise ForbiddenError(
+            say(
+                "To sign a certificate needs the role {needed}; {login} is {role}.",
+                needed=NEEDED,
+                login=account.login,
+                role=account.role,
+            )
+        )
     return account.name
 
 
@@ -116,11 +124,11 @@ def signature_of(store: Store, signing: Signing, statement: Statement, rules: Ru
         raise ConflictError(IS_SPECIMEN)
     issue = _latest(store, signing)
     if issue.content_hash != statement.content_hash:
-        raise ConflictError(CHANGED.format(number=issue.number))
+        raise ConflictError(say(CHANGED, number=issue.number))
     before = {signature.meaning: signature for signature in Signatures(store).of_certificate(issue.number)}
     if signing.meaning in before:
         given = before[signing.meaning]
-        raise ConflictError(ALREADY.format(number=issue.number, meaning=given.meaning, name=given.name))
+        raise ConflictError(say(ALREADY, number=issue.number, meaning=given.meaning, name=given.name))
     account = Accounts(store).get(signing.login)
     if signing.meaning is Meaning.APPROVED:
         _require_review(before.get(Meaning.REVIEWED), issue, account.login, rules)
@@ -132,15 +140,15 @@ def _latest(store: Store, signing: Signing) -> Issue:
     if not issued:
         raise ConflictError(NOT_ISSUED)
     if issued[-1].number != signing.number:
-        raise ConflictError(REPLACED.format(number=signing.number, latest=issued[-1].number))
+        raise ConflictError(say(REPLACED, number=signing.number, latest=issued[-1].number))
     return issued[-1]
 
 
 def _require_review(review: Signature | None, issue: Issue, login: str, rules: Rules) -> None:
     if review is None:
-        raise ConflictError(NOT_REVIEWED.format(number=issue.number))
+        raise ConflictError(say(NOT_REVIEWED, number=issue.number))
     if rules.four_eyes and review.login == login:
-        raise ConflictError(SAME_PERSON.format(number=issue.number))
+        raise ConflictError(say(SAME_PERSON, number=issue.number))
 
 
 def sign_certificate(
@@ -157,7 +165,7 @@ def sign_certificate(
         Units(store).hold(statement.unit)
         again = signature_of(store, signing, statement, rules, signature.signed_at)
         if again != signature:
-            raise ConflictError(CHANGED.format(number=signature.certificate))
+            raise ConflictError(say(CHANGED, number=signature.certificate))
         Signatures(store).add(signature, Accounts(store).get(signature.login).id)
         Signatures(store).keep(signature.certificate, files)
         details = {

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from hashlib import sha256
 
+from estimator.message import say
 from service.diagnosis.records import StoredDiagnosis
 from service.errors import DamagedError, NotFoundError
 from service.languages.language import Language
@@ -30,7 +31,7 @@ from service.sessions.store import Sessions
 from service.storage import Storage
 
 DAMAGED = "The approved certificate {number} is not what was kept, and is not given out: the database was changed."
-NOT_KEPT = "There is no approved certificate {number!r} of this session."
+NOT_KEPT = "There is no approved certificate {number} of this session."
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def hand_out_approved(desk: Desk, id: str, number: str, format: str) -> HandedOu
         of_session = any(issue.number == number for issue in Certificates(store).of_session(id))
         kept = Signatures(store).kept(number, format) if of_session else None
     if kept is None:
-        raise NotFoundError(NOT_KEPT.format(number=number))
+        raise NotFoundError(say(NOT_KEPT, number=repr(number)))
     return HandedOut(_name(unit, number), _intact(kept, number))
 
 
@@ -130,7 +131,7 @@ def _files(
 
 def _intact(kept: CertificateFile, number: str) -> bytes:
     if sha256(kept.content).hexdigest() != kept.sha256:
-        raise DamagedError(DAMAGED.format(number=number))
+        raise DamagedError(say(DAMAGED, number=number))
     return kept.content
 
 

@@ -6,6 +6,7 @@ from urllib.parse import quote
 
 import segno
 
+from estimator.message import say
 from service.fleet.condition import UnitSummary
 from service.kit.measures import HARD
 from service.kit.names import day_of
@@ -54,12 +55,16 @@ def label_of(unit: UnitSummary, base: str, now: datetime, *, with_due: bool) -> 
 def _due(due: datetime | None, now: datetime) -> str:
     if due is None:
         return "Calibration due: not known"
-    return f"Calibration overdue since {_held(due)}" if due < now else f"Calibration due {_held(due)}"
+    return (
+        say("Calibration overdue since {due}", due=_held(due))
+        if due < now
+        else say("Calibration due {due}", due=_held(due))
+    )
 
 
 def _held(day: datetime) -> str:
     """The day on one line."""
-    return day_of(day).replace(" ", HARD)
+    return say("{day}{hard}{month}{hard}{year}", day=day.day, month=f"{day:%b}", year=day.year, hard=HARD)
 
 
 def label_pdf(label: Label, now: datetime, language: Language = Language.ENGLISH) -> bytes:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import say
 from service.kit.measures import deviation_measure, limit, measured, signed
 from service.sessions.decision import Decision
 from service.sessions.words.conditions import Condition, condition_of
@@ -26,7 +27,7 @@ def moved(decision: Decision) -> Moved:
     write = measured if one_sided else signed
     seen = decision.deviation is not None
     return Moved(
-        name=f"{decision.sensor} {decision.parameter}",
+        name=say("{sensor} {parameter}", sensor=decision.sensor, parameter=decision.parameter),
         deviation=write(decision.deviation, decision.expanded, unit) if seen else "not observable",
         tolerance=limit(decision.tolerance, unit, one_sided),
         condition=condition_of(decision.verdict),

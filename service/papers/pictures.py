@@ -6,6 +6,8 @@ from typing import Any
 
 import vl_convert
 
+from service.languages.catalogue import catalogue_of
+from service.languages.language import Language
 from service.sessions.charts import ChartSet, Panel
 
 PALETTE = {
@@ -32,11 +34,12 @@ MEASURED, PRINTED = "Liberation Sans", "Libertinus Serif"
 """The font that charts are laid out with, a little wider, and the one that they are printed in."""
 
 
-def picture(charts: ChartSet, panel: Panel, width: int) -> str:
-    """One panel as SVG, ``width`` pixels wide."""
-    coloured = VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(charts.spec))
-    spec: dict[str, Any] = json.loads(coloured)
-    spec |= {"datasets": {**spec.get("datasets", {}), **panel.datasets}, "width": width}
+def picture(charts: ChartSet, panel: Panel, width: int, language: Language = Language.ENGLISH) -> str:
+    """One panel as SVG, ``width`` pixels wide, its words in a language."""
+    told = {**charts.spec, "datasets": {**charts.spec.get("datasets", {}), **panel.datasets}, "width": width}
+    if language is not Language.ENGLISH:
+        told = catalogue_of(language).chart(told)
+    spec: dict[str, Any] = json.loads(VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(told)))
     spec["config"]["font"] = MEASURED
     drawn: str = vl_convert.vegalite_to_svg(spec)
     return drawn.replace(MEASURED, PRINTED)

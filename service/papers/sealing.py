@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from estimator.message import say
 from service.errors import ServiceError
 
 ROOM = "service.papers.seal"
@@ -35,7 +36,7 @@ def seal_room() -> ModuleType:
     try:
         return import_module(ROOM)
     except ModuleNotFoundError as fault:
-        raise ServiceError(WITHOUT.format(fault=fault)) from fault
+        raise ServiceError(say(WITHOUT, fault=fault)) from fault
 
 
 def seal_of(key_file: Path | None, password_file: Path | None) -> Seal | None:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import say
 from service.errors import ConflictError
 from service.kit.answer import answer
 from service.papers.desk import Desk, certified
@@ -52,7 +53,7 @@ def papers_of(desk: Desk, id: str) -> Papers:
     latest = issues[-1]
     counts, is_current = _compared(desk, id, latest)
     told = ((CHANGED_HASH, _is_other(latest)), (NOT_COUNTED, not counts), (NO_LONGER, counts and not is_current))
-    concerns = (words.format(number=latest.number, done=_done(latest)) for words, holds in told if holds)
+    concerns = (say(words, number=latest.number, done=_done(latest)) for words, holds in told if holds)
     return Papers(issues, is_current=is_current, concerns=tuple(concerns))
 
 

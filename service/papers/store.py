@@ -5,6 +5,7 @@ from datetime import datetime
 
 from sqlalchemy import Select, select
 
+from estimator.message import say
 from service.errors import ConflictError, NotFoundError
 from service.papers.records import CertificateFile, Issue, Meaning, Signature
 from service.papers.tables import CertificateFileRow, CertificateRow, SignatureRow
@@ -57,7 +58,13 @@ class Signatures(Queries):
             "content_hash": signature.content_hash,
         }
         if not self.insert_once(SignatureRow, **values):
-            raise ConflictError(f"Certificate {signature.certificate} is {signature.meaning} already.")
+            raise ConflictError(
+                say(
+                    "Certificate {certificate} is {meaning} already.",
+                    certificate=signature.certificate,
+                    meaning=signature.meaning,
+                )
+            )
 
     def keep(self, number: str, files: Sequence[CertificateFile]) -> None:
         """Stores an issue as it is handed out from now on."""
@@ -73,7 +80,7 @@ class Signatures(Queries):
     def _key(self, number: str) -> int:
         key = self._session.scalar(select(CertificateRow.id).where(CertificateRow.number == number))
         if key is None:
-            raise NotFoundError(f"There is no certificate {number!r}.")
+            raise NotFoundError(say("There is no certificate {number}.", number=repr(number)))
         return key
 
 

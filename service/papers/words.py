@@ -3,10 +3,11 @@
 from datetime import date, datetime
 
 from estimator.coverage import chance
+from estimator.message import joined, say
 from estimator.results import Calibration
 from service.kit.coverage import coverage_in_words, noise_is_estimated
 from service.kit.measures import number
-from service.kit.names import day_of
+from service.kit.names import day_of, minute_of
 from service.papers.records import NOT_STATED, Laboratory, Meaning, Traceability, TraceState
 from service.stands.paper_records import StandCertificate
 from service.units.customer import Customer
@@ -35,8 +36,12 @@ def draft_in_words(missing: tuple[str, ...]) -> str:
     """That the paper is a draft, and why; empty where nothing is missing."""
     if not missing:
         return ""
-    listed = missing[0] if len(missing) == 1 else f"{', '.join(missing[:-1])} and {missing[-1]}"
-    return DRAFT.format(missing=listed)
+    listed = (
+        missing[0]
+        if len(missing) == 1
+        else say("{missing} and {missing2}", missing=joined(", ", missing[:-1]), missing2=missing[-1])
+    )
+    return say(DRAFT, missing=listed)
 
 
 def stated(text: str) -> str:
@@ -61,12 +66,12 @@ NOT_COUNTED = "The session no longer counts: certificate {number} should not be 
 
 def done_by(meaning: Meaning) -> str:
     """``Reviewed by``."""
-    return f"{meaning.capitalize()} by"
+    return say("{meaning} by", meaning=meaning.capitalize())
 
 
 def moment_of(at: datetime) -> str:
     """``7 Mar 2026, 09:30 UTC``."""
-    return f"{at.day} {at:%b %Y, %H:%M} UTC"
+    return minute_of(at)
 
 
 HOLDS = (
@@ -89,10 +94,11 @@ def traceability(stand: str | None, certificate: StandCertificate | None, day: d
     if stand is None:
         return Traceability(TraceState.NO_STAND, NO_STAND, None)
     if certificate is None:
-        text = NOT_ON_RECORD.format(stand=stand, day=day_of(day))
+        text = say(NOT_ON_RECORD, stand=stand, day=day_of(day))
         return Traceability(TraceState.NOT_STATED, text, None)
     expired = certificate.valid_until < day
-    text = (EXPIRED if expired else HOLDS).format(
+    text = say(
+        EXPIRED if expired else HOLDS,
         stand=stand,
         number=certificate.number,
         by=certificate.issued_by,
@@ -120,5 +126,5 @@ def uncertainty_in_words(calibration: Calibration, k: float) -> str:
     """With the coverage factor that the session was judged with."""
     percent = number(100 * (2.0 * chance(k, None) - 1.0), 0)
     if noise_is_estimated(calibration):
-        return f"{STUDENT.format(k=coverage_in_words(calibration, k), percent=percent)} {BY}"
-    return f"{NORMAL.format(k=number(k), percent=percent)} {BY}"
+        return say("{student} {by}", student=say(STUDENT, k=coverage_in_words(calibration, k), percent=percent), by=BY)
+    return say("{normal} {by}", normal=say(NORMAL, k=number(k), percent=percent), by=BY)

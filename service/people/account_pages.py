@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Form, Path, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
+from estimator.message import say
 from service.errors import ForbiddenError, SignInError
 from service.kit.person import Account, Role, Token
 from service.people.admission import COOKIE, PersonOf, attempt_of
@@ -88,11 +89,17 @@ def account_page(tokens: Sequence[Token], now: datetime, secret: str = "") -> Ac
 
 def _line(token: Token, now: datetime) -> TokenLine:
     if token.revoked_at is not None:
-        return TokenLine(token, f"revoked on {token.revoked_at:%Y-%m-%d}", holds=False)
+        return TokenLine(token, say("revoked on {revoked_at}", revoked_at=f"{token.revoked_at:%Y-%m-%d}"), holds=False)
     if token.expires_at <= now:
-        return TokenLine(token, f"expired on {token.expires_at:%Y-%m-%d}", holds=False)
-    used = "never used" if token.last_used_at is None else f"last used on {token.last_used_at:%Y-%m-%d}"
-    return TokenLine(token, f"holds until {token.expires_at:%Y-%m-%d}, {used}", holds=True)
+        return TokenLine(token, say("expired on {expires_at}", expires_at=f"{token.expires_at:%Y-%m-%d}"), holds=False)
+    used = (
+        "never used"
+        if token.last_used_at is None
+        else say("last used on {last_used_at}", last_used_at=f"{token.last_used_at:%Y-%m-%d}")
+    )
+    return TokenLine(
+        token, say("holds until {expires_at}, {used}", expires_at=f"{token.expires_at:%Y-%m-%d}", used=used), holds=True
+    )
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
@@ -189,7 +196,9 @@ def take_token(
     """A new token; its secret is on this page and nowhere else."""
     require_no_token(person)
     if not person.login or not person.may(role):
-        raise ForbiddenError(f"{person.account or 'Nobody'} cannot make a token for {role}.")
+        raise ForbiddenError(
+            say("{account} cannot make a token for {role}.", account=person.account or "Nobody", role=role)
+        )
     _, secret = make_token(storage, person.login, label, role, now, lasts=timedelta(days=days), who=person.name)
     with storage.database.reading() as store:
         return render(request, "account.html", account_page(Tokens(store).every(person.login), now, secret))

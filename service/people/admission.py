@@ -5,6 +5,7 @@ from typing import Annotated, Any
 from fastapi import Depends, Request
 from starlette.datastructures import UploadFile
 
+from estimator.message import say
 from service.errors import ForbiddenError, SignInError
 from service.ingest.sender import SENDER
 from service.kit.person import EVERYBODY, LOOKING, RANKS, STRANGER, Person, Role
@@ -104,7 +105,7 @@ async def _admitted(request: Request, person: PersonOf) -> None:
     route = route_of(request.scope)
     SENDER.set(person.login or (request.client.host if request.client else ""))
     if route not in NEEDED:
-        raise ForbiddenError(f"Nobody may {route[0]} {route[1]}: it has no rule.")
+        raise ForbiddenError(say("Nobody may {route} {route2}: it has no rule.", route=route[0], route2=route[1]))
     needed = NEEDED[route]
     if needed is None:
         return
@@ -115,7 +116,12 @@ async def _admitted(request: Request, person: PersonOf) -> None:
 
 
 def _lacking(person: Person, needed: Role) -> str:
-    return f"This needs the role {needed}; {person.account} is {person.role}. Ask an administrator."
+    return say(
+        "This needs the role {needed}; {account} is {role}. Ask an administrator.",
+        needed=needed,
+        account=person.account,
+        role=person.role,
+    )
 
 
 async def _proof(request: Request) -> str:

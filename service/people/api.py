@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 from pydantic import BaseModel, ConfigDict, Field
 
+from estimator.message import say
 from service.errors import ConflictError, ForbiddenError
 from service.kit.answer import answer
 from service.kit.person import UNNAMED, Account, Role, Token
@@ -165,7 +166,14 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
     if not person.login:
         raise ConflictError(NO_ACCOUNT)
     if not person.may(new.role):
-        raise ForbiddenError(f"{person.account} is {person.role} and cannot make a token for {new.role}.")
+        raise ForbiddenError(
+            say(
+                "{account} is {role} and cannot make a token for {role2}.",
+                account=person.account,
+                role=person.role,
+                role2=new.role,
+            )
+        )
     lasts = timedelta(days=new.days)
     token, secret = make_token(storage, person.login, new.label, new.role, now, lasts=lasts, who=person.name)
     return MadeToken(**vars(token), secret=secret)

@@ -14,6 +14,7 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, RefusedError, SignInError, TooOftenError
 from service.kit.person import Account, Person, Role, Token
 from service.people.passwords import fault_of, hashed, is_password
@@ -57,7 +58,7 @@ def add_account(storage: Storage, login: str, name: str, role: Role, now: dateti
             raise ConflictError("The first account must be an admin: from then on everybody has to sign in.")
         shown = name.strip() or small
         if not Accounts(store).add(small, shown, role, now):
-            raise ConflictError(f"There is an account {small!r} already.")
+            raise ConflictError(say("There is an account {small} already.", small=repr(small)))
         Audit(store).write(now, who, "add account", small, {"name": shown, "role": role})
         return Accounts(store).get(small)
 
@@ -339,13 +340,20 @@ def make_token(
 ) -> tuple[Token, str]:
     """A token for an account with the secret to show, which is not kept; it may do at most what its account may."""
     if not timedelta(0) < lasts <= LONGEST:
-        fault = Problem("days", f"must be from 1 to {LONGEST.days}")
+        fault = Problem("days", say("must be from 1 to {days}", days=LONGEST.days))
         raise RefusedError("The token cannot be made.", (fault,))
     secret = TOKEN_PREFIX + new_secret()
     with storage.database.writing() as store:
         account = Accounts(store).get(login)
         if not account.is_active or not account.role.may(role):
-            raise ConflictError(f"{account.login} is {account.role} and cannot have a token for {role}.")
+            raise ConflictError(
+                say(
+                    "{login} is {role} and cannot have a token for {role2}.",
+                    login=account.login,
+                    role=account.role,
+                    role2=role,
+                )
+            )
         new = Token(0, account.login, label.strip() or "token", role, now, now + lasts, None, None)
         token = Tokens(store).add(account, new, stored_hash(secret))
         details = {"token": token.id, "label": token.label, "role": role, "until": token.expires_at.isoformat()}

@@ -2,6 +2,7 @@
 
 from datetime import datetime
 
+from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, NotFoundError
 from service.kit.person import Person, Role
 from service.people.view_store import SavedViews
@@ -31,7 +32,7 @@ def save_view(storage: Storage, new: NewView, person: Person, who: str, now: dat
     with storage.database.writing() as store:
         known = SavedViews(store).named(new.page, owner, new.name)
         if known is None and SavedViews(store).count(new.page, owner) >= MOST:
-            raise ConflictError(f"There are {MOST} saved views of this list already. Remove one first.")
+            raise ConflictError(say("There are {most} saved views of this list already. Remove one first.", most=MOST))
         view = SavedViews(store).put(new.page, owner, new.name, query=new.query, who=who, at=now)
         details = {"view": view.id, "page": view.page, "query": view.query, "shared": view.shared}
         Audit(store).write(now, who, "save view", view.name, details)
@@ -45,7 +46,7 @@ def remove_view(storage: Storage, id: int, person: Person, who: str, now: dateti
         if not may_remove(view, person):
             if view.shared:
                 raise ForbiddenError("Only who may upload removes views that everybody has.")
-            raise NotFoundError(f"There is no saved view {id}.")
+            raise NotFoundError(say("There is no saved view {id}.", id=id))
         SavedViews(store).remove(id)
         details = {"view": id, "page": view.page, "query": view.query, "shared": view.shared}
         Audit(store).write(now, who, "remove view", view.name, details)

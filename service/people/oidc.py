@@ -14,6 +14,7 @@ from joserfc import jwt
 from joserfc.errors import JoseError
 from joserfc.jwk import KeySet
 
+from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
 from service.people.provider import Answer, Claims, Journey, ProviderSet
@@ -73,7 +74,7 @@ class OpenIdProvider:
         """The provider's own description; it must be of the issuer that was asked."""
         described = _json(http, "GET", self._own.issuer.rstrip("/") + WELL_KNOWN)
         if described.get("issuer") != self._own.issuer:
-            raise _away(f"its description names the issuer {described.get('issuer')!r}")
+            raise _away(say("its description names the issuer {described}", described=repr(described.get("issuer"))))
         return described
 
     def _allowed(self, described: Mapping[str, Any], name: str) -> str:
@@ -81,7 +82,13 @@ class OpenIdProvider:
         address = str(described.get(name, ""))
         parts = urlsplit(address)
         if parts.scheme != urlsplit(self._own.issuer).scheme or parts.netloc not in self._own.hosts:
-            raise _away(f"its {name} {address!r} is at a host that is not allowed, or not by https")
+            raise _away(
+                say(
+                    "its {name} {address} is at a host that is not allowed, or not by https",
+                    name=name,
+                    address=repr(address),
+                )
+            )
         return address
 
     def _require_issuer(self, answer: Answer, described: Mapping[str, Any]) -> None:
@@ -162,12 +169,12 @@ def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> dict[st
                 log.warning("sign-in elsewhere refused", fault=body[:500].decode("utf-8", "replace"))
                 raise _refused("the provider takes the code for used or foreign")
             if answer.status_code != httpx.codes.OK:
-                raise _away(f"{address} answered {answer.status_code}")
+                raise _away(say("{address} answered {status_code}", address=address, status_code=answer.status_code))
             found = httpx.Response(200, content=body).json()
     except (httpx.HTTPError, ValueError) as fault:
         raise _away(f"{address}: {type(fault).__name__}: {fault}") from fault
     if not isinstance(found, dict):
-        raise _away(f"{address} answered no object")
+        raise _away(say("{address} answered no object", address=address))
     return found
 
 
@@ -176,7 +183,7 @@ def _bounded(answer: httpx.Response) -> bytes:
     for part in answer.iter_bytes():
         body += part
         if len(body) > MOST_BYTES:
-            raise _away(f"{answer.url} answers without end")
+            raise _away(say("{url} answers without end", url=answer.url))
     return bytes(body)
 
 
@@ -187,7 +194,7 @@ def _text(found: Mapping[str, Any], name: str) -> str:
 
 
 def _refused(why: str) -> SignInError:
-    return SignInError(REFUSED.format(why=why))
+    return SignInError(say(REFUSED, why=why))
 
 
 def _away(fault: str) -> AwayError:

@@ -5,6 +5,8 @@ from functools import cache
 from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerifyMismatchError
 
+from estimator.message import say
+
 SHORTEST = 12
 """Characters: length, not a mixture of signs, is what makes a password hard to guess (NIST SP 800-63B)."""
 LONGEST = 1000
@@ -38,9 +40,12 @@ def is_password(stored: str | None, password: str) -> bool:
 def fault_of(password: str) -> str | None:
     """What is wrong with a new password; None where nothing is."""
     if len(password) < SHORTEST:
-        return f"is shorter than {SHORTEST} characters; a few words in a row are easy to remember and hard to guess"
+        return say(
+            "is shorter than {shortest} characters; a few words in a row are easy to remember and hard to guess",
+            shortest=SHORTEST,
+        )
     if len(password) > LONGEST:
-        return f"is longer than {LONGEST} characters"
+        return say("is longer than {longest} characters", longest=LONGEST)
     if len(set(password)) < SHORTEST // 3:
         return "repeats the same few characters"
     return None

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Protocol
 from urllib.parse import urlsplit
 
+from estimator.message import say
 from service.errors import ServiceError
 from service.kit.person import Role
 from service.settings import Settings
@@ -134,7 +135,11 @@ def provider_of(settings: Settings) -> Provider | None:
         return None
     parts = urlsplit(settings.oidc_issuer)
     if parts.scheme != "https" and parts.hostname not in LOOPBACK:
-        raise ServiceError(f"The provider to sign in at, {settings.oidc_issuer}, must be reached by https.")
+        raise ServiceError(
+            say(
+                "The provider to sign in at, {oidc_issuer}, must be reached by https.", oidc_issuer=settings.oidc_issuer
+            )
+        )
     if not settings.oidc_client_id:
         raise ServiceError("A provider to sign in at is set, but no IMU_HEALTH_OIDC_CLIENT_ID.")
     own = ProviderSet(
@@ -147,7 +152,7 @@ def provider_of(settings: Settings) -> Provider | None:
     try:
         room = import_module(ROOM)
     except ModuleNotFoundError as fault:
-        raise ServiceError(WITHOUT.format(fault=fault)) from fault
+        raise ServiceError(say(WITHOUT, fault=fault)) from fault
     made: Provider = room.OpenIdProvider(own, str(parts.hostname))
     return made
 
@@ -156,4 +161,6 @@ def _read(file: Path | None) -> str:
     try:
         return "" if file is None else file.read_text("utf-8").strip()
     except OSError as fault:
-        raise ServiceError(f"The secret for the provider to sign in at cannot be read: {fault}.") from fault
+        raise ServiceError(
+            say("The secret for the provider to sign in at cannot be read: {fault}.", fault=fault)
+        ) from fault

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from itertools import count
 
+from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, SignInError
 from service.kit.person import Account, Role
 from service.people.changes import LAST_ADMIN, LOGIN, WRONG, begin
@@ -86,6 +87,10 @@ def _with_role(store: Store, account: Account, role: Role, claims: Claims, now: 
     if account.role is Role.ADMIN and Accounts(store).admins() == 1:
         raise ConflictError(LAST_ADMIN)
     Accounts(store).put(account.login, name=account.name, role=role, is_active=True)
-    details = {"before": {"role": account.role}, "after": {"role": role}, "why": f"said by {claims.issuer}"}
+    details = {
+        "before": {"role": account.role},
+        "after": {"role": role},
+        "why": say("said by {issuer}", issuer=claims.issuer),
+    }
     Audit(store).write(now, account.name, "change account", account.login, details)
     return Accounts(store).get(account.login)

@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 from sqlalchemy import ColumnElement, Select, case, delete, exists, func, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.kit.person import Account, Role, Token
 from service.people.tables import AccountRow, AttemptRow, IdentityRow, SignInLinkRow, SignInRow, TokenRow
@@ -61,7 +62,7 @@ class Accounts(Queries):
     def _row(self, login: str) -> AccountRow:
         row = self._session.scalar(select(AccountRow).where(AccountRow.login == login.lower()))
         if row is None:
-            raise NotFoundError(f"There is no account {login!r}.")
+            raise NotFoundError(say("There is no account {login}.", login=repr(login)))
         return row
 
 
@@ -211,7 +212,7 @@ class Tokens(Queries):
         """One token."""
         found = self._session.execute(_tokens().where(TokenRow.id == id)).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no token {id}.")
+            raise NotFoundError(say("There is no token {id}.", id=id))
         return _token(found[0], found[1].login)
 
     def shown(self, hashed: str, now: datetime) -> tuple[Token, Account] | None:

@@ -6,6 +6,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 
+from estimator.message import say
 from estimator.planning import Plan, Sweep
 from estimator.readiness import Readiness
 from estimator.results import PARAMETERS
@@ -30,7 +31,7 @@ def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
     return (
         ChartSet("positions", "Over the number of positions", _spec("positions a run"), tuple(by_number)),
         ChartSet(
-            "elevation", "Over the elevation of the head", _spec("elevation, °"), (*by_angle, *_rho(plan, degrees))
+            "elevation", "Over the elevation of the head", _spec(say("elevation, °")), (*by_angle, *_rho(plan, degrees))
         ),
     )
 
@@ -51,7 +52,11 @@ def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Array, chosen: float) -
 
 
 def _panel(title: str, measure: Measure, points: list[dict[str, Any]], chosen: float) -> Panel:
-    words = f"U of the worst sensor, {measure.label}" if measure.label else "largest over smallest eigenvalue"
+    words = (
+        say("U of the worst sensor, {label}", label=measure.label)
+        if measure.label
+        else "largest over smallest eigenvalue"
+    )
     return Panel(
         title=title,
         description=words,
@@ -122,7 +127,7 @@ def _drift_panel(found: Readiness, column: int, kind: str, allowed: float | None
     ]
     limits = [] if allowed is None else [{"y": float(f"{side * allowed * measure.factor:.4g}")} for side in (-1, 1)]
     low, high = (number(float(f"{edge * measure.factor:.2g}")) for edge in (change.min(), change.max()))
-    words = f"from {low} to {high}{THIN}{measure.label}"
+    words = say("from {low} to {high}{thin}{label}", low=low, high=high, thin=THIN, label=measure.label)
     return Panel(found.names[column], words, None, {DATA_FORM: points, "allowed": limits})
 
 

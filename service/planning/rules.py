@@ -6,6 +6,7 @@ import numpy as np
 from numpy.linalg import LinAlgError
 
 from estimator.errors import Problem, SessionError
+from estimator.message import say
 from estimator.planning import Missing, Plan, missing
 from estimator.planning import plan as plan_session
 from estimator.readiness import Readiness, readiness
@@ -40,7 +41,7 @@ def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
         unit_type = UnitTypes(store).get(question.unit_type)
     problems = why_not(unit_type)
     if problems:
-        raise RefusedError(f"Units of the type {unit_type.name!r} cannot be planned for.", problems)
+        raise RefusedError(say("Units of the type {name} cannot be planned for.", name=repr(unit_type.name)), problems)
     whole = asked_of(question, unit_type)
     return whole, _planned(whole, whole.block(sensors_of(unit_type)), whole.kind)
 
@@ -67,7 +68,7 @@ def missing_of(file: SentFile, positions: int | None, *, both_runs: bool) -> Mis
         with in_turn(content):
             return missing(read_upload(content, file.filename), positions, both_runs=both_runs)
     except SessionError as fault:
-        raise RefusedError(f"{file.filename} cannot be read so far.", fault.problems) from fault
+        raise RefusedError(say("{filename} cannot be read so far.", filename=file.filename), fault.problems) from fault
 
 
 SEED = 1
@@ -94,7 +95,7 @@ def readiness_of(storage: Storage, file: SentFile, asked: ReadyQuestion) -> Aske
         with in_turn(content):
             return _answered(storage, read_first_rows(content, file.filename), asked)
     except SessionError as fault:
-        raise RefusedError(f"{file.filename} cannot be read so far.", fault.problems) from fault
+        raise RefusedError(say("{filename} cannot be read so far.", filename=file.filename), fault.problems) from fault
 
 
 def judged_by_defaults(session: CalibrationSession, asked: ReadyQuestion) -> Asked:

@@ -4,6 +4,7 @@ import numpy as np
 
 from estimator.arrays import unit
 from estimator.errors import Problem
+from estimator.message import say
 from estimator.session import Sensor
 from service.kit.measures import MEASURES
 from service.planning.question import PlanQuestion
@@ -17,16 +18,26 @@ MOST_SENSORS = 48
 def why_not(unit_type: UnitType) -> tuple[Problem, ...]:
     """Why units of a type cannot be planned for on a two-axis stand."""
     if unit_type.gyro_tolerances is not None or unit_type.block not in ("accelerometer", "gyroscope"):
-        return (Problem("unit_type", f"{unit_type.name} has accelerometers and gyros; plan from a session file of it"),)
+        return (
+            Problem(
+                "unit_type",
+                say("{name} has accelerometers and gyros; plan from a session file of it", name=unit_type.name),
+            ),
+        )
     if not 3 <= len(unit_type.sensors) <= MOST_SENSORS:
         return (
             Problem(
                 "unit_type",
-                f"{unit_type.name} has {len(unit_type.sensors)} sensors; 3 to {MOST_SENSORS} can be planned",
+                say(
+                    "{name} has {sensors} sensors; 3 to {most_sensors} can be planned",
+                    name=unit_type.name,
+                    sensors=len(unit_type.sensors),
+                    most_sensors=MOST_SENSORS,
+                ),
             ),
         )
     if np.linalg.matrix_rank(np.array(unit_type.nominal_axes), tol=0.05) < 3:
-        return (Problem("unit_type", f"the nominal axes of {unit_type.name} lie in one plane"),)
+        return (Problem("unit_type", say("the nominal axes of {name} lie in one plane", name=unit_type.name)),)
     return ()
 
 

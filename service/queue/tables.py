@@ -2,10 +2,10 @@
 
 from datetime import datetime
 
-from sqlalchemy import Index, String, Text, text
+from sqlalchemy import Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.columns import only_where
+from service.storage.columns import LongSentence, only_where
 from service.storage.tables import Base
 
 IS_SINGLE = "kind NOT IN ('group', 'summary')"
@@ -38,5 +38,5 @@ class WorkRow(Base):
     """Until when nobody else begins it; NULL where nobody is at it."""
     attempts: Mapped[int]
     """Leases that ended without an answer, as when the process died."""
-    failed: Mapped[str | None] = mapped_column(Text)
+    failed: Mapped[str | None] = mapped_column(LongSentence)
     """Why the last try failed; NULL where none did."""

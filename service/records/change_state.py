@@ -3,6 +3,7 @@
 A questioned session is diagnosed by itself alone. Once it is accepted it is diagnosed beside its unit's earlier ones.
 """
 
+from estimator.message import joined
 from service.diagnosis.records import Diagnosed
 from service.judging.records import Decided
 from service.judging.store import Derivations
@@ -75,5 +76,5 @@ def question_diagnosed(store: Store, way: Deriving, id: str, found: Diagnosed) -
     session = Sessions(store).get(id)
     if not named or session.state is not RecordState.ACCEPTED or States(store).of(RecordKind.SESSION, id):
         return None
-    question(store, way, session, " ".join(finding.sentence for finding in named))
+    question(store, way, session, joined(" ", (finding.sentence for finding in named)))
     return derive_again(store, way, session.unit, session.started_at, (id,))

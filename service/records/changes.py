@@ -6,6 +6,7 @@ was entered.
 from datetime import datetime
 
 from estimator.errors import Problem
+from estimator.message import joined, say
 from estimator.session import IN_SERVICE
 from service.errors import ConflictError, RefusedError
 from service.ingest.checked import CLOCK_LEEWAY
@@ -42,15 +43,21 @@ def accept_session(storage: Storage, way: Deriving, id: str, step: Step) -> tupl
 
 def _require_possible(store: Store, session: StoredSession) -> None:
     if session.state is RecordState.ACCEPTED:
-        raise ConflictError(f"Session {session.id} is accepted already.")
+        raise ConflictError(say("Session {id} is accepted already.", id=session.id))
     if session.simulated and not Units(store).is_simulated(session.unit):
-        raise ConflictError(f"Session {session.id} is simulated, and unit {session.unit} has been measured since.")
+        raise ConflictError(
+            say("Session {id} is simulated, and unit {unit} has been measured since.", id=session.id, unit=session.unit)
+        )
     if session.superseded_by is None:
         return
     stands_for_it = Sessions(store).get(session.superseded_by)
     if stands_for_it.state in (RecordState.ACCEPTED, RecordState.QUESTIONED):
         raise ConflictError(
-            f"Session {stands_for_it.id} stands for session {session.id}: withdraw it first, or both would count."
+            say(
+                "Session {id} stands for session {id2}: withdraw it first, or both would count.",
+                id=stands_for_it.id,
+                id2=session.id,
+            )
         )
 
 
@@ -64,7 +71,7 @@ def withdraw_session(storage: Storage, way: Deriving, id: str, step: Step) -> tu
         Units(store).hold(Sessions(store).get(id).unit)
         session = Sessions(store).get(id)
         if session.state not in POSSIBLE:
-            raise ConflictError(f"Session {id} is {session.state} already.")
+            raise ConflictError(say("Session {id} is {state} already.", id=id, state=session.state))
         change(store, session, RecordState.WITHDRAWN, step)
         derived = derive_again(store, way, session.unit, session.started_at, (id,))
     follow(storage, way, session.unit, derived)
@@ -88,11 +95,19 @@ def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tu
 
 def _require_choice(store: Store, session: StoredSession) -> None:
     if session.state is not RecordState.ACCEPTED:
-        raise ConflictError(f"Session {session.id} is {session.state}: only an accepted session can be a reference.")
+        raise ConflictError(
+            say(
+                "Session {id} is {state}: only an accepted session can be a reference.",
+                id=session.id,
+                state=session.state,
+            )
+        )
     if session.programme == IN_SERVICE:
         raise ConflictError("A recording in service is compared with a calibration and is no reference itself.")
     if blind := too_few(Calibrations(store).get(session.id)):
-        raise ConflictError(f"Session {session.id} gives no uncertainty to judge others with. {blind}")
+        raise ConflictError(
+            say("Session {id} gives no uncertainty to judge others with. {blind}", id=session.id, blind=blind)
+        )
 
 
 def set_check(storage: Storage, way: Deriving, id: str, step: Step, *, is_check: bool) -> StoredSession:
@@ -155,10 +170,15 @@ def record_service(
 def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:
     found = []
     if new.at > now + CLOCK_LEEWAY:
-        found.append(Problem("at", f"lies in the future ({new.at:%Y-%m-%d}); record what was done"))
+        found.append(Problem("at", say("lies in the future ({at}); record what was done", at=f"{new.at:%Y-%m-%d}")))
     sensors = UnitTypes(store).of_unit(serial).sensors
     if new.sensor and new.sensor not in sensors:
-        found.append(Problem("sensor", f"is no sensor of {serial}; it has {', '.join(sensors)}"))
+        found.append(
+            Problem(
+                "sensor",
+                say("is no sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
+            )
+        )
     return tuple(found)
 
 
@@ -168,7 +188,7 @@ def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -
         Units(store).hold(Services(store).get(number).unit)
         service = Services(store).get(number)
         if service.state is RecordState.WITHDRAWN:
-            raise ConflictError(f"Service {number} is withdrawn already.")
+            raise ConflictError(say("Service {number} is withdrawn already.", number=number))
         Services(store).put_state(number, RecordState.WITHDRAWN)
         States(store).add(RecordKind.SERVICE, str(number), RecordState.WITHDRAWN, step)
         details = {"service": number, "kind": service.kind, "at": service.at.isoformat(), "why": step.why}

@@ -38,6 +38,7 @@ from service.sessions.store import Sessions
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.audit import Audit
+from service.storage.documents import STORED
 from service.storage.files import LOST
 from service.storage.json_text import json_text
 from service.storage.store import Store
@@ -143,7 +144,7 @@ def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     with storage.database.reading() as store:
         kept = kept_before(store, task.session)
     found = find_causes(session, tuple(earlier.values()), records=as_evidence(session, kept, earlier))
-    document = json_text(found.to_dict())
+    document = json_text(STORED.written(found))
     read = read_diagnosis(document)
     with storage.database.reading() as store:
         by = weighing_of(store, task.session.id, session.block)

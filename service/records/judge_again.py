@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from estimator.errors import SessionError
+from estimator.message import say
 from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
 from estimator.results import Calibration
@@ -115,7 +116,9 @@ def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitTy
     try:
         source = read_upload(by.files.content(sha256), filename)
     except (*LOST, SessionError) as lost:
-        return Outcome(place.basis, unit_type, Judged(own, (), f"It cannot be compared: {lost}", is_reference=False))
+        return Outcome(
+            place.basis, unit_type, Judged(own, (), say("It cannot be compared: {lost}", lost=lost), is_reference=False)
+        )
     reference = known.calibration(place.reference.id)
     found = Comparison(reference, parity_check(source, reference))
     moved = parity_calibration(found.result, reference)

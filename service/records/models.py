@@ -16,6 +16,7 @@ from estimator.errors import Problem
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.results import EmpiricalTerm
+from estimator.message import joined, say
 from service.diagnosis.records import StoredDiagnosis
 from service.diagnosis.words.causes import UNKNOWN_CAUSE, cause_on
 from service.errors import ConflictError, RefusedError
@@ -64,7 +65,11 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
         tell_own(store, revision.scope, revision.subject)
         details = {"cause": new.cause, "sensors": list(finding.sensors), "session": session.id, "note": new.note}
         Audit(store).write(
-            now, new.by, "accept model", f"{new.scope} {revision.subject}", {"revision": revision.id, **details}
+            now,
+            new.by,
+            "accept model",
+            say("{scope} {subject}", scope=new.scope, subject=revision.subject),
+            {"revision": revision.id, **details},
         )
         return revision
 
@@ -83,8 +88,12 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
     if known is None or not known.can_be_modelled:
         raise _refused(
             "cause",
-            f"{wanted!r} is a matter of this one record or of what changed since earlier sessions, not a property "
-            "that a model can hold; correct the record and upload it again, or act on the unit",
+            say(
+                "{wanted} is a matter of this one record or of what changed since earlier sessions, not "
+                "a property that a model can hold; correct the record and upload it again, or act on the "
+                "unit",
+                wanted=repr(wanted),
+            ),
         )
     return (*named, *equal)[0]
 
@@ -121,8 +130,11 @@ def _subject(new: NewModel, session: StoredSession, unit_type: str, sensors: tup
 
 def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
     if sensors:
-        found = " and ".join(sensors)
-        raise _refused("scope", f"is 'stand', but the cause acts on {found}; accept it for the unit or the unit type")
+        found = joined(" and ", sensors)
+        raise _refused(
+            "scope",
+            say("is 'stand', but the cause acts on {found}; accept it for the unit or the unit type", found=found),
+        )
     if session.stand is None:
         raise _refused("scope", "is 'stand', but the session names no stand; accept it for the unit or the unit type")
     return session.stand
@@ -130,7 +142,10 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
 
 def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
     shown = ", ".join(f.cause for f in findings) or "none"
-    return _refused("cause", f"{wanted!r} is not among the causes that this session shows ({shown})")
+    return _refused(
+        "cause",
+        say("{wanted} is not among the causes that this session shows ({shown})", wanted=repr(wanted), shown=shown),
+    )
 
 
 def _refused(field: str, message: str) -> RefusedError:
@@ -174,8 +189,14 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
         units = Recomputations(store).ask(revision.id, scope, taken.subject, now)
         tell_job(store, revision, units, now)
         details = {"revision": revision.id, "cause": new.cause, "sensors": list(taken.sensors), "units": units}
-        shows = {"group": f"{SCOPES[group.level.value]} {group.name}", "sessions": shown.sessions, "note": new.note}
-        Audit(store).write(now, new.by, "accept model", f"{scope} {taken.subject}", details | shows)
+        shows = {
+            "group": say("{scopes} {name}", scopes=SCOPES[group.level.value], name=group.name),
+            "sessions": shown.sessions,
+            "note": new.note,
+        }
+        Audit(store).write(
+            now, new.by, "accept model", say("{scope} {subject}", scope=scope, subject=taken.subject), details | shows
+        )
         return revision
 
 
@@ -253,14 +274,28 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
     """The one that is meant."""
     found = [f for f in shown.findings if f.cause == new.cause and new.sensors in ((), f.sensors)]
     if len(found) == 1 and not found[0].subject:
-        raise _refused("cause", f"{new.cause!r} belongs to a stand or a type, and the sessions name none")
+        raise _refused(
+            "cause", say("{cause} belongs to a stand or a type, and the sessions name none", cause=repr(new.cause))
+        )
     if len(found) == 1:
         return found[0]
     if found:
-        places = " or ".join(", ".join(f.sensors) or "none" for f in found)
-        raise _refused("sensors", f"must say which is meant: these sessions show {new.cause!r} on {places}")
-    names = ", ".join(cause_on(f.cause, f.sensors) for f in shown.findings) or "none"
-    raise _refused("cause", f"{new.cause!r} is not among the causes that these sessions show together ({names})")
+        places = joined(" or ", (", ".join(f.sensors) or "none" for f in found))
+        raise _refused(
+            "sensors",
+            say(
+                "must say which is meant: these sessions show {cause} on {places}", cause=repr(new.cause), places=places
+            ),
+        )
+    names = joined(", ", (cause_on(f.cause, f.sensors) for f in shown.findings)) or "none"
+    raise _refused(
+        "cause",
+        say(
+            "{cause} is not among the causes that these sessions show together ({names})",
+            cause=repr(new.cause),
+            names=names,
+        ),
+    )
 
 
 def _latest(store: Store, group: Group) -> str:
@@ -272,7 +307,9 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
     with storage.database.writing() as store:
         known = Models(store).get(revision)
         if known not in in_force(Models(store).of_subject(known.scope, known.subject)):
-            raise ConflictError(f"Revision {known.id} is not in force: withdrawn before, or a withdrawal itself.")
+            raise ConflictError(
+                say("Revision {id} is not in force: withdrawn before, or a withdrawal itself.", id=known.id)
+            )
         made = Models(store).add(
             replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
         )
@@ -280,5 +317,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         if pooled_of(known) is not None:
             tell_job(store, made, Recomputations(store).ask(made.id, known.scope, known.subject, now), now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
-        Audit(store).write(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
+        Audit(store).write(
+            now, by, "withdraw model", say("{scope} {subject}", scope=known.scope, subject=known.subject), details
+        )
         return made

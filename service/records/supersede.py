@@ -3,6 +3,7 @@
 from datetime import datetime
 
 from estimator.errors import SessionError
+from estimator.message import say
 from service.errors import ConflictError
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
@@ -84,11 +85,15 @@ def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) 
     Units(store).hold(Sessions(store).get(replaced.session).unit)
     known = Sessions(store).get(replaced.session)
     if known.id == by.id:
-        raise ConflictError(f"Session {known.id} cannot stand for itself: the file holds what is stored already.")
+        raise ConflictError(
+            say("Session {id} cannot stand for itself: the file holds what is stored already.", id=known.id)
+        )
     if known.state not in REPLACEABLE:
-        raise ConflictError(f"Session {known.id} is {known.state} already, so nothing stands for it.")
+        raise ConflictError(
+            say("Session {id} is {state} already, so nothing stands for it.", id=known.id, state=known.state)
+        )
     if by.state not in REPLACEABLE:
-        raise ConflictError(f"Session {by.id} is {by.state} itself, so it stands for none.")
+        raise ConflictError(say("Session {id} is {state} itself, so it stands for none.", id=by.id, state=by.state))
     change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=by.id)
     return known
 
@@ -100,7 +105,11 @@ def successor_of(storage: Storage, id: str) -> str:
         found = Sessions(store).corrected(known)
     if len(found) != 1:
         raise ConflictError(
-            f"Which session stands for {id} cannot be told: name it in `superseded_by`. "
-            f"Uploaded later of the same unit and date: {len(found)}."
+            say(
+                "Which session stands for {id} cannot be told: name it in `superseded_by`. Uploaded "
+                "later of the same unit and date: {found}.",
+                id=id,
+                found=len(found),
+            )
         )
     return found[0]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import ConflictError, NotFoundError, RefusedError
 from service.fleet.changes import ask_for_summaries
 from service.fleet.condition import UnitSummary
@@ -80,7 +81,7 @@ def withdraw_attachment(storage: Storage, id: int, who: str, why: str, now: date
     with storage.database.writing() as store:
         attachment = Attachments(store).get(id)
         if not Attachments(store).withdraw(id, Withdrawal(now, who, why)):
-            raise ConflictError(f"Attachment {id} was withdrawn before.")
+            raise ConflictError(say("Attachment {id} was withdrawn before.", id=id))
         Audit(store).write(now, who, "withdraw attachment", attachment.unit, {"attachment": id, "why": why})
         return Attachments(store).get(id)
 
@@ -90,7 +91,12 @@ def given_out(store: Store, id: int) -> Attachment:
     attachment = Attachments(store).get(id)
     if attachment.withdrawal is not None:
         raise NotFoundError(
-            f"Attachment {id} was withdrawn by {attachment.withdrawal.who}: {attachment.withdrawal.why}"
+            say(
+                "Attachment {id} was withdrawn by {who}: {why}",
+                id=id,
+                who=attachment.withdrawal.who,
+                why=attachment.withdrawal.why,
+            )
         )
     return attachment
 
@@ -123,7 +129,7 @@ def set_lot(storage: Storage, serial: str, lot: str | None, now: datetime, *, wh
             Audit(store).write(now, who, "lot", serial, {"before": was, "lot": lot})
         found = Fleet(store).unit(serial)
     if found is None:
-        raise NotFoundError(f"There is no unit {serial!r}.")
+        raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
     return found
 
 
@@ -143,6 +149,6 @@ def withdraw_note(storage: Storage, id: int, who: str, why: str, now: datetime) 
     with storage.database.writing() as store:
         note = Notes(store).get(id)
         if not Notes(store).withdraw(id, who, why, now):
-            raise ConflictError(f"Note {id} was withdrawn before.")
+            raise ConflictError(say("Note {id} was withdrawn before.", id=id))
         Audit(store).write(now, who, "withdraw note", note.unit, {"note": id, "why": why})
         return Notes(store).get(id)

@@ -4,6 +4,7 @@ import zlib
 from dataclasses import dataclass
 
 from estimator.results import Calibration
+from service.storage.documents import STORED
 from service.storage.json_text import json_text
 
 LEVEL = 4
@@ -21,4 +22,4 @@ class Packed:
 
 def pack(calibration: Calibration) -> Packed:
     """Ready to be stored, so that no transaction waits for it."""
-    return Packed(calibration.method, zlib.compress(json_text(calibration.to_dict()).encode(), LEVEL))
+    return Packed(calibration.method, zlib.compress(json_text(STORED.written(calibration)).encode(), LEVEL))

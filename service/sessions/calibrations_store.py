@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from sqlalchemy import Select, bindparam, select, update
 
+from estimator.message import say
 from estimator.results import Calibration
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
@@ -51,8 +52,10 @@ class Calibrations(Queries):
         query = _IN_FORCE if revision is None else _UNDER
         deflated = self._session.scalar(query, {"session": session, "under": revision})
         if deflated is None:
-            under = "" if revision is None else f" under model revision {revision}"
-            raise NotFoundError(f"There is no calibration of session {session!r}{under}.")
+            under = "" if revision is None else say(" under model revision {revision}", revision=revision)
+            raise NotFoundError(
+                say("There is no calibration of session {session}{under}.", session=repr(session), under=under)
+            )
         return zlib.decompress(deflated)
 
     def with_session(self, id: str) -> tuple[StoredSession, DiagnosisSummary | None, str, Calibration]:
@@ -64,7 +67,7 @@ class Calibrations(Queries):
         whole = query.outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id))
         row = self._session.execute(whole.where(SessionRow.id == id)).one_or_none()
         if row is None:
-            raise NotFoundError(f"There is no session {id!r}.")
+            raise NotFoundError(say("There is no session {id}.", id=repr(id)))
         *session, state, summary, failed, document = row
         made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary)
         return session_record(*session), made, failed or "", _read(zlib.decompress(document))

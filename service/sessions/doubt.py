@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
+from estimator.message import joined, say
 from service.kit.answer import answer
 from service.sessions.decision import Verdict
 
@@ -36,12 +37,12 @@ class Correction:
     @property
     def text(self) -> str:
         """What it does, as the corrected file's notes say it."""
-        who = " and ".join(self.sensors) if len(self.sensors) < 3 else f"{self.sensors[0]}–{self.sensors[-1]}"
+        who = joined(" and ", self.sensors) if len(self.sensors) < 3 else f"{self.sensors[0]}–{self.sensors[-1]}"
         if self.remedy is Remedy.UNIT:
-            return f"unit {self.unit}"
+            return say("unit {unit}", unit=self.unit)
         if self.remedy is Remedy.EXCHANGE:
-            return f"readings of {who} exchanged"
-        return f"{self.remedy.value} of {who} × {self.factor:.6g}"
+            return say("readings of {who} exchanged", who=who)
+        return say("{value} of {who} × {factor}", value=self.remedy.value, who=who, factor=f"{self.factor:.6g}")
 
 
 @dataclass(frozen=True)
@@ -60,10 +61,14 @@ class Doubt:
     @property
     def text(self) -> str:
         """In a sentence or two."""
-        remedy = "" if self.correction is None else f" A file with the {self.correction.text} would put it right."
+        remedy = (
+            ""
+            if self.correction is None
+            else say(" A file with the {text} would put it right.", text=self.correction.text)
+        )
         if self.stands_for is not None:
             remedy = " Together they would count twice: say which one counts."
-        return f"{self.what}: {self.slip}.{remedy}"
+        return say("{what}: {slip}.{remedy}", what=self.what, slip=self.slip, remedy=remedy)
 
 
 @dataclass(frozen=True)
@@ -83,7 +88,9 @@ def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
     found = tuple(doubts)
     known = tuple(doubt.correction for doubt in found if doubt.correction is not None)
     stands_for = next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None)
-    return Remedies(", ".join(one.text for one in known), stands_for, next((one.unit for one in known if one.unit), ""))
+    return Remedies(
+        joined(", ", (one.text for one in known)), stands_for, next((one.unit for one in known if one.unit), "")
+    )
 
 
 class DoubtKind(StrEnum):

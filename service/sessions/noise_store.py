@@ -10,6 +10,7 @@ from sqlalchemy import select
 from estimator.allan.results import TERMS, BlockNoise
 from service.sessions.records import StoredSession
 from service.sessions.tables import ParameterRow, SessionNoiseRow
+from service.storage.documents import STORED
 from service.storage.json_text import json_text
 from service.storage.queries import Queries
 
@@ -28,7 +29,7 @@ class Noises(Queries):
 
     def put_once(self, unit: int, record: StoredSession, found: BlockNoise, version: str, at: datetime) -> None:
         """Stores it with its terms, unless somebody else did meanwhile."""
-        document = zlib.compress(json_text(found.to_dict()).encode())
+        document = zlib.compress(json_text(STORED.written(found)).encode())
         values = {"document": document, "estimator_version": version, "made_at": at}
         if not self.insert_once(SessionNoiseRow, session_id=record.id, **values):
             return

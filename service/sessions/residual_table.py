@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.message import say
 from estimator.results import Calibration, Residuals
 from estimator.session import Array
 from service.kit.measures import deviation_measure, number
@@ -39,7 +40,10 @@ def residual_table(calibration: Calibration) -> ResidualTable:
     measures = [deviation_measure(s.kind, "bias", x) for s, x in zip(calibration.sensors, largest, strict=True)]
     shown = found.value * [measure.factor for measure in measures]
     return ResidualTable(
-        heads=tuple(f"{s.name}, {u.label}" for s, u in zip(calibration.sensors, measures, strict=True)),
+        heads=tuple(
+            say("{name}, {label}", name=s.name, label=u.label)
+            for s, u in zip(calibration.sensors, measures, strict=True)
+        ),
         beta=found.beta is not None,
         rows=rows_of(shown, found),
     )

@@ -9,6 +9,7 @@ from sqlalchemy import ColumnElement, Select, and_, bindparam, or_, select, upda
 from sqlalchemy.orm import InstrumentedAttribute
 
 from estimator.health.common_motion import CommonMotion
+from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
@@ -55,7 +56,7 @@ class Sessions(Queries):
         """One session."""
         found = self._session.execute(_BY_ID, {"id": id}).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no session {id!r}.")
+            raise NotFoundError(say("There is no session {id}.", id=repr(id)))
         return session_record(*found)
 
     def only_demonstration(self) -> bool:

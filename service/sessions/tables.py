@@ -6,7 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.columns import BYTES, IS_QUESTIONED, only_where
+from service.storage.columns import BYTES, IS_QUESTIONED, Sentence, only_where
 from service.storage.tables import Base
 
 
@@ -32,7 +32,7 @@ class SessionRow(Base):
     started_at: Mapped[datetime] = mapped_column(index=True)
     uploaded_at: Mapped[datetime]
     verdict: Mapped[str] = mapped_column(String(20))
-    reason: Mapped[str]
+    reason: Mapped[str] = mapped_column(Sentence)
     worst_sensor: Mapped[str | None]
     worst_parameter: Mapped[str | None] = mapped_column(String(20))
     margin: Mapped[float | None]
@@ -60,7 +60,7 @@ class CalibrationRow(Base):
     document: Mapped[bytes]
     computed_at: Mapped[datetime]
     verdict: Mapped[str] = mapped_column(String(20))
-    reason: Mapped[str]
+    reason: Mapped[str] = mapped_column(Sentence)
     worst_sensor: Mapped[str | None]
     worst_parameter: Mapped[str | None] = mapped_column(String(20))
     margin: Mapped[float | None]
@@ -154,7 +154,7 @@ class RecordStateRow(Base):
     state: Mapped[str] = mapped_column(String(20))
     who: Mapped[str]
     at: Mapped[datetime]
-    why: Mapped[str]
+    why: Mapped[str] = mapped_column(Sentence)
     superseded_by: Mapped[str | None] = mapped_column(String(20))
     remedies: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
 
@@ -168,4 +168,4 @@ class ReferenceChoiceRow(Base):
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"))
     who: Mapped[str]
     at: Mapped[datetime]
-    why: Mapped[str]
+    why: Mapped[str] = mapped_column(Sentence)

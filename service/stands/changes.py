@@ -3,6 +3,7 @@
 from datetime import datetime
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import RefusedError
 from service.stands.paper_records import StandCertificate
 from service.stands.store import StandCertificates
@@ -13,7 +14,9 @@ from service.storage.audit import Audit
 def record_stand_certificate(storage: Storage, new: StandCertificate, now: datetime, *, who: str) -> StandCertificate:
     """Keeps a certificate; one of a number that is there takes its place, and the same again changes nothing."""
     if new.valid_until < new.issued_on:
-        fault = Problem("valid_until", f"lies before the day of issue, {new.issued_on}; check both dates")
+        fault = Problem(
+            "valid_until", say("lies before the day of issue, {issued_on}; check both dates", issued_on=new.issued_on)
+        )
         raise RefusedError("The certificate cannot be used.", (fault,))
     with storage.database.writing() as store:
         if new not in StandCertificates(store).of_stand(new.stand):

@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import Integer, Select, cast, delete, func, select
 
 from estimator.health.common_motion import SEPARATED
+from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
 from service.sessions.states_store import IS_ACCEPTED
@@ -44,7 +45,9 @@ class Stands(Queries):
         """The same of one stand; NotFoundError where there is none of that name."""
         found = self._session.execute(_stands().where(StandRow.name == stand)).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no stand {stand!r}: no session was measured on one of that name.")
+            raise NotFoundError(
+                say("There is no stand {stand}: no session was measured on one of that name.", stand=repr(stand))
+            )
         return _known(*found)
 
     def conditions(self) -> tuple[StandCondition, ...]:
@@ -175,7 +178,9 @@ class StandCertificates(Queries):
     def _key(self, stand: str) -> int:
         key = self._session.scalar(select(StandRow.id).where(StandRow.name == stand))
         if key is None:
-            raise NotFoundError(f"There is no stand {stand!r}: no session was measured on one of that name.")
+            raise NotFoundError(
+                say("There is no stand {stand}: no session was measured on one of that name.", stand=repr(stand))
+            )
         return key
 
 

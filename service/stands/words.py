@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import date, timedelta
 
 from estimator.health.common_motion import AXES
+from estimator.message import joined, say
 from estimator.session import ACCELEROMETER
 from service.kit.measures import COVERAGE, deviation_measure, in_words, measured, signed
 from service.kit.names import day_of
@@ -21,23 +22,31 @@ def reason_of(
 ) -> str:
     """What the stand does to every block, since when, what to do, and how blocks are seated anyway."""
     if not shifts:
-        return " ".join([STEADY, *_seating(seating)]) if evidence else TOO_FEW
+        return joined(" ", (STEADY, *_seating(seating))) if evidence else TOO_FEW
     lasting = [shift for shift in shifts if shift.until is None]
     told = [_shift(shift) for shift in (*lasting, *(shift for shift in shifts if shift.until is not None))]
     advice = "Check stand and fixture." if lasting else "It is back where it was: note what was done to it."
-    return " ".join([*told, advice, JUDGED, *_seating(seating)])
+    return joined(" ", (*told, advice, JUDGED, *_seating(seating)))
 
 
 def _shift(shift: StandEvidence) -> str:
     """What it does, or did, on how many units it was seen, and when."""
-    seen = f"seen on {shift.agreeing} of {shift.units} units"
-    when = f"since {day_of(shift.since)}"
+    seen = say("seen on {agreeing} of {units} units", agreeing=shift.agreeing, units=shift.units)
+    when = say("since {since}", since=day_of(shift.since))
     if shift.until is not None:
-        when = f"from {day_of(shift.since)} until before {day_of(shift.until)}"
-    by = f"{size_of_shift(shift)}, {seen} {when}."
+        when = say("from {since} until before {until}", since=day_of(shift.since), until=day_of(shift.until))
+    by = say("{shift}, {seen} {when}.", shift=size_of_shift(shift), seen=seen, when=when)
     if shift.quantity == AXES:
-        return f"It {'turns' if shift.until is None else 'turned'} every block by {by}"
-    return f"It {'changes' if shift.until is None else 'changed'} every scale factor by {by}"
+        return (
+            say("It turns every block by {by}", by=by)
+            if shift.until is None
+            else say("It turned every block by {by}", by=by)
+        )
+    return (
+        say("It changes every scale factor by {by}", by=by)
+        if shift.until is None
+        else say("It changed every scale factor by {by}", by=by)
+    )
 
 
 def size_of_shift(shift: StandEvidence) -> str:
@@ -49,19 +58,19 @@ def size_of_shift(shift: StandEvidence) -> str:
 def kind_of_shift(kind: str, quantity: str) -> str:
     """``Turn of every block``: what a stand does, by the sensors that show it."""
     what = "Turn of every block" if quantity == AXES else "Change of every scale factor"
-    return what if kind == ACCELEROMETER else f"{what}, by gyros"
+    return what if kind == ACCELEROMETER else say("{what}, by gyros", what=what)
 
 
 def scatter_of(own: StandSeating) -> str:
     """``±0.4 arcsec about each axis``: from one mounting to the next, ± U."""
     parameter, of = ("axis", "about each axis") if own.quantity == AXES else ("scale", "of all scale factors")
-    return f"±{in_words(own.kind, parameter, COVERAGE * own.tau)} {of}"
+    return say("±{size} {of}", size=in_words(own.kind, parameter, COVERAGE * own.tau), of=of)
 
 
-def _seating(seating: Sequence[StandSeating]) -> list[str]:
+def _seating(seating: Sequence[StandSeating]) -> Sequence[str]:
     """How blocks are seated, ± U."""
     return [
-        f"From one mounting to the next a block sits within {scatter_of(own)}."
+        say("From one mounting to the next a block sits within {own}.", own=scatter_of(own))
         for own in seating
         if own.quantity == AXES
     ][:1]
@@ -105,8 +114,8 @@ def certificate_in_words(certificates: Sequence[StandCertificate], today: date) 
     """What sessions of today would hang on."""
     latest = held(certificates, today)
     if latest is None:
-        return NOT_YET.format(issued=day_of(certificates[0].issued_on)) if certificates else NONE
-    return (HOLDS if latest.valid_until >= today else EXPIRED).format(until=day_of(latest.valid_until))
+        return say(NOT_YET, issued=day_of(certificates[0].issued_on)) if certificates else NONE
+    return say(HOLDS if latest.valid_until >= today else EXPIRED, until=day_of(latest.valid_until))
 
 
 def stand_word(

@@ -1,10 +1,14 @@
 """Column types and indexes that mean the same on SQLite and PostgreSQL."""
 
+import json
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import BigInteger, DateTime, Dialect, Integer, text
+from sqlalchemy import BigInteger, ColumnElement, DateTime, Dialect, Integer, String, Text, text, type_coerce
+from sqlalchemy.orm import InstrumentedAttribute
 from sqlalchemy.types import TypeDecorator
+
+from estimator.message import PLACE, Message, as_document, say, with_messages
 
 RESOLVED = "resolved"
 """State of a flag that is closed."""
@@ -42,3 +46,43 @@ class UtcDateTime(TypeDecorator[datetime]):
         if value is None:
             return None
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+class Sentence(TypeDecorator[str]):
+    """A text that may be a message, which is kept as JSON with its parts; all others are kept as they are."""
+
+    impl = String
+    cache_ok = True
+    _HEAD = '{"message":'
+
+    def process_bind_param(self, value: str | None, dialect: Dialect) -> str | None:
+        """A text that begins as a message does is kept as the only part of one."""
+        if value is None or not (isinstance(value, Message) or value.startswith(self._HEAD)):
+            return value
+        message = value if isinstance(value, Message) else say("{text}", text=value)
+        return _line(as_document(message))
+
+    def process_result_value(self, value: str | None, dialect: Dialect) -> str | None:
+        """The message with its parts; what an earlier release kept is a plain text."""
+        if value is None or not value.startswith(self._HEAD):
+            return value
+        message: str = with_messages(json.loads(value))
+        return message
+
+
+class LongSentence(Sentence):
+    """The same, declared as TEXT."""
+
+    impl = Text
+    cache_ok = True
+
+
+def is_made_of(sentence: ColumnElement[str] | InstrumentedAttribute[str], template: str) -> ColumnElement[bool]:
+    """Whether a stored sentence is one of a template, which an earlier release kept as a plain text."""
+    stored = type_coerce(sentence, String)
+    as_message = _line({"message": template}).removesuffix("}")
+    return stored.startswith(as_message, autoescape=True) | stored.startswith(PLACE.split(template)[0], autoescape=True)
+
+
+def _line(document: Any) -> str:
+    return json.dumps(document, ensure_ascii=False, separators=(",", ":"))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from hashlib import file_digest, sha256
 from pathlib import Path
 
+from estimator.message import say
 from service.errors import DamagedError, NotFoundError
 from service.kit.arriving_files import Content, Landed
 from service.kit.log import log
@@ -97,18 +98,31 @@ class Files:
         except FileNotFoundError as missing:
             self._tell("missing", digest)
             raise NotFoundError(
-                f"The uploaded file {digest} is missing from {self.folder}. Uploading the same file puts it back."
+                say(
+                    "The uploaded file {digest} is missing from {folder}. Uploading the same file puts it back.",
+                    digest=digest,
+                    folder=self.folder,
+                )
             ) from missing
         except OSError as fault:
             self._tell("unreadable", digest)
-            raise DamagedError(f"The uploaded file {digest} cannot be read: {fault.strerror or fault}.") from fault
+            raise DamagedError(
+                say(
+                    "The uploaded file {digest} cannot be read: {strerror}.",
+                    digest=digest,
+                    strerror=fault.strerror or fault,
+                )
+            ) from fault
 
     def _check(self, found: str, digest: str) -> None:
         if found != digest:
             self._tell("damaged", digest)
             raise DamagedError(
-                f"The stored file {digest} is not what was uploaded: its content was changed, so it is not given out. "
-                "Uploading the same file, or the one in a backup, puts it back."
+                say(
+                    "The stored file {digest} is not what was uploaded: its content was changed, so it is "
+                    "not given out. Uploading the same file, or the one in a backup, puts it back.",
+                    digest=digest,
+                )
             )
 
     def sweep(self) -> int:

@@ -4,6 +4,7 @@ import os
 import re
 from pathlib import Path
 
+from estimator.message import say
 from service.errors import DamagedError
 
 NAME = re.compile(r"[0-9a-z][0-9a-z-]{0,99}")
@@ -18,7 +19,9 @@ def is_name(name: object) -> bool:
 def named_in(folder: Path, name: str) -> Path:
     """Where a file of this name lies; every name that is stored becomes a path here, and nowhere else."""
     if not is_name(name):
-        raise DamagedError(f"{name[:100]!r} is not the name of a stored file: the record that names it was changed.")
+        raise DamagedError(
+            say("{name} is not the name of a stored file: the record that names it was changed.", name=repr(name[:100]))
+        )
     return folder / name
 
 

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from estimator.message import say
+
 
 def json_text(document: Any, *, finite: bool = True) -> str:
     """The document without spaces, a scalar of numpy as the plain bool, int or float that it is.
@@ -17,4 +19,4 @@ def json_text(document: Any, *, finite: bool = True) -> str:
 def _plain(value: object) -> object:
     if isinstance(value, np.generic):
         return value.item()
-    raise TypeError(f"{type(value).__name__} is not kept as JSON")
+    raise TypeError(say("{name} is not kept as JSON", name=type(value).__name__))

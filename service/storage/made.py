@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.storage.faults import disk_faults
 from service.storage.files import Files, content_hash
@@ -30,7 +31,7 @@ def read_made(files: Files, id: int, digest: str) -> bytes:
     except OSError:
         content = b""
     if content_hash(content) != digest:
-        raise NotFoundError(f"The file of job {id} is gone. Ask for it again.")
+        raise NotFoundError(say("The file of job {id} is gone. Ask for it again.", id=id))
     return content
 
 

@@ -1,5 +1,6 @@
 """What is wrong with the revision that a database is at, and what to do about it."""
 
+from estimator.message import say
 from service.storage.schema import head_revision, is_known
 
 
@@ -9,10 +10,14 @@ def unfit(found: str | None) -> str | None:
     if found == needed:
         return None
     if found is not None and not is_known(found):
-        return (
-            f"The database's schema is at {found}, which a newer version of the program made; this one goes up to "
-            f"{needed}: run the newer version."
+        return say(
+            "The database's schema is at {found}, which a newer version of the program made; this "
+            "one goes up to {needed}: run the newer version.",
+            found=found,
+            needed=needed,
         )
-    return (
-        f"The database's schema is at {found or 'nothing'}, this version needs {needed}: run `imu-health db upgrade`."
+    return say(
+        "The database's schema is at {found}, this version needs {needed}: run `imu-health db upgrade`.",
+        found=found or "nothing",
+        needed=needed,
     )

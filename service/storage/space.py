@@ -4,6 +4,8 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from estimator.message import say
+
 
 @dataclass(frozen=True)
 class Space:
@@ -17,9 +19,11 @@ class Space:
         """Why no upload is taken; None while there is room."""
         if self.free >= self.least:
             return None
-        return (
-            f"The disk of uploaded files has {self.free / 2**20:.0f} MiB left, less than the {self.least / 2**20:.0f} "
-            "MiB that are kept free, so no upload is taken. What is stored can be read as before."
+        return say(
+            "The disk of uploaded files has {free} MiB left, less than the {least} MiB that are kept "
+            "free, so no upload is taken. What is stored can be read as before.",
+            free=f"{self.free / 2**20:.0f}",
+            least=f"{self.least / 2**20:.0f}",
         )
 
 

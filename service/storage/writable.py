@@ -3,6 +3,7 @@
 from pathlib import Path
 from tempfile import TemporaryFile
 
+from estimator.message import say
 from service.errors import ServiceError
 
 
@@ -14,6 +15,10 @@ def require_writable(folder: Path) -> None:
             pass
     except OSError as fault:
         raise ServiceError(
-            f"The folder {folder} cannot be written: {fault.strerror or fault}. Give the service's user the right to "
-            "write there, or name another one with --data-folder or IMU_HEALTH_DATA_FOLDER."
+            say(
+                "The folder {folder} cannot be written: {strerror}. Give the service's user the right to "
+                "write there, or name another one with --data-folder or IMU_HEALTH_DATA_FOLDER.",
+                folder=folder,
+                strerror=fault.strerror or fault,
+            )
         ) from fault

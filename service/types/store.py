@@ -6,6 +6,7 @@ from datetime import datetime
 
 from sqlalchemy import Select, bindparam, func, select
 
+from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.fleet.tables import FleetTallyRow
@@ -57,7 +58,7 @@ class UnitTypes(Queries):
             _with_tolerances().join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == serial)
         ).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no unit {serial!r}.")
+            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         return unit_type_of(*found)
 
     def of_unit_through_time(self, serial: str) -> TypeThroughTime:
@@ -173,7 +174,7 @@ def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
 
 
 def _missing(name: str) -> NotFoundError:
-    return NotFoundError(f"There is no unit type {name!r}.")
+    return NotFoundError(say("There is no unit type {name}.", name=repr(name)))
 
 
 def _use(counts: Mapping[int | None, int]) -> TypeUse:

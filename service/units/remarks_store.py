@@ -4,6 +4,7 @@ from datetime import datetime
 
 from sqlalchemy import ColumnElement, Select, String, cast, select
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.sessions.states import RecordKind
 from service.sessions.states_store import state_change
@@ -32,7 +33,7 @@ class Notes(Queries):
         """One note."""
         found = self._session.execute(_notes().where(NoteRow.id == id)).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no note {id}.")
+            raise NotFoundError(say("There is no note {id}.", id=id))
         return note_record(*found)
 
     def of_unit(self, serial: str) -> tuple[Note, ...]:
@@ -88,7 +89,7 @@ class Attachments(Queries):
         """One attached file."""
         found = self._session.execute(_attachments().where(AttachmentRow.id == id)).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no attachment {id}.")
+            raise NotFoundError(say("There is no attachment {id}.", id=id))
         return attachment_record(*found)
 
     def of_unit(self, serial: str) -> tuple[Attachment, ...]:

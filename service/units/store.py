@@ -5,6 +5,7 @@ from datetime import datetime
 
 from sqlalchemy import Select, exists, select, update
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
@@ -49,7 +50,7 @@ class Units(Queries):
             select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
         ).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no unit {serial!r}.")
+            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         return Customer(*found)
 
     def set_customer(self, serial: str, new: Customer) -> None:
@@ -97,7 +98,7 @@ class Units(Queries):
         """The same of a unit that must be there."""
         key = self.held(serial)
         if key is None:
-            raise NotFoundError(f"There is no unit {serial!r}.")
+            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         return key
 
     def find(self, serial: str) -> int | None:
@@ -111,7 +112,7 @@ class Units(Queries):
             return known
         key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
         if key is None:
-            raise NotFoundError(f"There is no unit {serial!r}.")
+            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         self.remember_unit(serial, key)
         return key
 
@@ -147,7 +148,7 @@ class Services(Queries):
         """One recorded break."""
         found = self._session.execute(_services().where(ServiceRow.id == number)).one_or_none()
         if found is None:
-            raise NotFoundError(f"There is no service {number}.")
+            raise NotFoundError(say("There is no service {number}.", number=number))
         return service_record(*found)
 
     def put_state(self, number: int, state: RecordState) -> None:

@@ -13,6 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException, MultiPartParser
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import RefusedError, TooLargeError
 from service.ingest.formats import may_be_log
 from service.kit.arriving_files import Content
@@ -67,7 +68,10 @@ class Arriving:
         most = self.most if may_be_log(landing.start) else self._whole
         if landing.size > most:
             raise TooLargeError(
-                f"An upload may hold {most:,} bytes at a time; this one is larger. Average or split it."
+                say(
+                    "An upload may hold {most} bytes at a time; this one is larger. Average or split it.",
+                    most=f"{most:,}",
+                )
             )
         if landing.is_due:
             await run_in_threadpool(landing.write)
@@ -154,7 +158,7 @@ async def _sent(arriving: AttachingOf, person: PersonOf) -> SentAttachment:
 def _fault(name: str, text: str) -> str:
     """Why a field of the form cannot be kept; empty where it can."""
     if len(text) > LONGEST[name]:
-        return f"is longer than {LONGEST[name]} characters"
+        return say("is longer than {longest} characters", longest=LONGEST[name])
     return "holds a character that cannot be stored" if "\x00" in text else ""
 
 

@@ -10,6 +10,7 @@ from datetime import datetime
 
 import numpy as np
 
+from estimator.message import joined, say
 from estimator.session import CalibrationSession
 from estimator.writing import session_document
 from service.errors import ConflictError
@@ -37,15 +38,17 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
     source, found = _doubted(reception.storage, id)
     corrections = tuple(doubt.correction for doubt in found if doubt.correction is not None)
     if not corrections:
-        raise ConflictError(UNKNOWN.format(id=id))
+        raise ConflictError(say(UNKNOWN, id=id))
     copied = next((d.stands_for for d in found if d.correction is not None and d.correction.unit), None)
     if copied is not None:
         return _as_copy(reception, id, copied, by, now)
-    done = ", ".join(correction.text for correction in corrections)
-    content = json.dumps(session_document(corrected(source, corrections, f"Corrected: {done}."))).encode()
+    done = joined(", ", (correction.text for correction in corrections))
+    content = json.dumps(
+        session_document(corrected(source, corrections, say("Corrected: {done}.", done=done)))
+    ).encode()
     with reception.storage.database.reading() as store:
         is_check = Sessions(store).get(id).is_check
-    replaced = Replaced(id, by, f"corrected: {done}")
+    replaced = Replaced(id, by, say("corrected: {done}", done=done))
     return receive(reception, SentFile(f"{id}-corrected.json", content, replaces=replaced, is_check=is_check), now)
 
 
@@ -76,7 +79,7 @@ def _doubted(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Doubt
     with storage.database.reading() as store:
         stored = Sessions(store).get(id)
         if stored.state is not RecordState.QUESTIONED:
-            raise ConflictError(f"Session {id} is not questioned, so there is nothing to correct.")
+            raise ConflictError(say("Session {id} is not questioned, so there is nothing to correct.", id=id))
         source = read_upload(storage.files.content(stored.sha256), stored.filename)
         known = known_unit(store, Units(store).key(stored.unit))
         found = doubts(known, as_checked(source, stored.started_at, stored.unit), known.calibration(id), (id,))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from estimator.errors import Problem, SessionError
+from estimator.message import say
 from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
@@ -61,7 +62,9 @@ def preview(
         whole = {**mapping, "format": FORMAT, "table": dict(seen["taken"]), "columns": _for(seen, mapping)}
         layout_of(whole, filename)
     except SessionError as fault:
-        raise RefusedError(f"{filename} cannot be read as a table. Nothing was stored.", fault.problems) from fault
+        raise RefusedError(
+            say("{filename} cannot be read as a table. Nothing was stored.", filename=filename), fault.problems
+        ) from fault
     session, problems = _tried(whole, content, filename)
     return Preview(whole, fingerprint(seen), is_remembered, seen, session, problems)
 

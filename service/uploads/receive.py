@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import Any
 
 from estimator.errors import Problem, SessionError
+from estimator.message import changed, say
 from service.errors import RefusedError
 from service.ingest import in_turn, look_at
 from service.ingest.checked import Checked, check, plain_filename
@@ -56,13 +57,13 @@ def refuse(
 ) -> RefusedError:
     """Records the refusal and returns the error to raise, which holds every problem."""
     name, digest = received.filename, received.sha256
-    listed = tuple(Problem(_text(p.field), _text(p.message), p.row) for p in problems)
+    listed = tuple(Problem(_text(p.field), changed(p.message, _text), p.row) for p in problems)
     with storage.database.writing() as store:
         number = Log(store).refusal(received.at, name, digest, received.size, listed)
         Audit(store).write(received.at, received.who, "refuse", digest, {"filename": name, "problems": len(listed)})
         course.refused(store, number)
-    count = "one problem" if len(listed) == 1 else f"{len(listed)} problems"
-    return RefusedError(f"{name} cannot be used: {count}. Nothing was stored.", listed)
+    count = "one problem" if len(listed) == 1 else say("{listed} problems", listed=len(listed))
+    return RefusedError(say("{name} cannot be used: {count}. Nothing was stored.", name=name, count=count), listed)
 
 
 def _text(message: str) -> str:
@@ -331,7 +332,9 @@ def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[dict[str, Any
         layout_of(mapping, file.filename)
         seen = look_at(wrapped(mapping, held(file.content)), file.filename)
     except SessionError as fault:
-        raise RefusedError(f"{file.filename} cannot be read by this mapping.", fault.problems) from fault
+        raise RefusedError(
+            say("{filename} cannot be read by this mapping.", filename=file.filename), fault.problems
+        ) from fault
     if seen["session"]:
-        raise RefusedError(f"{file.filename} needs no mapping.", (Problem("mapping", NO_TABLE),))
+        raise RefusedError(say("{filename} needs no mapping.", filename=file.filename), (Problem("mapping", NO_TABLE),))
     return {**mapping, "table": dict(seen["taken"])}, fingerprint(seen)

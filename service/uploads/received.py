@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from fastapi import Depends, Query, Request
 
 from estimator.errors import Problem, SessionError
+from estimator.message import say
 from service.errors import ForbiddenError, RefusedError
 from service.ingest.layout.envelope import mapping_of
 from service.kit.arriving_files import Replaced, SentFile, held
@@ -96,7 +97,12 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
         return None
     faults = [Problem(name, NEEDED) for name, text in (("by", by), ("why", why)) if not text]
     if len(why) > LONGEST_WHY:
-        faults.append(Problem("why", f"is {len(why)} characters long; at most {LONGEST_WHY} are kept"))
+        faults.append(
+            Problem(
+                "why",
+                say("is {why} characters long; at most {longest_why} are kept", why=len(why), longest_why=LONGEST_WHY),
+            )
+        )
     if faults:
         raise RefusedError("A corrected file says who replaces a session and why.", tuple(faults))
     return Replaced(known, by, why)

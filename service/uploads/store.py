@@ -1,16 +1,17 @@
 """What came in and what became of it; layouts that are known."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import ColumnElement, and_, or_, select, true
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import NotFoundError
 from service.sessions.store import session_record, session_rows
 from service.sessions.tables import SessionRow
+from service.storage.documents import STORED
 from service.storage.queries import Queries
 from service.uploads.records import Arrival, ArrivalQuery, Refusal
 from service.uploads.tables import LayoutRow, RefusalRow
@@ -36,7 +37,7 @@ class Arrivals(Queries):
         """One refused upload."""
         row = self._session.get(RefusalRow, number)
         if row is None:
-            raise NotFoundError(f"There is no refused upload {number}.")
+            raise NotFoundError(say("There is no refused upload {number}.", number=number))
         return _refusal(row)
 
     def _refused(self, wanted: ArrivalQuery, before: ColumnElement[bool]) -> tuple[Refusal, ...]:
@@ -72,7 +73,7 @@ def _after_session(at: datetime | None, id: str) -> tuple[ColumnElement[bool], C
 
 
 def _refusal(row: RefusalRow) -> Refusal:
-    problems = tuple(Problem(**problem) for problem in row.problems)
+    problems = tuple(STORED.read(Problem, problem) for problem in row.problems)
     return Refusal(row.id, row.at, row.filename, row.sha256, row.size, problems)
 
 
@@ -81,7 +82,7 @@ class Log(Queries):
 
     def refusal(self, at: datetime, filename: str, sha256: str, size: int, problems: Sequence[Problem]) -> int:
         """Records an upload that could not be used, and returns its number."""
-        listed = [asdict(problem) for problem in problems]
+        listed = STORED.written(list(problems))
         row = RefusalRow(at=at, filename=filename, sha256=sha256, size=size, problems=listed)
         self._session.add(row)
         self._session.flush()

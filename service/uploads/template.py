@@ -16,6 +16,7 @@ import xlsxwriter
 from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
+from estimator.message import say
 from estimator.session import ACCELEROMETER, COUNTERS, GYROSCOPE, PROGRAMMES, STAGES, CalibrationSession
 from estimator.writing import session_document
 from service.ingest.session_keys import COLUMN_HINTS, KEY_HINTS, NEEDED_HERE, reading_hint, standard_error_hint
@@ -213,11 +214,13 @@ def _check(sheet: Worksheet, cells: tuple[int, int, int, int], name: str, hint: 
     called = words.heading(words.key(name))
     if name in CHOICES:
         rule = {"validate": "list", "source": [words.value(name, choice) for choice in CHOICES[name]]}
-        rule["error_message"] = words.say(f"Choose one of the list for {called}.")
+        rule["error_message"] = words.say(say("Choose one of the list for {called}.", called=called))
     elif name in LIMITS:
         low, high = LIMITS[name]
         rule = {"validate": "decimal", "criteria": "between", "minimum": low, "maximum": high}
-        rule["error_message"] = words.say(f"{called} is a number from {low:g} to {high:g}.")
+        rule["error_message"] = words.say(
+            say("{called} is a number from {low} to {high}.", called=called, low=f"{low:g}", high=f"{high:g}")
+        )
     if hint or name in CHOICES:
         shown = {"input_title": called[:32], "input_message": hint[:255], "ignore_blank": True}
         sheet.data_validation(*cells, {**rule, **shown})

@@ -12,6 +12,7 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from estimator.message import say
 from service.web.prefix import API as PREFIX
 from service.web.problems import problem
 
@@ -128,11 +129,16 @@ def _announced(scope: Scope) -> int:
 
 
 def _too_large(most: int) -> Unfinished:
-    return Unfinished(TOO_LARGE, f"A request of this kind may hold {most:,} bytes; this one is larger.")
+    return Unfinished(
+        TOO_LARGE, say("A request of this kind may hold {most} bytes; this one is larger.", most=f"{most:,}")
+    )
 
 
 def _slow(patience: float) -> str:
-    return f"The request did not arrive: it was waited for {patience:g} s longer than a slow line takes."
+    return say(
+        "The request did not arrive: it was waited for {patience} s longer than a slow line takes.",
+        patience=f"{patience:g}",
+    )
 
 
 def _answer(fault: Unfinished) -> ASGIApp:

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 from starlette.types import Message
 
+from estimator.message import say
 from service.errors import TooLargeError
 from service.kit.limits import in_force
 from service.kit.metrics import Metrics
@@ -62,7 +63,10 @@ def limited(request: Request, most: int, *, is_form: bool) -> Request:
         seen += len(message.get("body", b""))
         if seen > longest:
             raise TooLargeError(
-                f"An upload may hold {most:,} bytes at a time; this one is larger. Average or split it."
+                say(
+                    "An upload may hold {most} bytes at a time; this one is larger. Average or split it.",
+                    most=f"{most:,}",
+                )
             )
         return message
 

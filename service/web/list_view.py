@@ -7,6 +7,7 @@ from urllib.parse import urlencode
 
 from pydantic import Field
 
+from estimator.message import say
 from service.web.fields import NO_NUL
 
 Asked = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
@@ -48,7 +49,7 @@ class ListView:
     @property
     def order_in_words(self) -> str:
         """``by condition, least margin to tolerance first``."""
-        return self.ORDERS[self.order] + (", backwards" if self.backwards else "")
+        return say("{order}, backwards", order=self.ORDERS[self.order]) if self.backwards else self.ORDERS[self.order]
 
     @property
     def narrows(self) -> bool:

@@ -1,6 +1,6 @@
 """Every error of the service as application/problem+json."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
@@ -10,10 +10,15 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.routing import Match
+from starlette.types import Receive, Scope, Send
 
 from estimator.errors import Problem
+from estimator.message import say
 from service.errors import AwayError, RefusedError, ServiceError, SignInError, TooOftenError
 from service.kit.log import log, request_id
+from service.languages.catalogue import catalogue_of
+from service.languages.language import Language, asked
+from service.web.faults import fault_in_words
 
 MEDIA_TYPE = "application/problem+json"
 """RFC 9457."""
@@ -35,13 +40,39 @@ def add_problem_handlers(app: FastAPI) -> None:
     app.add_exception_handler(Exception, _unexpected)
 
 
+class ProblemAnswer(JSONResponse):
+    """A problem, its sentences in the language of the one who asked."""
+
+    media_type = MEDIA_TYPE
+
+    def __init__(self, content: Mapping[str, Any], status: int, headers: Mapping[str, str] | None) -> None:
+        super().__init__(content, status, headers)
+        self._content = content
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Says it where it is known who asked."""
+        language = asked(scope)
+        if language is not Language.ENGLISH:
+            self.body = self.render(_told(self._content, catalogue_of(language).say))
+            self.headers["Content-Length"] = str(len(self.body))
+        await super().__call__(scope, receive, send)
+
+
+def _told(content: Mapping[str, Any], say: Callable[[str], str]) -> dict[str, Any]:
+    """A problem with its sentences said; its keys and fields stay."""
+    told = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
+    if "problems" in told:
+        told["problems"] = [one | {"message": say(one["message"])} for one in told["problems"]]
+    return told
+
+
 def problem(
     status: int,
     detail: str,
     problems: Sequence[Problem] | None = None,
     headers: Mapping[str, str] | None = None,
     id: str | None = None,
-) -> JSONResponse:
+) -> ProblemAnswer:
     """The answer to a request that was not carried out; ``id`` where it is not known from what surrounds it."""
     content: dict[str, Any] = {
         "type": "about:blank",
@@ -54,10 +85,10 @@ def problem(
         content["request_id"] = known
     if problems is not None:
         content["problems"] = [{"field": p.field, "row": p.row, "message": p.message} for p in problems]
-    return JSONResponse(content, status, headers, MEDIA_TYPE)
+    return ProblemAnswer(content, status, headers)
 
 
-def _service_error(_: Request, error: Exception) -> JSONResponse:
+def _service_error(_: Request, error: Exception) -> ProblemAnswer:
     assert isinstance(error, ServiceError)
     headers = {"Retry-After": str(error.retry_after)} if isinstance(error, AwayError | TooOftenError) else None
     if isinstance(error, SignInError):
@@ -66,9 +97,9 @@ def _service_error(_: Request, error: Exception) -> JSONResponse:
     return problem(error.status, error.detail, found, headers)
 
 
-def _invalid_request(_: Request, error: Exception) -> JSONResponse:
+def _invalid_request(_: Request, error: Exception) -> ProblemAnswer:
     assert isinstance(error, RequestValidationError)
-    found = [Problem(_place(fault["loc"]), fault["msg"]) for fault in error.errors()]
+    found = [Problem(_place(fault["loc"]), fault_in_words(fault)) for fault in error.errors()]
     return problem(422, "The request cannot be used.", found)
 
 
@@ -78,17 +109,17 @@ def _place(location: Sequence[int | str]) -> str:
     return ".".join(map(str, parts))
 
 
-def _http_error(request: Request, error: Exception) -> JSONResponse:
+def _http_error(request: Request, error: Exception) -> ProblemAnswer:
     assert isinstance(error, HTTPException)
     details = {
-        404: f"There is nothing at {request.url.path}.",
-        405: f"{request.method} is not possible at {request.url.path}.",
+        404: say("There is nothing at {path}.", path=request.url.path),
+        405: say("{method} is not possible at {path}.", method=request.method, path=request.url.path),
     }
     headers = {"Allow": _allowed(request)} if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED else error.headers
     return problem(error.status_code, details.get(error.status_code, error.detail), None, headers)
 
 
-def _cut_off(_: Request, error: Exception) -> JSONResponse:
+def _cut_off(_: Request, error: Exception) -> ProblemAnswer:
     """Nobody is there to read this; it is one line in the log and no fault of the service."""
     return problem(400, CUT_OFF)
 
@@ -117,7 +148,7 @@ def _every(routes: Iterable[Any]) -> Iterator[Any]:
         yield from (route,) if held is None else _every(held.routes)
 
 
-def _unexpected(request: Request, error: Exception) -> JSONResponse:
+def _unexpected(request: Request, error: Exception) -> ProblemAnswer:
     """The one boundary for what nobody foresaw."""
     log.error("request failed", request_id=request.state.request_id, exc_info=error)
     return problem(500, UNEXPECTED, id=request.state.request_id)

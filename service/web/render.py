@@ -1,7 +1,7 @@
 """From a frozen context to a page: the one Jinja environment and what every template may use."""
 
 import json
-from collections.abc import MutableMapping
+from collections.abc import Iterable, MutableMapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -13,11 +13,13 @@ from jinja2 import Environment, StrictUndefined, pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup, escape
 
+from estimator.message import capitalised, joined, say
+from estimator.wording import counted
 from service.kit.names import day_of, heading, spaced
 from service.kit.person import EVERYBODY, Person, Role
 from service.languages.language import QUERY, Language, asked
 from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED
-from service.sessions.words.reservations import but
+from service.sessions.words.reservations import but, but_alone
 from service.web.assets import asset_url
 from service.web.spoken import Spoken
 
@@ -66,9 +68,9 @@ def _person(context: Context) -> Person:
     return person
 
 
-def as_sentence(text: str) -> str:
-    """With a capital letter, before it is said in a language."""
-    return text[:1].upper() + text[1:]
+def _joined(parts: Iterable[object], joint: str) -> str:
+    """Jinja's own would lose the parts of sentences."""
+    return joined(joint, map(str, parts))
 
 
 @lru_cache
@@ -85,9 +87,14 @@ def _environment(language: Language) -> Environment:
     environment.globals.update(
         asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE, RESERVED), reserved=RESERVED
     )
-    environment.globals.update(may=_may, your_name=_your_name, csrf_field=_csrf_field, csrf_query=_csrf_query)
-    environment.filters.update(but=but, day=day_of, heading=heading, spaced=spaced, as_sentence=as_sentence)
+    environment.globals.update(
+        may=_may, your_name=_your_name, csrf_field=_csrf_field, csrf_query=_csrf_query, say=say, counted=counted
+    )
     environment.filters.update(
+        but=but, day=day_of, heading=heading, spaced=spaced, as_sentence=capitalised, but_alone=but_alone
+    )
+    environment.filters.update(
+        join=_joined,
         as_written=escape,
         translated=spoken.say,
         plural_form=spoken.plural,

@@ -20,6 +20,7 @@ SUBJECTS = (
 """The service's subjects, from the ground up: one imports only from those before it."""
 SERVICE_LAYERS = tuple({subject} for subject in SUBJECTS)
 ESTIMATOR_LAYERS = (
+    {"message"},
     {"errors", "moments", "on_demand", "wording"},
     {"codec"},
     {"session"},

@@ -7,6 +7,7 @@ from estimator.applied_vector import gravity
 from estimator.calibration.analytic import answers
 from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured
+from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.wording import few
 
@@ -48,7 +49,9 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
     if gyro.all():
         return np.zeros_like(gyro), np.zeros_like(gyro), gyro
     if R < FEWEST:
-        raise ScheduleError([Problem("table", f"{few(R, 'orientation')} to estimate anything; {advice(R)}")])
+        raise ScheduleError(
+            [Problem("table", say("{r} to estimate anything; {r2}", r=few(R, "orientation"), r2=advice(R)))]
+        )
     unit = gravity(session.site) * np.array([s.nominal_scale for s in session.sensors])
     readings = measured(session)[0]
     swing = np.where(gyro | ~answers(readings), 0.0, (readings / unit).std(axis=0))
@@ -57,8 +60,13 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
             [
                 Problem(
                     "table",
-                    f"all {R} rows show the same orientation: by nominal_scale the readings vary by "
-                    f"{swing.max():.1g} g; {advice(0)}",
+                    say(
+                        "all {r} rows show the same orientation: by nominal_scale the readings vary by {swing} "
+                        "g; {advice}",
+                        r=R,
+                        swing=f"{swing.max():.1g}",
+                        advice=advice(0),
+                    ),
                 )
             ]
         )
@@ -72,16 +80,21 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
 def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
     """Why the accelerometers cannot measure a vector."""
     silent = [s.name for s, dead in zip(session.sensors, ~live & ~gyro, strict=True) if dead]
-    reason = f" ({', '.join(silent)} did not answer to the turns)" if silent else ""
-    return (
-        f"{int(live.sum())} accelerometers whose nominal axes do not span space{reason}; arbitrary orientations need "
-        "three or more axes that do not lie in one plane"
+    reason = say(" ({silent} did not answer to the turns)", silent=joined(", ", silent)) if silent else ""
+    return say(
+        "{live} accelerometers whose nominal axes do not span space{reason}; arbitrary "
+        "orientations need three or more axes that do not lie in one plane",
+        live=int(live.sum()),
+        reason=reason,
     )
 
 
 def advice(rows: int) -> str:
     """What to add to ``rows`` orientations."""
-    return (
-        f"add at least {GENERIC - rows} so that there are {GENERIC} or more still orientations spread over the whole "
-        "sphere, tilted about all three axes, or label six positions with their directions"
+    return say(
+        "add at least {generic} so that there are {generic2} or more still orientations spread "
+        "over the whole sphere, tilted about all three axes, or label six positions with their "
+        "directions",
+        generic=GENERIC - rows,
+        generic2=GENERIC,
     )

@@ -14,6 +14,7 @@ from estimator.causes.contract import Cause, Correction, Signature
 from estimator.diagnosis.results import Limit
 from estimator.diagnosis.selection.search_state import LEVEL, SearchState
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
+from estimator.message import joined, say
 from estimator.significance import critical_chi2
 
 POWER = 0.95
@@ -41,12 +42,17 @@ def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
     """The limit of one cause; ``traces`` None where the session lacks what the cause needs."""
     if isinstance(cause, Correction):
         lacking = missing(state, cause)
-        return Limit(cause.identifier, None if lacking else (), (), lacking and f"the session lacks {lacking}")
+        return Limit(
+            cause.identifier,
+            None if lacking else (),
+            (),
+            lacking and say("the session lacks {lacking}", lacking=lacking),
+        )
     if not isinstance(cause, Signature):
         return excess_limit(state, cause)
     if traces is None:
         lacking = missing(state, cause) or "a sensor it acts on"
-        return Limit(cause.identifier, None, cause.units, f"the session lacks {lacking}")
+        return Limit(cause.identifier, None, cause.units, say("the session lacks {lacking}", lacking=lacking))
     norms = np.linalg.norm(traces.columns, axis=1)
     raw = traces.raw[:, : norms.shape[1]]
     visible = (norms > INVISIBLE * raw) & (raw > 0)
@@ -63,7 +69,7 @@ def missing(state: SearchState, cause: Cause) -> str:
     lacking = sorted(n for n in cause.needs if not state.baseline.setting.has(n))
     if state.residuals.change is None and "history" in cause.needs:
         lacking.append("history")
-    return ", ".join(lacking)
+    return joined(", ", lacking)
 
 
 def excess_limit(state: SearchState, cause: Cause) -> Limit:

@@ -18,6 +18,7 @@ from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.signatures.applied_course import AppliedCourse
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, NoiseClaim, UnlikeNoise
 from estimator.diagnosis.signatures.patterns import Pattern
+from estimator.message import joined, say
 from estimator.session import ACCELEROMETER
 
 UNEXPLAINED = "unexplained"
@@ -129,14 +130,18 @@ def pattern_description(detection: Detection) -> str:
     """A pattern's own words; of a name that was taken back, that it does not hold."""
     if isinstance(detection.best.cause, Pattern):
         return detection.best.cause.where(detection.best.shape)
-    return f"as of {detection.best.cause.name}, which does not hold"
+    return say("as of {name}, which does not hold", name=detection.best.cause.name)
 
 
 def common_course(course: AppliedCourse) -> Structure:
     """A course of the applied vector that no cause describes."""
-    what = " and ".join(course.components) or "the vector"
+    what = joined(" and ", course.components) or "the vector"
     return Structure(
-        f"an error of stand, fixture or reference that no known cause explains ({what}, along {course.order})",
+        say(
+            "an error of stand, fixture or reference that no known cause explains ({what}, along {order})",
+            what=what,
+            order=course.order,
+        ),
         (),
         course.p_value,
         course.strength,
@@ -159,7 +164,10 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
     """Kinds of sensor that scatter as no noise does."""
     for scale in noise_scales(state):
         if scale.factor > BEYOND_NOISE:
-            where = f"scatter {scale.factor:.0f} times the stated standard errors: more than noise can be"
+            where = say(
+                "scatter {factor} times the stated standard errors: more than noise can be",
+                factor=f"{scale.factor:.0f}",
+            )
             yield Structure(where, scale.sensors, 0.0, float(np.sqrt(scale.freedom)) * scale.factor)
 
 
@@ -173,8 +181,8 @@ def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
 def place(course: Autocorrelation) -> str:
     """Where a residual lives that fits no pattern, in words."""
     if course.plain:
-        return f"smooth along {course.order}, in no pattern known"
-    return f"larger than stated, as well noise as smooth along {course.order}"
+        return say("smooth along {order}, in no pattern known", order=course.order)
+    return say("larger than stated, as well noise as smooth along {order}", order=course.order)
 
 
 def notes(state: SearchState) -> tuple[str, ...]:
@@ -183,6 +191,9 @@ def notes(state: SearchState) -> tuple[str, ...]:
         return ()
     far = max(f.best.strength for f in state.in_tails)
     return (
-        f"Single readings lie up to {far:.1f} standard errors off. The errors of all readings have such tails: "
-        "no cause is named for them.",
+        say(
+            "Single readings lie up to {far} standard errors off. The errors of all readings have "
+            "such tails: no cause is named for them.",
+            far=f"{far:.1f}",
+        ),
     )

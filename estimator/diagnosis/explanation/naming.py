@@ -8,6 +8,7 @@ import numpy as np
 
 from estimator.causes.contract import Cause
 from estimator.diagnosis.results import Finding
+from estimator.message import capitalised, joined, say
 
 
 def named_cause(cause: Cause, sensors: tuple[str, ...], p_value: float, strength: float) -> Finding:
@@ -17,20 +18,24 @@ def named_cause(cause: Cause, sensors: tuple[str, ...], p_value: float, strength
 
 def shared_event(cause: Cause, finding: Finding) -> Finding:
     """A finding of several sensors that share one event, in words for all of them."""
-    text = cause.shared_sentence.format(sensors=", ".join(finding.sensors))
-    return replace(finding, sentence=text[:1].upper() + text[1:], advice=cause.shared_advice)
+    text = say(cause.shared_sentence, sensors=joined(", ", finding.sensors))
+    return replace(finding, sentence=capitalised(text), advice=cause.shared_advice)
 
 
 def listed(sensors: tuple[str, ...]) -> str:
     """``A1``, ``each of A1 and A2``, ``each of A1, A2 and A3``."""
     names = list(dict.fromkeys(sensors))
-    return f"each of {', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
+    return (
+        say("each of {names} and {names2}", names=joined(", ", names[:-1]), names2=names[-1])
+        if len(names) > 1
+        else joined("", names)
+    )
 
 
 def sentence(cause: Cause, sensors: tuple[str, ...]) -> str:
     """What is wrong with some sensors, in words."""
-    text = cause.sentence.format(sensors=listed(sensors))
-    return text[:1].upper() + text[1:]
+    text = say(cause.sentence, sensors=listed(sensors))
+    return capitalised(text)
 
 
 def merged(named: Sequence[tuple[Cause, Finding]]) -> list[Finding]:
@@ -38,11 +43,11 @@ def merged(named: Sequence[tuple[Cause, Finding]]) -> list[Finding]:
     by_cause: dict[str, Finding] = {}
     for cause, f in named:
         old = by_cause.get(f.cause)
-        by_cause[f.cause] = f if old is None else joined(cause, old, f)
+        by_cause[f.cause] = f if old is None else as_one(cause, old, f)
     return list(by_cause.values())
 
 
-def joined(cause: Cause, a: Finding, b: Finding) -> Finding:
+def as_one(cause: Cause, a: Finding, b: Finding) -> Finding:
     """Two findings of one cause as one."""
     return replace(
         a,

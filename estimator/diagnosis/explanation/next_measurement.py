@@ -12,6 +12,7 @@ import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import planned_on_stand
+from estimator.message import say
 from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
 
 PERIOD = 120.0
@@ -84,7 +85,7 @@ def other_run(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     if len(runs) == 1:
         name = "direct" if True in runs else "flipped"
         planned = schedule(session, *full_turns(max(steps(session), FINE)))
-        yield f"add the {name} run at the same positions", planned_on_stand(planned, baseline)
+        yield say("add the {name} run at the same positions", name=name), planned_on_stand(planned, baseline)
 
 
 def repeat_reversed(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
@@ -107,7 +108,10 @@ def more_positions(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     for factor in (2, 4):
         positions = max(steps(baseline.session), FINE) * factor
         planned = schedule(baseline.session, *full_turns(positions))
-        yield f"measure {positions} equal steps of β in both runs", planned_on_stand(planned, baseline)
+        yield (
+            say("measure {positions} equal steps of β in both runs", positions=positions),
+            planned_on_stand(planned, baseline),
+        )
 
 
 def temperature_cycle(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
@@ -119,7 +123,9 @@ def temperature_cycle(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     span = 5.0 if session.temperature is None else max(float(np.ptp(session.temperature)), 5.0)
     cycle = mean + span / 2 * np.sin(2 * np.pi * 2.7 * np.arange(rows) / rows)
     planned = replace(schedule(session, beta, flipped), temperature=cycle, time=PERIOD * np.arange(rows))
-    words = f"repeat the session while the temperature is cycled by {span:.0f} °C, almost three times"
+    words = say(
+        "repeat the session while the temperature is cycled by {span} °C, almost three times", span=f"{span:.0f}"
+    )
     yield words, planned_on_stand(planned, baseline)
 
 
@@ -131,7 +137,11 @@ def other_elevation(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     for degrees in (20.0, 60.0):
         stand = replace(session.stand, alpha=np.radians(degrees), chi=np.radians(degrees))
         planned = replace(schedule(session, *full_turns(positions)), stand=stand)
-        words = f"repeat with the head at {degrees:.0f}°, {positions} positions in both runs"
+        words = say(
+            "repeat with the head at {degrees}°, {positions} positions in both runs",
+            degrees=f"{degrees:.0f}",
+            positions=positions,
+        )
         yield words, planned_on_stand(planned, baseline)
 
 
@@ -142,7 +152,10 @@ def repeated(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """
     planned = planned_on_stand(schedule(baseline.session, *rows_of(baseline.session)), baseline)
     for times in (4, 16, 64):
-        yield f"repeat the session {times} times over", replace(planned, variance=planned.variance / times)
+        yield (
+            say("repeat the session {times} times over", times=times),
+            replace(planned, variance=planned.variance / times),
+        )
 
 
 PROPOSALS: tuple[Proposal, ...] = (

@@ -16,6 +16,7 @@ from estimator.diagnosis.record.turned import LEAST
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.forward import measured
+from estimator.message import say
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CalibrationSession
 
@@ -115,5 +116,9 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
         return ()
     names = tuple(session.sensors[i].name for i in axes.sensors)
     who = "input axes" if names else "the whole block"
-    where = f"{who} {np.degrees(axes.angle):.0f}° off: columns, runs or angles of the record are mixed up"
+    where = say(
+        "{who} {angle}° off: columns, runs or angles of the record are mixed up",
+        who=who,
+        angle=f"{np.degrees(axes.angle):.0f}",
+    )
     return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST)), of_record=True),)

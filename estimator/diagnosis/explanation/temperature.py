@@ -12,6 +12,7 @@ import numpy as np
 
 from estimator.diagnosis.explanation.findings import UNEXPLAINED
 from estimator.diagnosis.results import Finding, Rival, Separation
+from estimator.message import joined, say
 from estimator.session import Array
 
 LEAST_DIFFERENCE = 5.0
@@ -69,15 +70,19 @@ def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> F
     if not rivals:
         return finding
     named = tuple(name for name in rivals if name != UNEXPLAINED)
-    again = f"measure again at about {temperatures.usual:.0f} °C"
+    again = say("measure again at about {usual} °C", usual=f"{temperatures.usual:.0f}")
     separated = tuple(Separation(name, finding.sensors, 0.0, again, finding.strength) for name in named)
     compared = replace(
         finding,
         alternatives=(*named, *finding.alternatives, *(name for name in rivals if name == UNEXPLAINED)),
         separations=(*separated, *finding.separations),
         ranking=tuple(shared(finding, named)),
-        advice=f"Measure again at about {temperatures.usual:.0f} °C, as in the earlier sessions, or calibrate over "
-        f"temperature, before you act on this: the session was measured at {temperatures.now:.0f} °C.",
+        advice=say(
+            "Measure again at about {usual} °C, as in the earlier sessions, or calibrate over "
+            "temperature, before you act on this: the session was measured at {now} °C.",
+            usual=f"{temperatures.usual:.0f}",
+            now=f"{temperatures.now:.0f}",
+        ),
     )
     return (
         replace(compared, sentence=temperature_advice(compared, temperatures)) if finding.cause == DRIFT else compared
@@ -86,10 +91,12 @@ def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> F
 
 def temperature_advice(finding: Finding, temperatures: Temperatures) -> str:
     """What is known of a drift, and no more."""
-    sensors = ", ".join(finding.sensors)
-    return (
-        f"The parameters of {sensors} differ from those of the earlier sessions, and the temperature "
-        f"differs by {temperatures.difference:.0f} °C."
+    sensors = joined(", ", finding.sensors)
+    return say(
+        "The parameters of {sensors} differ from those of the earlier sessions, and the "
+        "temperature differs by {difference} °C.",
+        sensors=sensors,
+        difference=f"{temperatures.difference:.0f}",
     )
 
 

@@ -24,6 +24,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.autocorrelation import LENGTHS, around, bending
 from estimator.diagnosis.signatures.noise import normal_deviate
 from estimator.diagnosis.signatures.wandering import log_mean
+from estimator.message import say
 from estimator.session import ACCELEROMETER, Array
 
 ROUND = (0.4, 1.0, 2.5)
@@ -145,7 +146,10 @@ def changes(setting: Setting) -> Iterator[tuple[str, Array]]:
     for words, fixed in (("turned as a whole", turn), ("changed as a whole", whole)):
         yield words, fixed
         if 0 < setting.flipped.sum() < setting.rows:
-            yield f"{words}, each run for itself", np.concatenate([fixed * flipped, fixed * ~flipped], axis=-1)
+            yield (
+                say("{words}, each run for itself", words=words),
+                np.concatenate([fixed * flipped, fixed * ~flipped], axis=-1),
+            )
 
 
 def applied_course(residuals: WhitenedResiduals, attributed: Array, *, lasting: bool) -> AppliedCourse:

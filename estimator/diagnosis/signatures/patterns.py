@@ -11,6 +11,7 @@ import numpy as np
 from estimator.causes.contract import Setting, Shape, Signature
 from estimator.causes.stand import harmonic
 from estimator.forward import jacobian
+from estimator.message import say
 from estimator.session import Array
 
 HIGHEST = 8
@@ -53,7 +54,7 @@ class Pattern(Signature):
         """Where the pattern lives, in words."""
         if self.description and shape.nonlinear == (1.0,):
             return self.description
-        return self.sentence.format(*(f"{v:g}" for v in shape.nonlinear))
+        return say(self.sentence, **{str(k): f"{value:g}" for k, value in enumerate(shape.nonlinear)})
 
 
 class SensorHarmonic(Pattern):

@@ -2,6 +2,7 @@
 
 from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY
 from estimator.causes import find
+from estimator.message import say
 from service.kit.measures import ARCSEC, DEGREE, PPM, READABLE, Measure
 
 PER_HOUR = 3600.0
@@ -24,8 +25,8 @@ AMPLITUDE_MEASURES = {
     "rad/s/K": Measure("(°/h)/K", PER_HOUR / DEGREE),
     "rad/s/s": Measure("(°/h)/h", PER_HOUR**2 / DEGREE),
     "rad/s/(K/s)": Measure("(°/h)/(K/h)", 1 / DEGREE),
-    "(rad/s)⁻¹": Measure("ppm at Earth rate", 1e6 * EARTH_RATE),
-    "(rad/s)⁻²": Measure("ppm at Earth rate", 1e6 * EARTH_RATE**2),
+    "(rad/s)⁻¹": Measure(say("ppm at Earth rate"), 1e6 * EARTH_RATE),
+    "(rad/s)⁻²": Measure(say("ppm at Earth rate"), 1e6 * EARTH_RATE**2),
     "(rad/s)/(m/s²)": Measure("(°/h)/g", PER_HOUR / DEGREE * STANDARD_GRAVITY),
 }
 """What the amplitude of a cause is read in, by its SI unit. A gyro on a stand feels the Earth's rate alone, so its

@@ -8,9 +8,12 @@ from typing import Protocol
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
+from estimator.message import joined, say
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.kit.measures import COVERAGE, HARD, THIN, decimals, measured, number
 
+AT_ROWS = {"from": "from row {value}", "at": "at row {value}"}
+"""What is said of a cause that has its row."""
 NUMBERED = re.compile(r" \d+$")
 """What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
 
@@ -54,9 +57,9 @@ def amplitudes_of(finding: Sized) -> Iterator[str]:
         if not _is_stated(value) and not _is_stated(sigma):
             continue
         expanded = COVERAGE * sigma
-        who = f"{finding.sensors[k // each]}: " if len(finding.sensors) > 1 else ""
-        which = f"{part_of(finding.cause, k % each)} " if each > 1 else ""
-        yield f"{who}{which}{_size(finding.cause, si_unit, value, expanded)}"
+        who = say("{sensors}: ", sensors=finding.sensors[k // each]) if len(finding.sensors) > 1 else ""
+        which = say("{cause} ", cause=part_of(finding.cause, k % each)) if each > 1 else ""
+        yield joined("", (who, which, _size(finding.cause, si_unit, value, expanded)))
 
 
 def _size(cause: str, si_unit: str, value: float, expanded: float) -> str:
@@ -88,21 +91,31 @@ def shape_of(finding: Finding) -> str:
     if len(each) < 2 or all(one == each[0] for one in each):
         return _shape(finding.cause, finding.nonlinear)
     shapes = (_shape(finding.cause, one) for one in each)
-    return "; ".join(f"{who}: {shape}" for who, shape in zip(finding.sensors, shapes, strict=False) if shape)
+    return joined(
+        "; ",
+        (
+            say("{who}: {shape}", who=who, shape=shape)
+            for who, shape in zip(finding.sensors, shapes, strict=False)
+            if shape
+        ),
+    )
 
 
 def _shape(cause: str, nonlinear: dict[str, float]) -> str:
-    text = " and ".join(filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
+    places = tuple(filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
     known = find(cause)
-    return f"{known.shape_words if known else ''} {text}".strip() if text else ""
+    words = known.shape_words if known else ""
+    if words in AT_ROWS and tuple(nonlinear) == ("row",):
+        return say(AT_ROWS[words], value=number(nonlinear["row"], 0))
+    return joined(" ", filter(None, (words, joined(" and ", places)))) if places else ""
 
 
 def _place(cause: str, name: str, value: float) -> str:
     """One nonlinear parameter: a row, a side of the range, or a quantity; two of one unit are numbered."""
     si_unit = NUMBERED.sub("", name)
     if si_unit == "row":
-        return f"row {number(value, 0)}"
+        return say("row {number}", number=number(value, 0))
     if si_unit == "side":
         return "upper side" if value > 0 else "lower side" if value < 0 else ""
     measure = amplitude_measure(cause, si_unit, value)
-    return f"{number(value * measure.factor)}{THIN}{measure.label}"
+    return f"{number(value * measure.factor)}{THIN}" + measure.label

@@ -6,6 +6,7 @@ from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.layout import EVERY
+from estimator.message import joined, say
 from service.kit.measures import HARD, number
 from service.kit.names import spaced
 
@@ -54,24 +55,42 @@ def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
         return finding.sentence
     at_once = at_once_with(finding, findings)
     if at_once:
-        count, names = "Two" if len(at_once) == 2 else "Several", " and ".join(map(cause_name, at_once))
-        return f"{count} causes at once, or {ONE_NOT_KNOWN}{_on(finding.sensors)}: {names}."
+        count, names = "Two" if len(at_once) == 2 else "Several", joined(" and ", map(cause_name, at_once))
+        return say(
+            "{count} causes at once, or {one_not_known}{sensors}: {names}.",
+            count=count,
+            one_not_known=ONE_NOT_KNOWN,
+            sensors=_on(finding.sensors),
+            names=names,
+        )
     likely, unlikely = by_share(finding)
     if len(likely) > 1 or not unlikely:
-        less = f"; {_less(unlikely, finding)}" if unlikely else ""
-        return f"Cannot tell which: {_listed(_with_unknown(likely, finding))}{_on(finding.sensors)}{less}."
-    first, unknown = likely[0], f", or {ONE_NOT_KNOWN}" if UNKNOWN_CAUSE in finding.alternatives else ""
-    return (
-        f"Likely {cause_on(first, finding.sensors)}, {share_of(first, finding)}; {_less(unlikely, finding)}{unknown}."
+        less = say("; {unlikely}", unlikely=_less(unlikely, finding)) if unlikely else ""
+        return say(
+            "Cannot tell which: {likely}{sensors}{less}.",
+            likely=_listed(_with_unknown(likely, finding)),
+            sensors=_on(finding.sensors),
+            less=less,
+        )
+    first, unknown = (
+        likely[0],
+        say(", or {one_not_known}", one_not_known=ONE_NOT_KNOWN) if UNKNOWN_CAUSE in finding.alternatives else "",
+    )
+    return say(
+        "Likely {first}, {first2}; {unlikely}{unknown}.",
+        first=cause_on(first, finding.sensors),
+        first2=share_of(first, finding),
+        unlikely=_less(unlikely, finding),
+        unknown=unknown,
     )
 
 
 def choice_of(finding: Finding) -> str:
     """The causes that a finding leaves standing, as one thing that acts: ``ramp or warm up acts on A3``."""
     likely, unlikely = by_share(finding)
-    on = f" on {' and '.join(dict.fromkeys(finding.sensors))}" if finding.sensors else ""
-    less = f" (less likely {_listed(unlikely)})" if unlikely else ""
-    return f"{_listed(_with_unknown(likely, finding))}{less} acts{on}"
+    on = say(" on {sensors}", sensors=joined(" and ", dict.fromkeys(finding.sensors))) if finding.sensors else ""
+    less = say(" (less likely {unlikely})", unlikely=_listed(unlikely)) if unlikely else ""
+    return say("{likely}{less} acts{on}", likely=_listed(_with_unknown(likely, finding)), less=less, on=on)
 
 
 def by_share(finding: Finding) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -100,19 +119,23 @@ def _share(name: str, finding: Finding) -> float:
 def percent(share: float) -> str:
     """A share of probability as people read it."""
     if share > 1 - SHOWN_SHARE:
-        return f"over 99.9{HARD}%"
-    return f"{number(100 * share, 1)}{HARD}%" if share > SHOWN_SHARE else f"under 0.1{HARD}%"
+        return say("over 99.9{hard}%", hard=HARD)
+    return f"{number(100 * share, 1)}{HARD}%" if share > SHOWN_SHARE else say("under 0.1{hard}%", hard=HARD)
 
 
 def _less(unlikely: Sequence[str], finding: Finding) -> str:
     """``less likely odd quadratic, 5.3 %``; a share that the ranking does not show is none to state."""
     ranked = {rival.cause for rival in finding.ranking}
     shown = [
-        f"{cause_name(name)}{f', {share_of(name, finding)}' if name in ranked else ''}"
+        say(
+            "{name}{name2}",
+            name=cause_name(name),
+            name2=say(", {name}", name=share_of(name, finding)) if name in ranked else "",
+        )
         for name in unlikely[:MOST_NAMES]
     ]
     more = len(unlikely) - MOST_NAMES
-    return "less likely " + "; ".join((*shown, *([f"{more} more"] if more > 0 else [])))
+    return "less likely " + joined("; ", (*shown, *([say("{more} more", more=more)] if more > 0 else [])))
 
 
 def _with_unknown(names: Sequence[str], finding: Finding) -> tuple[str, ...]:
@@ -129,15 +152,15 @@ def at_once_with(finding: Finding, findings: Sequence[Finding]) -> tuple[str, ..
 
 def _on(sensors: Sequence[str]) -> str:
     names = (EVERY_SENSOR if sensor == EVERY else sensor for sensor in dict.fromkeys(sensors))
-    return f" ({', '.join(names)})" if sensors else ""
+    return say(" ({names})", names=joined(", ", names)) if sensors else ""
 
 
 def _listed(causes: Sequence[str]) -> str:
     """``a, b or c``; of many only the first three, and always that it may be an unknown one."""
     names = [cause_name(identifier) for identifier in causes if identifier != UNKNOWN_CAUSE]
     shown, more = names[:MOST_NAMES], len(names) - MOST_NAMES
-    shown += [f"{more} more"] if more > 0 else []
+    shown += [say("{more} more", more=more)] if more > 0 else []
     shown += [ONE_NOT_KNOWN] if UNKNOWN_CAUSE in causes else []
     if len(shown) == 1:
         return shown[0]
-    return f"{', '.join(shown[:-1])} or {shown[-1]}"
+    return say("{shown} or {shown2}", shown=joined(", ", shown[:-1]), shown2=shown[-1])

@@ -6,6 +6,7 @@ from typing import Protocol
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import NoiseScale, Structure
 from estimator.errors import SessionError
+from estimator.message import joined, say
 from estimator.results import Calibration
 from service.diagnosis.words.causes import ONE_NOT_KNOWN, at_once_with, is_level, is_lone, what_is_wrong
 from service.diagnosis.words.structures import UNEXPLAINED, headline_of, told, what_to_do_about
@@ -37,13 +38,15 @@ RESTATE = (
 )
 CHOOSE = "This session cannot distinguish these causes. Take the measurement that can, before you act on one of them."
 RULE_OUT = "This session does not rule the less likely causes out. Take the measurement that would, before you act."
-REPEAT = (
-    f"One known cause explains it, and {ONE_NOT_KNOWN} would as well. Repeat the session before you act: if the "
-    "name is right, it comes back."
+REPEAT = say(
+    "One known cause explains it, and {one_not_known} would as well. Repeat the session "
+    "before you act: if the name is right, it comes back.",
+    one_not_known=ONE_NOT_KNOWN,
 )
-REPEAT_BOTH = (
-    f"Two causes at once on one sensor are rare, and {ONE_NOT_KNOWN} would explain it as well. Repeat the session "
-    "before you act: if the names are right, both come back."
+REPEAT_BOTH = say(
+    "Two causes at once on one sensor are rare, and {one_not_known} would explain it as "
+    "well. Repeat the session before you act: if the names are right, both come back.",
+    one_not_known=ONE_NOT_KNOWN,
 )
 
 
@@ -64,19 +67,19 @@ def summary_of(answer: Answer) -> str:
     """One line that a technician understands."""
     if answer.findings:
         common = [s for s in answer.structures if not s.sensors]
-        return " ".join((_named(answer.findings), *([told(common)] if common else [])))
+        return joined(" ", (_named(answer.findings), *([told(common)] if common else [])))
     if answer.structures:
-        return " ".join((told(answer.structures), *errors_of(answer)))
+        return joined(" ", (told(answer.structures), *errors_of(answer)))
     return nothing_of(answer)
 
 
 def nothing_of(answer: Answer) -> str:
     """That nothing is wrong, unless it is what the file says of the noise, or nothing is left to judge by."""
     if answer.calibration.fit.is_exact:
-        return f"{NOTHING_LEFT}. {TAKEN_UP}"
+        return say("{nothing_left}. {taken_up}", nothing_left=NOTHING_LEFT, taken_up=TAKEN_UP)
     if answer.noise:
-        return f"{NOTHING}{but_wrong_errors(answer.noise, _kinds(answer))}."
-    return f"{NOTHING}: the simulation explains the readings."
+        return say("{nothing}{but}.", nothing=NOTHING, but=but_wrong_errors(answer.noise, _kinds(answer)))
+    return say("{nothing}: the simulation explains the readings.", nothing=NOTHING)
 
 
 def errors_of(answer: Answer) -> tuple[str, ...]:
@@ -92,21 +95,26 @@ def _named(findings: Sequence[Finding]) -> str:
     """The first findings; two that are one choice are told once."""
     said = tuple(dict.fromkeys(what_is_wrong(finding, findings) for finding in findings))
     more = len(said) - MOST_FINDINGS
-    return " ".join(said[:MOST_FINDINGS]) + (f" And {more} more." if more > 0 else "")
+    return joined(" ", said[:MOST_FINDINGS]) + (say(" And {more} more.", more=more) if more > 0 else "")
 
 
-def cannot_be_diagnosed(fault: SessionError | str) -> str:
-    """What the session lacks; without it, what all that is said of such sessions begins with."""
-    return f"The session cannot be diagnosed: {fault}"
+CANNOT = "The session cannot be diagnosed: {fault}"
+
+
+def cannot_be_diagnosed(fault: SessionError) -> str:
+    """What the session lacks."""
+    return say(CANNOT, fault=fault)
 
 
 def fault_of_the_program(session: str) -> str:
     """That the program failed, and what holds all the same."""
-    return (
-        "The program failed at this diagnosis, met something that it does not foresee, or needed too much time or "
-        "memory: that is a fault of the program, not of the session. The session, its calibration and its verdict are "
-        "stored and hold, and the next version of the program diagnoses it again. The log says what happened, under "
-        f"session {session}: send that to those who maintain the program."
+    return say(
+        "The program failed at this diagnosis, met something that it does not foresee, or needed "
+        "too much time or memory: that is a fault of the program, not of the session. The "
+        "session, its calibration and its verdict are stored and hold, and the next version of "
+        "the program diagnoses it again. The log says what happened, under session {session}: "
+        "send that to those who maintain the program.",
+        session=session,
     )
 
 
@@ -118,7 +126,7 @@ def headline(answer: Answer) -> str:
         return headline_of(answer.structures)
     if answer.calibration.fit.is_exact:
         return NOTHING_LEFT
-    return f"{NOTHING}{but_wrong_errors(answer.noise, _kinds(answer))}"
+    return say("{nothing}{but}", nothing=NOTHING, but=but_wrong_errors(answer.noise, _kinds(answer)))
 
 
 def what_to_do(answer: Answer) -> str:

@@ -8,6 +8,7 @@ from estimator.causes import find
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import OverSessions, ParitySplit
+from estimator.message import say
 from estimator.moments import moment
 from service.diagnosis.words.amplitudes import amplitudes_of, shape_of
 from service.diagnosis.words.causes import cause_name, is_level, is_lone, percent, what_is_wrong
@@ -102,21 +103,28 @@ def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) 
     ``by_stated_noise``: the file says what noise is, and nothing has put that to the test.
     """
     condition = ", if the noise is as stated" if by_stated_noise and isfinite(p_value) else ""
-    return f"{standard_errors(strength)}; {_chance(p_value)}{condition}"
+    return say(
+        "{strength}; {p_value}{condition}",
+        strength=standard_errors(strength),
+        p_value=_chance(p_value),
+        condition=condition,
+    )
 
 
 def evidence_together(strength: float, over: OverSessions) -> str:
     """How strong an effect is that no session shows alone, and how likely this one has it."""
-    return (
-        f"{standard_errors(strength)} over {over.sessions} sessions of the unit together; that this one has it too: "
-        f"{percent(over.here)}"
+    return say(
+        "{strength} over {sessions} sessions of the unit together; that this one has it too: {here}",
+        strength=standard_errors(strength),
+        sessions=over.sessions,
+        here=percent(over.here),
     )
 
 
 def since_together(over: OverSessions) -> str:
     """Whether earlier sessions had it."""
     if over.since is not None:
-        return f"It began on {day_of(moment(over.since))}."
+        return say("It began on {since}.", since=day_of(moment(over.since)))
     if over.form == "since":
         return "It began in one of the earlier sessions."
     if over.form == "varying":
@@ -126,7 +134,7 @@ def since_together(over: OverSessions) -> str:
 
 def standard_errors(strength: float) -> str:
     """``12.3 standard errors``."""
-    return f"{number(strength, 1)} standard errors"
+    return say("{strength} standard errors", strength=number(strength, 1))
 
 
 def _chance(p_value: float) -> str:
@@ -136,8 +144,8 @@ def _chance(p_value: float) -> str:
         return "by chance alone in fewer than 1 of 10¹² sound sessions"
     if p_value < 1e-3:
         exponent = str(floor(-log10(p_value))).translate(SUPERSCRIPT)
-        return f"by chance alone in fewer than 1 of 10{exponent} sound sessions"
-    return f"by chance alone in {number(100 * p_value, 2)}{HARD}% of sound sessions"
+        return say("by chance alone in fewer than 1 of 10{exponent} sound sessions", exponent=exponent)
+    return say("by chance alone in {p_value}{hard}% of sound sessions", p_value=number(100 * p_value, 2), hard=HARD)
 
 
 def _parity(split: ParitySplit | None) -> str:
@@ -148,9 +156,13 @@ def _parity(split: ParitySplit | None) -> str:
     if before == after:
         return ""
     seen, left = number(split.range_before, 0), number(split.range_after, 0)
-    return (
-        f"χ² in parity space {before} → {after}, along the axes {seen} → {left}. "
-        "An error of the stand leaves nothing in parity space; a fault of one sensor does."
+    return say(
+        "χ² in parity space {before} → {after}, along the axes {seen} → {left}. An error of the "
+        "stand leaves nothing in parity space; a fault of one sensor does.",
+        before=before,
+        after=after,
+        seen=seen,
+        left=left,
     )
 
 

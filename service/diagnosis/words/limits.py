@@ -6,6 +6,7 @@ from math import isfinite
 
 from estimator.causes import find
 from estimator.diagnosis.results import Limit
+from estimator.message import joined
 from estimator.session import GYROSCOPE
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.diagnosis.words.causes import cause_name
@@ -43,14 +44,14 @@ def blind_causes(limits: Sequence[Limit]) -> tuple[BlindCauses, ...]:
     for limit in limits:
         if limit.amplitude is None:
             names.setdefault(FULLER.get(limit.reason, limit.reason), []).append(cause_name(limit.cause))
-    return tuple(BlindCauses(", ".join(causes), reason) for reason, causes in names.items())
+    return tuple(BlindCauses(joined(", ", causes), reason) for reason, causes in names.items())
 
 
 def size_of(limit: Limit, kind: str) -> str:
     """Every amplitude once: two that agree to a tenth are one number."""
     stated = zip(limit.amplitude or (), limit.units, strict=False)
     shown = (_amplitude(limit.cause, value, _unit(limit.cause, si_unit, kind)) for value, si_unit in stated)
-    return "; ".join(dict.fromkeys(filter(None, shown))) or "–"
+    return joined("; ", dict.fromkeys(filter(None, shown))) or "–"
 
 
 def _unit(cause: str, si_unit: str, kind: str) -> str:
@@ -64,4 +65,4 @@ def _amplitude(cause: str, value: float, si_unit: str) -> str:
     if not isfinite(value):
         return ""
     measure = amplitude_measure(cause, si_unit, value)
-    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}" + measure.label

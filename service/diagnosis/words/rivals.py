@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Separation
+from estimator.message import say
 from service.diagnosis.words.causes import SHOWN_SHARE, UNKNOWN_CAUSE, cause_on, percent, share_of
 from service.kit.measures import HARD, number
 
@@ -59,7 +60,9 @@ def _apart(separation: Separation | None) -> tuple[str, str]:
     expected = separation.then or 0.0
     if not separation.measurement or expected < DISTINGUISHED:
         return _sigmas(separation.now), "no further session of this kind would; look at the hardware"
-    return _sigmas(separation.now), f"{separation.measurement} (expected {_sigmas(expected)} apart)"
+    return _sigmas(separation.now), say(
+        "{measurement} (expected {expected} apart)", measurement=separation.measurement, expected=_sigmas(expected)
+    )
 
 
 def _sigmas(value: float) -> str:

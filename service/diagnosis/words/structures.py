@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from estimator.diagnosis.results import Course, Structure
+from estimator.message import changed, joined, say, uncapitalised
 
 UNEXPLAINED = "Something is there that no known cause explains"
 COMMON = "Something common to all sensors, of the stand or fixture, that no known cause explains"
@@ -49,8 +50,8 @@ def leading(structures: Sequence[Structure]) -> Structure:
 def told(structures: Sequence[Structure]) -> str:
     """What is there, in whom and where, in one line."""
     first = leading(structures)
-    who = f" in {', '.join(first.sensors)}" if first.sensors and not first.of_record else ""
-    return f"{headline_of(structures)}{who}: {where_of(first)}."
+    who = say(" in {sensors}", sensors=joined(", ", first.sensors)) if first.sensors and not first.of_record else ""
+    return say("{structures}{who}: {first}.", structures=headline_of(structures), who=who, first=where_of(first))
 
 
 def summed_up(structures: Sequence[Structure]) -> str:
@@ -58,34 +59,42 @@ def summed_up(structures: Sequence[Structure]) -> str:
     if leading(structures).of_record:
         return told(structures)
     sensors = sorted({sensor for structure in structures for sensor in structure.sensors})
-    beside = f" Beside it: {UNEXPLAINED[0].lower()}{UNEXPLAINED[1:]} in {', '.join(sensors)}." if sensors else ""
+    beside = (
+        say(
+            " Beside it: {unexplained} in {sensors}.",
+            unexplained=uncapitalised(UNEXPLAINED),
+            sensors=joined(", ", sensors),
+        )
+        if sensors
+        else ""
+    )
     if any(not structure.sensors for structure in structures):
-        return f"{COMMON}.{beside}"
-    return f"{UNEXPLAINED} in {', '.join(sensors)}."
+        return say("{common}.{beside}", common=COMMON, beside=beside)
+    return say("{unexplained} in {sensors}.", unexplained=UNEXPLAINED, sensors=joined(", ", sensors))
 
 
 def who_of(structure: Structure) -> str:
     """``A1, A2``, or all."""
-    return ", ".join(structure.sensors) or "all sensors together"
+    return joined(", ", structure.sensors) or "all sensors together"
 
 
 def where_of(structure: Structure) -> str:
     """Where it lives; of a course what it does to the applied vector."""
     if structure.course is not None:
-        return f"the applied vector {course_in_words(structure.course)}"
-    return structure.where.removeprefix(IN_COMMON)
+        return say("the applied vector {course}", course=course_in_words(structure.course))
+    return changed(structure.where, lambda text: text.removeprefix(IN_COMMON))
 
 
 def component_in_words(component: str) -> str:
     """``as if the angle β of the head were off``; of another version's component its name."""
-    return f"as if {COMPONENTS[component]}" if component in COMPONENTS else component
+    return say("as if {components}", components=COMPONENTS[component]) if component in COMPONENTS else component
 
 
 def course_in_words(course: Course) -> str:
     """``runs off in α along β, each run for itself``."""
     if not course.components:
         return course.order
-    what = " and ".join(course.components)
+    what = joined(" and ", course.components)
     if course.order.startswith("no order"):
-        return f"is off in {what}, anew at every row"
-    return f"is off in {what}, smoothly along {course.order}"
+        return say("is off in {what}, anew at every row", what=what)
+    return say("is off in {what}, smoothly along {order}", what=what, order=course.order)

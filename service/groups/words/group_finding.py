@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from estimator.groups import GroupFinding
 from estimator.groups.results import PoolLimit, Rival, SessionAmplitude
+from estimator.message import Message, joined, say, say_count, uncapitalised
 from estimator.moments import moment
 from estimator.session import ACCELEROMETER
 from service.diagnosis.words.amplitudes import amplitudes_of
@@ -13,7 +14,7 @@ from service.diagnosis.words.causes import cause_on, percent
 from service.diagnosis.words.finding import standard_errors
 from service.diagnosis.words.limits import size_of
 from service.groups.records import GroupAnswer, GroupShown
-from service.groups.words.group import over, statement
+from service.groups.words.group import SHARED, SOUND, over, statement
 from service.groups.words.learned_term import TermView, gain_in_words, term_view
 from service.kit.names import day_of
 from service.models.records import SCOPES, ModelRevision
@@ -89,8 +90,8 @@ class GroupView:
 def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
     """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
     return GroupView(
-        heading=f"What the simulation gets wrong, {over(shown.sessions).lower()}",
-        summary=answer.summary.partition(": ")[2].capitalize() if not shown.findings else "",
+        heading=say("What the simulation gets wrong, {sessions}", sessions=uncapitalised(over(shown.sessions))),
+        summary="" if shown.findings or not shown.sessions else SHARED if shown.structures else SOUND,
         left_out=shown.left_out,
         effects=tuple(_effect(finding, accepted) for finding in shown.findings),
         structures=shown.structures,
@@ -106,12 +107,12 @@ def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> Lasting
     return LastingEffect(
         cause=finding.cause,
         sensors=finding.sensors,
-        whose=f"{scope} {finding.subject}",
+        whose=say("{scope} {subject}", scope=scope, subject=finding.subject),
         accepted=tuple(r.id for r in accepted if holds(r, finding)),
         statement=statement(finding),
         amplitudes=tuple(amplitudes_of(finding)),
         since=since_in_words(finding.form, finding.since),
-        evidence=f"{standard_errors(finding.strength)} over all of them",
+        evidence=say("{strength} over all of them", strength=standard_errors(finding.strength)),
         advice=RULE_OUT if finding.alternatives else finding.advice,
         choices=tuple(map(_choice, finding.rivals)),
         rows=tuple(_row(finding, one) for one in reversed(finding.sessions)),
@@ -126,17 +127,17 @@ def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
 
 
 def _choice(rival: Rival) -> Choice:
-    whose = "" if rival.level == "unit" else f", of the {rival.level} {rival.subject}"
-    count = "" if rival.sessions is None else f", {rival.sessions} such session{'' if rival.sessions == 1 else 's'}"
+    whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
+    count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
     sensors = () if "*" in rival.sensors else rival.sensors
-    told = f"{rival.measurement}{count}" if rival.measurement else "nothing that can be planned"
-    return Choice(f"{cause_on(rival.cause, sensors)}{whose}", percent(rival.probability), told)
+    told = joined("", (rival.measurement, count)) if rival.measurement else "nothing that can be planned"
+    return Choice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
 
 
 def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
     own = replace(finding, amplitude=one.amplitude, sigma=one.sigma)
     day = BLIND if one.started_at is None else day_in_words(one.started_at)
-    return ForestRow(day, one.unit, "; ".join(amplitudes_of(own)) or BLIND)
+    return ForestRow(day, one.unit, joined("; ", amplitudes_of(own)) or BLIND)
 
 
 def _limit(limit: PoolLimit) -> tuple[str, str, str]:
@@ -147,12 +148,17 @@ def _limit(limit: PoolLimit) -> tuple[str, str, str]:
 
 def with_days(note: str) -> str:
     """A note with its moments as days."""
-    return MOMENT.sub(lambda found: day_in_words(found.group()), note)
+    if isinstance(note, Message):
+        parts = {name: with_days(part) for name, part in note.parts.items()}
+        return Message(note.template, parts, note.many, note.number)
+    return day_in_words(note) if MOMENT.fullmatch(note) else MOMENT.sub(lambda found: day_in_words(found.group()), note)
 
 
 def since_in_words(form: str, since: str | None) -> str:
     """In which of the sessions an effect is."""
-    return FORMS.get(form) or ("since one of these sessions" if since is None else f"since {day_in_words(since)}")
+    return FORMS.get(form) or (
+        "since one of these sessions" if since is None else say("since {since}", since=day_in_words(since))
+    )
 
 
 def day_in_words(started_at: str) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.results import EmpiricalTerm, GroupGain
+from estimator.message import capitalised, joined, say
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.diagnosis.words.causes import cause_name
 from service.kit.measures import COVERAGE, HARD, measured, number
@@ -35,15 +36,20 @@ class TermView:
 def term_view(term: EmpiricalTerm, accepted: Sequence[ModelRevision] = ()) -> TermView:
     """What an engineer reads of a learned term; ``accepted``: the revisions that are in force."""
     scope = SCOPES.get(term.level) if term.subject else None
-    near = f"{number(term.separation, 1)} standard errors from it"
+    near = say("{separation} standard errors from it", separation=number(term.separation, 1))
     return TermView(
         lines=tuple(_lines(term)),
         whose=term.subject,
-        worth=f"It removes {number(100 * term.explained, 0)}{HARD}% of what the sessions that took no part in learning "
-        "it show too much.",
-        nearest=f"Nearest in the catalogue: {cause_name(term.nearest)}, {near}." if term.nearest else "",
+        worth=say(
+            "It removes {explained}{hard}% of what the sessions that took no part in learning it show too much.",
+            explained=number(100 * term.explained, 0),
+            hard=HARD,
+        ),
+        nearest=say("Nearest in the catalogue: {nearest}, {near}.", nearest=cause_name(term.nearest), near=near)
+        if term.nearest
+        else "",
         sensors=term.sensors,
-        model="" if scope is None else f"{scope} {term.subject}",
+        model="" if scope is None else say("{scope} {subject}", scope=scope, subject=term.subject),
         accepted=tuple(r.id for r in accepted if holds_term(r, term)),
     )
 
@@ -57,7 +63,9 @@ def holds_term(revision: ModelRevision, term: EmpiricalTerm) -> bool:
 
 def equation_of(term: EmpiricalTerm) -> str:
     """``A3 reads more by (3.1 ± 0.2) µg · sin 3β.``"""
-    return " ".join(f"{what[:1].upper()}{what[1:]} {equation}." for what, equation in _lines(term))
+    return joined(
+        " ", (say("{what} {equation}.", what=capitalised(what), equation=equation) for what, equation in _lines(term))
+    )
 
 
 def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
@@ -67,9 +75,11 @@ def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
         target, _, factor = word.rpartition(": ")
         spread = COVERAGE * sigma
         measure = amplitude_measure("", unit, max(abs(value), spread))
-        found.setdefault(target, []).append(f"({measured(value, spread, measure)}){HARD}·{HARD}{factor}")
+        found.setdefault(target, []).append(
+            say("({size}){hard}·{hard}{factor}", size=measured(value, spread, measure), hard=HARD, factor=factor)
+        )
     for target, parts in found.items():
-        yield TURNS.get(target, READS.format(sensor=", ".join(term.sensors))), " + ".join(parts)
+        yield TURNS.get(target, say(READS, sensor=joined(", ", term.sensors))), joined(" + ", parts)
 
 
 def gain_in_words(gain: GroupGain | None) -> str:
@@ -77,8 +87,18 @@ def gain_in_words(gain: GroupGain | None) -> str:
     if gain is None:
         return ""
     before, after = (number(x, 3) for x in (gain.chi2_per_dof_before, gain.chi2_per_dof_after))
-    likelier = f"{number(gain.log_score, 1)} more" if gain.log_score > 0 else f"{number(-gain.log_score, 1)} less"
-    return (
-        f"Sizes fixed on the first {gain.fitted} sessions, tried on the {gain.held_out} that came later: their χ² per "
-        f"degree of freedom goes from {before} to {after}, their log score is {likelier}."
+    likelier = (
+        say("{log_score} more", log_score=number(gain.log_score, 1))
+        if gain.log_score > 0
+        else say("{log_score} less", log_score=number(-gain.log_score, 1))
+    )
+    return say(
+        "Sizes fixed on the first {fitted} sessions, tried on the {held_out} that came later: "
+        "their χ² per degree of freedom goes from {before} to {after}, their log score is "
+        "{likelier}.",
+        fitted=gain.fitted,
+        held_out=gain.held_out,
+        before=before,
+        after=after,
+        likelier=likelier,
     )

@@ -2,6 +2,7 @@
 
 from charset_normalizer import from_bytes
 
+from estimator.message import say
 from service.kit.limits import refusal
 
 MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
@@ -22,7 +23,7 @@ def decoded(content: bytes, filename: str, stated: str | None = None) -> tuple[s
     try:
         return content.decode(encoding).lstrip("\ufeff"), encoding.removesuffix("-sig")
     except (UnicodeDecodeError, LookupError) as error:
-        raise refusal(filename, f"is not {encoding} text; choose another encoding") from error
+        raise refusal(filename, say("is not {encoding} text; choose another encoding", encoding=encoding)) from error
 
 
 def _encoding(content: bytes) -> str:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
+from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
 from service.ingest.formats import HDF5, MAT, MCAP, PARQUET, SQLITE, ULOG, XLSX
@@ -66,7 +67,10 @@ def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
         with ZipFile(BytesIO(content)) as archive:
             parts = archive.infolist()
             if len(parts) != PARTS or any(part.compress_type != ZIP_STORED for part in parts):
-                raise refusal(filename, f"must hold two parts that are not compressed: {MAPPING} and the table")
+                raise refusal(
+                    filename,
+                    say("must hold two parts that are not compressed: {mapping} and the table", mapping=MAPPING),
+                )
             text, table = (archive.read(part) for part in parts)
     except UNREADABLE as error:
         raise refusal(filename, "is damaged; upload the table and its mapping again") from error
@@ -76,7 +80,9 @@ def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
 def mapping_of(text: bytes, filename: str) -> dict[str, Any]:
     """The mapping that a JSON text holds, not yet checked."""
     if len(text) > LONGEST_MAPPING:
-        raise refusal(filename, f"is longer than {LONGEST_MAPPING} bytes", "mapping")
+        raise refusal(
+            filename, say("is longer than {longest_mapping} bytes", longest_mapping=LONGEST_MAPPING), "mapping"
+        )
     problems = Problems(filename, in_force().extent)
     document = parse_json(text.decode("utf-8", errors="replace"), problems)
     problems.raise_if_any()

@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
+from estimator.message import say
 from service.ingest import hdf5, logs, mat, parquet
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
 from service.ingest.layout.decoding import decoded
@@ -68,8 +69,13 @@ class Grid:
         """Where a cell stands in the file; rows count from 1."""
         line = row + int(self.taken.get("first_row", 1)) - 1
         if self.kind == "xlsx":
-            return f"cell {letters_of(column + 1)}{line} of the sheet {self.taken['sheet']}"
-        return f"line {line} of the file" if self.kind == "text" else ""
+            return say(
+                "cell {column}{line} of the sheet {taken}",
+                column=letters_of(column + 1),
+                line=line,
+                taken=self.taken["sheet"],
+            )
+        return say("line {line} of the file", line=line) if self.kind == "text" else ""
 
 
 def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
@@ -129,7 +135,10 @@ def _cut(text: str, separator: str, filename: str) -> list[list[Cell]]:
     try:
         rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator[:1]))
     except (csv.Error, ValueError, TypeError) as error:
-        raise refusal(filename, f"is not a table that can be cut at {separator!r}: {error}") from error
+        raise refusal(
+            filename,
+            say("is not a table that can be cut at {separator}: {error}", separator=repr(separator), error=error),
+        ) from error
     while rows and not any(cell.strip() for cell in rows[-1]):
         rows.pop()
     return [[cell.strip() or None for cell in row] for row in rows]
@@ -145,7 +154,11 @@ def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
     except fastexcel.FastExcelError as error:
         raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
     if not frames:
-        raise refusal(filename, f"has no sheet {chosen!r}; choose one of {', '.join(names)}", "table.sheet")
+        raise refusal(
+            filename,
+            say("has no sheet {chosen}; choose one of {names}", chosen=repr(chosen), names=", ".join(names)),
+            "table.sheet",
+        )
     name = max(frames, key=lambda name: _filled(frames[name][0]))
     texts, numbers = frames[name]
     columns = [_cells(n, t) for n, t in zip(numbers, texts, strict=True)]
@@ -238,7 +251,7 @@ def _is_torn(row: Sequence[Cell]) -> bool:
 def _headings(rows: Sequence[Sequence[Cell]], width: int) -> tuple[str, ...]:
     """One text a column: group, heading and unit of a column below each other are joined."""
     if not rows:
-        return tuple(f"column {k + 1}" for k in range(width))
+        return tuple(say("column {k}", k=k + 1) for k in range(width))
     lower = rows[-1]
     parts = [list(row) for row in rows]
     for row in parts[:-1]:

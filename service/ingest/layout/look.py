@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from estimator.message import say
 from service.ingest import hdf5, mat, parquet
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
 from service.ingest.layout.envelope import is_wrapped, unwrapped
@@ -51,7 +52,11 @@ def look(content: bytes, filename: str) -> object:
         return {"session": True}
     grid = grid_of(table, filename, stated)
     if len(grid.headings) > MOST_COLUMNS:
-        text = f"has {len(grid.headings)} columns; a mapping takes at most {MOST_COLUMNS}; take out what is not needed"
+        text = say(
+            "has {headings} columns; a mapping takes at most {most_columns}; take out what is not needed",
+            headings=len(grid.headings),
+            most_columns=MOST_COLUMNS,
+        )
         raise refusal(filename, text, "table")
     return {
         "session": False,

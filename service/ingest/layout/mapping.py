@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from estimator.errors import FormatError, Problem
+from estimator.message import joined, say
 from estimator.reading.keys import COLUMNS, TOP
 from estimator.reading.problems import shown
 
@@ -68,25 +69,38 @@ def _column(given: Mapping[str, Any]) -> ColumnMapping:
 
 def _wrong_format(document: Mapping[str, Any]) -> list[Problem]:
     found = [
-        Problem(key, f"is not a part of a mapping; it has {', '.join(PARTS)}") for key in document if key not in PARTS
+        Problem(key, say("is not a part of a mapping; it has {parts}", parts=joined(", ", PARTS)))
+        for key in document
+        if key not in PARTS
     ]
     if document.get("format") != FORMAT:
-        found.append(Problem("format", f'must be "{FORMAT}"'))
+        found.append(Problem("format", say('must be "{format}"', format=FORMAT)))
     return found
 
 
 def _wrong_table(table: Any) -> list[Problem]:
     if not isinstance(table, Mapping):
-        return [Problem("table", f"is {shown(table)}; must be an object")]
-    found = [Problem(f"table.{key}", f"is unknown; give {', '.join(TABLE)}") for key in table if key not in TABLE]
+        return [Problem("table", say("is {table}; must be an object", table=shown(table)))]
+    found = [
+        Problem(f"table.{key}", say("is unknown; give {table}", table=joined(", ", TABLE)))
+        for key in table
+        if key not in TABLE
+    ]
     for key, kind in TABLE.items():
         value = table.get(key)
         if key in table and (not isinstance(value, kind) or isinstance(value, bool)):
             found.append(
-                Problem(f"table.{key}", f"is {shown(value)}; must be {'a whole number' if kind is int else 'text'}")
+                Problem(
+                    f"table.{key}",
+                    (
+                        say("is {value}; must be a whole number", value=shown(value))
+                        if kind is int
+                        else say("is {value}; must be text", value=shown(value))
+                    ),
+                )
             )
         elif isinstance(value, int) and not (0 if key == "header_row" else 1) <= value <= MOST_ROW:
-            found.append(Problem(f"table.{key}", f"is {value}; must be a row of the file"))
+            found.append(Problem(f"table.{key}", say("is {value}; must be a row of the file", value=value)))
     if "separator" in table and len(str(table["separator"])) != 1:
         found.append(Problem("table.separator", "must be one character"))
     if table.get("decimal", ".") not in (".", ","):
@@ -96,36 +110,47 @@ def _wrong_table(table: Any) -> list[Problem]:
 
 def _wrong_columns(columns: Any) -> list[Problem]:
     if not isinstance(columns, list | tuple):
-        return [Problem("columns", f"is {shown(columns)}; must be a list")]
+        return [Problem("columns", say("is {columns}; must be a list", columns=shown(columns)))]
     found, seen = [], set()
     for number, column in enumerate(columns, start=1):
         place = f"columns[{number}]"
         if not isinstance(column, Mapping):
-            found.append(Problem(place, f"is {shown(column)}; must be an object with heading and as"))
+            found.append(
+                Problem(place, say("is {column}; must be an object with heading and as", column=shown(column)))
+            )
             continue
         found += _wrong_column(place, column)
         meaning = column.get("as")
         if isinstance(meaning, str) and meaning in seen:
-            found.append(Problem(f"{place}.as", f"{shown(meaning)} is what another column is read as; leave one out"))
+            found.append(
+                Problem(
+                    f"{place}.as",
+                    say("{meaning} is what another column is read as; leave one out", meaning=shown(meaning)),
+                )
+            )
         seen.add(meaning if isinstance(meaning, str) and meaning else None)
         seen.discard(None)
     return found
 
 
 def _wrong_column(place: str, column: Mapping[str, Any]) -> list[Problem]:
-    found = [Problem(f"{place}.{key}", f"is unknown; give {', '.join(COLUMN)}") for key in column if key not in COLUMN]
+    found = [
+        Problem(f"{place}.{key}", say("is unknown; give {column}", column=joined(", ", COLUMN)))
+        for key in column
+        if key not in COLUMN
+    ]
     for key, kind in COLUMN.items():
         value = column.get(key)
         if value is not None and not isinstance(value, kind):
-            found.append(Problem(f"{place}.{key}", f"is {shown(value)}; must be of another kind"))
+            found.append(Problem(f"{place}.{key}", say("is {value}; must be of another kind", value=shown(value))))
         elif isinstance(value, str) and len(value) > LONGEST:
-            found.append(Problem(f"{place}.{key}", f"is longer than {LONGEST} characters"))
+            found.append(Problem(f"{place}.{key}", say("is longer than {longest} characters", longest=LONGEST)))
     return found
 
 
 def _wrong_session(session: Any) -> list[Problem]:
     if not isinstance(session, Mapping):
-        return [Problem("session", f"is {shown(session)}; must be an object")]
+        return [Problem("session", say("is {session}; must be an object", session=shown(session)))]
     held = [key for key in ("format", "table") if key in session]
     return [Problem(f"session.{key}", "is not given in a mapping; it follows from the file") for key in held]
 

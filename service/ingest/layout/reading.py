@@ -7,6 +7,7 @@ from datetime import datetime
 import numpy as np
 
 from estimator.errors import FormatError, Problem
+from estimator.message import joined, say
 from estimator.reading.problems import Where, shown
 from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import ColumnMapping, Layout
@@ -38,7 +39,7 @@ def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str
             return ""
         heading = layout.columns[places[field]].heading
         if row is None:
-            return f"column {shown(heading)}"
+            return say("column {heading}", heading=shown(heading))
         return grid.place(places[field], kept[min(row, len(kept)) - 1] + 1)
 
     return {**layout.session, "format": FORMAT, "table": table}, where
@@ -56,8 +57,12 @@ def _other_columns(grid: Grid, layout: Layout) -> list[Problem]:
     if list(grid.headings) == named:
         return []
     missing = [heading for heading in named if heading not in grid.headings]
-    detail = f"; {', '.join(map(shown, missing[:5]))} is not among them" if missing else ""
-    return [Problem("columns", f"are not those of the file{detail}; make the mapping anew from its preview")]
+    detail = say("; {shown} is not among them", shown=joined(", ", map(shown, missing[:5]))) if missing else ""
+    return [
+        Problem(
+            "columns", say("are not those of the file{detail}; make the mapping anew from its preview", detail=detail)
+        )
+    ]
 
 
 def _unit_problems(layout: Layout) -> list[Problem]:
@@ -65,8 +70,12 @@ def _unit_problems(layout: Layout) -> list[Problem]:
     return [
         Problem(
             column.meaning or "",
-            f"is in {shown(column.unit)}, which cannot be turned into {wanted}; choose the unit of column "
-            f"{shown(column.heading)}",
+            say(
+                "is in {unit}, which cannot be turned into {wanted}; choose the unit of column {heading}",
+                unit=shown(column.unit),
+                wanted=wanted,
+                heading=shown(column.heading),
+            ),
         )
         for column in layout.columns
         if column.meaning and conversion(column.unit, wanted := _wanted(column.meaning, layout) or column.unit) is None

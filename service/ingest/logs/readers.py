@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 
+from estimator.message import say
 from service.ingest.formats import MCAP, SQLITE, ULOG
 from service.ingest.logs.streams import Stream
 from service.ingest.logs.table import LogTable, log_table
@@ -36,6 +37,9 @@ def _reader(room: str, filename: str) -> Read:
     try:
         read: Read = import_module(f"service.ingest.logs.{room}").read
     except ModuleNotFoundError as fault:
-        text = f"is a log, for which the library {fault.name} is missing here: run pip install 'imu-health[logs]'"
+        text = say(
+            "is a log, for which the library {name} is missing here: run pip install 'imu-health[logs]'",
+            name=fault.name,
+        )
         raise refusal(filename, text) from fault
     return read

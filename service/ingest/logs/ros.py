@@ -14,6 +14,7 @@ from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
+from estimator.message import say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.ingest.logs.readers import Contents
 from service.ingest.logs.streams import Array, Stream
@@ -42,9 +43,9 @@ def contents(messages: Iterable[Message], filename: str) -> Contents:
         try:
             rows.setdefault(topic, array("d")).extend(_row(logged, content))
         except DAMAGED as fault:
-            raise refusal(filename, WRONG.format(topic=topic, kind=IMU), "table") from fault
+            raise refusal(filename, say(WRONG, topic=topic, kind=IMU), "table") from fault
     if not rows:
-        raise refusal(filename, NONE.format(kind=IMU), "table")
+        raise refusal(filename, say(NONE, kind=IMU), "table")
     found = {topic: np.frombuffer(cells).reshape(-1, COLUMNS) for topic, cells in sorted(rows.items())}
     streams = [stream for topic, table in found.items() for stream in _streams(topic, table)]
     return Contents(streams, _facts(streams))
@@ -68,9 +69,9 @@ def _streams(topic: str, table: Array) -> Iterator[Stream]:
     missing = table[0, 8]
     time = table[:, 0] if np.all(np.diff(table[:, 0]) > 0) else table[:, 1]
     if missing not in (1.0, 3.0):
-        yield Stream(f"{topic} acceleration", ACCELEROMETER, time, table[:, 5:8])
+        yield Stream(say("{topic} acceleration", topic=topic), ACCELEROMETER, time, table[:, 5:8])
     if missing < 2.0:
-        yield Stream(f"{topic} rate", GYROSCOPE, time, table[:, 2:5])
+        yield Stream(say("{topic} rate", topic=topic), GYROSCOPE, time, table[:, 2:5])
 
 
 def _facts(streams: Iterable[Stream]) -> dict[str, object]:

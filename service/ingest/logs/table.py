@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.message import joined, say, say_count
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from estimator.wording import counted
 from service.ingest.logs.streams import Array, Stream, in_order
@@ -44,13 +45,23 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     sound = [in_order(stream) for stream in streams]
     ordered = [stream for stream in sound if len(stream.time) >= FEWEST]
     if not any(stream.kind == ACCELEROMETER for stream in ordered):
-        raise refusal(filename, f"holds no accelerometer with {FEWEST} samples or more; log the raw IMUs", "table")
+        raise refusal(
+            filename,
+            say("holds no accelerometer with {fewest} samples or more; log the raw IMUs", fewest=FEWEST),
+            "table",
+        )
     start = max(float(stream.time[0]) for stream in ordered)
     end = min(float(stream.time[-1]) for stream in ordered)
     slowest = min(map(_rate, ordered))
     if slowest < SLOWEST:
         raise refusal(
-            filename, f"has an IMU with {slowest:.3g} samples a second; at least {SLOWEST:g} are needed", "table"
+            filename,
+            say(
+                "has an IMU with {slowest} samples a second; at least {slowest2} are needed",
+                slowest=f"{slowest:.3g}",
+                slowest2=f"{SLOWEST:g}",
+            ),
+            "table",
         )
     rate = min(RATE, slowest / SAMPLES)
     rows = (end - start) * rate
@@ -59,7 +70,7 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     check_table(filename, int(rows), 3 * len(ordered) + 2)
     table = _table(ordered, _Clock(start, round(rate, 3), int(rows)))
     notes = [str(facts.get("notes", "")), *_left_out(streams, sound), *_torn(len(table.columns["time [s]"]), int(rows))]
-    said = " ".join(filter(None, notes))
+    said = joined(" ", filter(None, notes))
     return replace(table, facts={**facts, **table.facts, **({"notes": said} if said else {})})
 
 
@@ -68,14 +79,21 @@ def _left_out(streams: Sequence[Stream], sound: Sequence[Stream]) -> Iterator[st
     for stream, kept in zip(streams, sound, strict=True):
         if len(kept.time) < len(stream.time):
             gone = len(stream.time) - len(kept.time)
-            yield f"{stream.label}: {gone} sample{'' if gone == 1 else 's'} left out for want of a number."
+            yield say_count(
+                "{label}: {n} sample left out for want of a number.",
+                "{label}: {n} samples left out for want of a number.",
+                gone,
+                label=stream.label,
+            )
         if len(kept.time) < FEWEST:
-            yield f"{stream.label} has {counted(len(kept.time), 'sample')} only and was left out."
+            yield say(
+                "{label} has {time} only and was left out.", label=stream.label, time=counted(len(kept.time), "sample")
+            )
 
 
 def _torn(kept: int, rows: int) -> Iterator[str]:
     if kept < rows:
-        yield f"{rows - kept} of {rows} rows left out: some IMU says nothing there."
+        yield say("{rows} of {rows2} rows left out: some IMU says nothing there.", rows=rows - kept, rows2=rows)
 
 
 def _rate(stream: Stream) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from pyulog import ULog
 from pyulog.exceptions import ULogException
 
+from estimator.message import say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.ingest.logs.readers import Contents
 from service.ingest.logs.streams import Array, Stream
@@ -73,7 +74,11 @@ def _time(data: dict[str, Array]) -> Array:
 def _facts(log: ULog, *, is_whole: bool) -> dict[str, object]:
     """Serial number of the flight controller, and what was lost."""
     lost = sum(dropout.duration for dropout in log.dropouts)
-    notes = [f"The logger dropped {lost} ms of samples in {len(log.dropouts)} gaps."] if log.dropouts else []
+    notes: list[str] = (
+        [say("The logger dropped {lost} ms of samples in {dropouts} gaps.", lost=lost, dropouts=len(log.dropouts))]
+        if log.dropouts
+        else []
+    )
     notes += [] if is_whole else [CUT]
     serial = log.msg_info_dict.get("sys_uuid")
     said = {"unit": serial if isinstance(serial, str) else "", "notes": " ".join(notes)}

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import floor, log10
 
+from estimator.message import say
 from service.kit.measures import COVERAGE, HARD, THIN, deviation_measure, in_words, signed
 from service.kit.names import day_of
 from service.outlook.records import Action, ParameterTrend, UnitOutlook
@@ -64,8 +65,8 @@ def _headline(outlook: UnitOutlook) -> str:
     if outlook.due is None:
         return "Next calibration: not known"
     if outlook.overdue:
-        return f"Calibration overdue since {day_of(outlook.due)}"
-    return f"Next calibration: {day_of(outlook.due)}"
+        return say("Calibration overdue since {due}", due=day_of(outlook.due))
+    return say("Next calibration: {due}", due=day_of(outlook.due))
 
 
 def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:
@@ -83,7 +84,12 @@ def _wandered(trend: ParameterTrend) -> str:
     measure = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
     moved = signed(trend.level, COVERAGE * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
-    return f"{place_of(trend)} has moved by {moved}, at no steady rate; {allowed} are allowed."
+    return say(
+        "{trend} has moved by {moved}, at no steady rate; {allowed} are allowed.",
+        trend=place_of(trend),
+        moved=moved,
+        allowed=allowed,
+    )
 
 
 def _waits(outlook: UnitOutlook, now: datetime) -> tuple[Wait, ...]:
@@ -98,8 +104,8 @@ def _waits(outlook: UnitOutlook, now: datetime) -> tuple[Wait, ...]:
 
 def _percent(risk: float) -> str:
     if risk < 0.001:
-        return f"below{HARD}0.1{THIN}%"
+        return say("below{hard}0.1{thin}%", hard=HARD, thin=THIN)
     if risk > 0.99:
-        return f"above{HARD}99{THIN}%"
+        return say("above{hard}99{thin}%", hard=HARD, thin=THIN)
     places = max(0, -floor(log10(100 * risk)))
     return f"{100 * risk:.{places}f}{THIN}%"

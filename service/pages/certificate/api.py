@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.store import Fleet
 from service.pages.certificate.dependencies import DeskOf
@@ -153,7 +154,7 @@ class Labels:
         """The label of a unit; its address is the public one, or the one that the request was sent to."""
         unit = Fleet(self.store).unit(serial)
         if unit is None:
-            raise NotFoundError(f"There is no unit {serial!r}.")
+            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         base = self.settings.public_url or str(self.request.base_url)
         return label_of(unit, base, self.now, with_due=due)
 

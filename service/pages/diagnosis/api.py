@@ -6,6 +6,7 @@ from typing import Any
 from fastapi import APIRouter, Response
 from fastapi.responses import JSONResponse
 
+from estimator.message import with_messages
 from service.errors import NotFoundError
 from service.models.records import NewModel
 from service.pages.model.api import DiagnosisDocument, ModelDocument, NewModelSchema, PendingDiagnosis, model_document
@@ -34,7 +35,7 @@ def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocum
     if found.document is None:
         raise NotFoundError(found.summary)
     made = {name: value for name, value in vars(found).items() if name in DiagnosisDocument.model_fields}
-    return DiagnosisDocument(**json.loads(found.document), **made)
+    return DiagnosisDocument(**with_messages(json.loads(found.document)), **made)
 
 
 @router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 409, 422))

@@ -9,6 +9,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 
 from estimator.causes import find
 from estimator.diagnosis.results import Structure
+from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.diagnosis.charts import MOST_PANELS, Sides, diagnosis_charts
 from service.diagnosis.gain import GainView, gain_view
@@ -137,7 +138,7 @@ def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis
         what_to_do=made.summary if found is None else what_to_do(found),
         follow=None,
         evidence=None if found is None else _evidence(report, made, found),
-        made=f"Made by estimator {made.estimator_version}",
+        made=say("Made by estimator {estimator_version}", estimator_version=made.estimator_version),
     )
 
 
@@ -189,14 +190,25 @@ def _revision(revision: ModelRevision, session: StoredSession, known: Sequence[M
     holds = revision.id <= session.revision and not (withdrawn and withdrawn.id <= session.revision)
     state = "calibrated with it" if holds else "calibrated without it" if withdrawn else "calibrated before it"
     return RevisionView(
-        revision, cause_on(revision.cause, revision.sensors), f"{revision.scope} {revision.subject}", state, withdrawn
+        revision,
+        cause_on(revision.cause, revision.sensors),
+        say("{scope} {subject}", scope=revision.scope, subject=revision.subject),
+        state,
+        withdrawn,
     )
 
 
 def _scopes(session: StoredSession) -> tuple[tuple[str, str], ...]:
     """Whose model a cause can be accepted into."""
-    units = ((Scope.UNIT.value, f"this unit, {session.unit}"), (Scope.UNIT_TYPE.value, "all units of its type"))
-    return units if session.stand is None else (*units, (Scope.STAND.value, f"the stand, {session.stand}"))
+    units = (
+        (Scope.UNIT.value, say("this unit, {unit}", unit=session.unit)),
+        (Scope.UNIT_TYPE.value, "all units of its type"),
+    )
+    return (
+        units
+        if session.stand is None
+        else (*units, (Scope.STAND.value, say("the stand, {stand}", stand=session.stand)))
+    )
 
 
 def diagnosis_report(store: Store, id: str, diagnosis: StoredDiagnosis | None) -> DiagnosisReport:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from estimator.message import joined, say_count
 from service.fleet.condition import FleetCondition, UnitSummary
 from service.fleet.records import FleetChoices
 from service.outlook.rules.standouts import Standout
@@ -148,7 +149,9 @@ def fleet_page(
         standouts=tuple(unlike),
         questioned=tuple(questioned),
         together=together,
-        overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration" if overdue else "",
+        overdue=say_count("{n} unit overdue for calibration", "{n} units overdue for calibration", overdue)
+        if overdue
+        else "",
         choices=choices,
         dates=DUE,
         orders=ORDERS,
@@ -184,12 +187,12 @@ def _tile(verdict: Verdict, fleet: FleetCondition, view: FleetView) -> Tile:
 
 def flags_in_words(count: int) -> str:
     """``2 flags``; empty for none."""
-    return f"{count} flag{'' if count == 1 else 's'}" if count else ""
+    return say_count("{n} flag", "{n} flags", count) if count else ""
 
 
 def worst_in_words(unit: UnitSummary) -> str:
     """``A3 bias``."""
-    return f"{unit.worst_sensor or ''} {unit.worst_parameter or ''}".strip()
+    return joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter)))
 
 
 def fleet_row(unit: UnitSummary, now: datetime) -> FleetRow:

@@ -9,6 +9,7 @@ from fastapi import APIRouter, Depends, Response
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
+from estimator.message import with_messages
 from service.errors import NotFoundError
 from service.groups.records import GroupAnswer, Level
 from service.groups.store import Groups
@@ -169,4 +170,4 @@ def _answer(found: GroupAnswer | None, level: Level, name: str) -> Response | Gr
     if found.document is None:
         raise NotFoundError(found.summary)
     made = {name: getattr(found, name) for name in ("summary", "estimator_version", "created_at")}
-    return GroupDocument(**json.loads(found.document), **made)
+    return GroupDocument(**with_messages(json.loads(found.document)), **made)

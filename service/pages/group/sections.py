@@ -6,6 +6,7 @@ from urllib.parse import quote
 
 from estimator.groups import GroupFinding
 from estimator.groups.pictures import ANGLES
+from estimator.message import say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.fleet.records import Announced
 from service.groups.charts import forest_chart, picture_chart, picture_table
@@ -79,7 +80,7 @@ def home_of(group: Group) -> str:
 
 def whose(group: Group) -> str:
     """``unit type RA-6``."""
-    return f"{SCOPES[group.level.value]} {group.name}"
+    return say("{scopes} {name}", scopes=SCOPES[group.level.value], name=group.name)
 
 
 def group_section(store: Store, level: Level, name: str) -> GroupSection:

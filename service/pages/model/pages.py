@@ -10,6 +10,7 @@ from fastapi import APIRouter, Form, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from estimator.groups.fixed import EMPIRICAL
+from estimator.message import say
 from service.diagnosis.words.amplitudes import Amounts, amplitudes_of
 from service.diagnosis.words.causes import cause_on
 from service.diagnosis.words.finding import standard_errors
@@ -85,7 +86,7 @@ def model_page(
     return ModelPage(
         revision=revision,
         name=cause_on(revision.cause, revision.sensors),
-        whose=f"{revision.scope} {revision.subject}",
+        whose=say("{scope} {subject}", scope=revision.scope, subject=revision.subject),
         home=f"{HOMES[revision.scope]}{quote(revision.subject)}",
         statement="" if evidence is None else evidence.sentence,
         amplitudes=_amplitudes(revision),
@@ -110,10 +111,16 @@ def _amplitudes(revision: ModelRevision) -> tuple[str, ...]:
 def _evidence(strength: float, pooled: Pooled | None) -> str:
     """``Over 34 sessions, in all of these sessions: 12.3 standard errors.``"""
     if pooled is None:
-        return f"In one session: {standard_errors(strength)}. Each session fits its own size."
+        return say("In one session: {strength}. Each session fits its own size.", strength=standard_errors(strength))
     since = since_in_words(pooled.form, pooled.since)
     fitted = "each session has a say in it" if pooled.form == "varying" else "no session fits it again"
-    return f"{over(pooled.sessions)}, {since}: {standard_errors(strength)}. The size is theirs: {fitted}."
+    return say(
+        "{sessions}, {since}: {strength}. The size is theirs: {fitted}.",
+        sessions=over(pooled.sessions),
+        since=since,
+        strength=standard_errors(strength),
+        fitted=fitted,
+    )
 
 
 def _moved(found: Sequence[Recomputation]) -> Iterator[MovedRow]:
@@ -126,8 +133,12 @@ def _unit(one: Recomputation) -> UnitRow:
     told = one.outcome
     if told is None:
         return UnitRow(one.unit, one.state.value, left_in_words(one))
-    left = f", {told.left} cannot be" if told.left else ""
-    return UnitRow(one.unit, f"{told.recomputed} of {told.sessions}{left}", moved_in_words(told.furthest))
+    left = say(", {left} cannot be", left=told.left) if told.left else ""
+    return UnitRow(
+        one.unit,
+        say("{recomputed} of {sessions}{left}", recomputed=told.recomputed, sessions=told.sessions, left=left),
+        moved_in_words(told.furthest),
+    )
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)

@@ -9,6 +9,7 @@ from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, BeforeValidator, Field, ValidationError
 
 from estimator.errors import Problem
+from estimator.message import joined, say
 from estimator.planning import Expected, Missing
 from estimator.readiness import Outlook, Readiness, State
 from estimator.results import PARAMETERS
@@ -28,6 +29,7 @@ from service.sessions.charts import ChartSet
 from service.sessions.words.conditions import Condition
 from service.uploads.arriving import ArrivingOf, LandedFile
 from service.web.dependencies import Reading
+from service.web.faults import fault_in_words
 from service.web.render import render
 
 READY = Condition("pass", "Ready", "ready", "circle", "The measurement may begin.")
@@ -106,22 +108,29 @@ def _facts(answer: Asked) -> tuple[tuple[str, str], ...]:
     facts = [
         ("Recorded", clock(found.recorded)),
         ("Judged from", clock(found.judged_from)),
-        ("Programme", f"{minutes(found.duration)} min{', as is usual' if answer.is_usual else ''}"),
+        (
+            "Programme",
+            (
+                say("{duration} min, as is usual", duration=minutes(found.duration))
+                if answer.is_usual
+                else say("{duration} min", duration=minutes(found.duration))
+            ),
+        ),
         ("Tolerances of", answer.unit_type or "no unit type: the usual ones"),
     ]
     if found.warmed is not None:
-        facts.append(("Thermometer", f"{number(found.warmed, 2)} K since then"))
+        facts.append(("Thermometer", say("{warmed} K since then", warmed=number(found.warmed, 2))))
     return tuple(facts)
 
 
 def _drift(one: Outlook) -> Drift:
     shares = [
-        f"{number(100 * share, 0)} % of the {word}"
+        say("{share} % of the {word}", share=number(100 * share, 0), word=word)
         for share, word in ((one.bias_share, "bias"), (one.scale_share, "scale factor"))
         if share is not None
     ]
     expected, bound, allowed = (amount(one.kind, value) for value in (one.expected, one.bound, one.allowed))
-    return Drift(one.name, expected, bound, allowed, ", ".join(shares))
+    return Drift(one.name, expected, bound, allowed, joined(", ", shares))
 
 
 def _changes(found: Readiness, kinds: dict[str, str]) -> tuple[tuple[str, ...], ...]:
@@ -175,7 +184,7 @@ def _spread(one: Expected, sigma: float | None) -> str:
     if sigma is None:
         return UNSEEN
     measure = MEASURES[one.kind, one.parameter]
-    return f"±{number(float(f'{COVERAGE * sigma * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"±{number(float(f'{COVERAGE * sigma * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
 T = TypeVar("T", bound=BaseModel)
@@ -248,5 +257,5 @@ def _read(kind: type[T], brought: Brought) -> T:
     try:
         return kind.model_validate({name: value.strip() for name, value in brought.fields.items()})
     except ValidationError as fault:
-        problems = tuple(Problem(".".join(map(str, one["loc"])), one["msg"]) for one in fault.errors())
+        problems = tuple(Problem(".".join(map(str, one["loc"])), fault_in_words(one)) for one in fault.errors())
         raise RefusedError("The form cannot be used.", problems) from fault

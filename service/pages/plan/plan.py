@@ -9,6 +9,7 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
+from estimator.message import joined, say
 from estimator.planning import Judged, Plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind
 from estimator.results import PARAMETERS
@@ -130,7 +131,9 @@ def plan_page(question: PlanQuestion, plan: Plan, types: Sequence[str] = ()) -> 
         unseen=_unseen(plan),
         optimal=_optimal(plan),
         orientations=_orientations(plan),
-        headings=tuple(f"{heading(name)}, {MEASURES[kind, name].label}" for name in PARAMETERS),
+        headings=tuple(
+            say("{name}, {label}", name=heading(name), label=MEASURES[kind, name].label) for name in PARAMETERS
+        ),
     )
 
 
@@ -143,8 +146,8 @@ def _block(q: PlanQuestion) -> tuple[Field, ...]:
     zero = MEASURES[q.kind, "bias"].label
     return (
         _field(q, "sensors", "Sensors on the cone"),
-        _field(q, "noise", f"Noise of a reading, 1σ, {zero}", f"{NOISE[q.kind]:g}"),
-        _field(q, "variation", f"Variation of the zero, 1σ, {zero}", f"{VARIATION[q.kind]:g}"),
+        _field(q, "noise", say("Noise of a reading, 1σ, {zero}", zero=zero), f"{NOISE[q.kind]:g}"),
+        _field(q, "variation", say("Variation of the zero, 1σ, {zero}", zero=zero), f"{VARIATION[q.kind]:g}"),
     )
 
 
@@ -156,23 +159,33 @@ def _session(q: PlanQuestion) -> tuple[Field, ...]:
         _field(q, "latitude", "Latitude, °"),
         _field(q, "theta", "Levelling, 1σ, arcsec"),
         _field(q, "alpha_error", "Elevation, 1σ, arcsec"),
-        _field(q, "beta_error", "Turn β, 1σ, arcsec"),
+        _field(q, "beta_error", say("Turn β, 1σ, arcsec")),
     )
 
 
 def _tolerances(q: PlanQuestion) -> tuple[Field, ...]:
     return tuple(
-        _field(q, name, f"{heading(name)}, {MEASURES[q.kind, name].label}", "not judged") for name in PARAMETERS
+        _field(q, name, say("{name}, {label}", name=heading(name), label=MEASURES[q.kind, name].label), "not judged")
+        for name in PARAMETERS
     )
 
 
 def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
-    proposed = "" if question.elevation is not None else ", proposed"
     ours, formula = (number(float(np.degrees(a)), 1) for a in (plan.elevation, plan.formula_elevation))
     return (
-        Line("Elevation of the head", f"{ours}°{proposed}"),
+        Line(
+            "Elevation of the head",
+            f"{ours}°" if question.elevation is not None else say("{angle}°, proposed", angle=ours),
+        ),
         Line("By the formula for the stand alone", f"{formula}°"),
-        Line("Positions a run", f"{plan.positions}{'' if question.positions is not None else ', proposed'}"),
+        Line(
+            "Positions a run",
+            (
+                say("{positions}", positions=plan.positions)
+                if question.positions is not None
+                else say("{positions}, proposed", positions=plan.positions)
+            ),
+        ),
         Line("Time", duration(plan.seconds)),
         Line("Conditioning ρ", number(plan.conditioning, 1)),
         Line("Equal steps against the best", f"{number(100 * plan.optimal.efficiency, 1)} %"),
@@ -185,7 +198,7 @@ def _rows(plan: Plan) -> tuple[Row, ...]:
     for i in range(0, len(plan.judged), size):
         cells = tuple(_cell(one, plan.request.coverage) for one in plan.judged[i : i + size])
         alike.setdefault(cells, []).append(plan.judged[i].sensor)
-    return tuple(Row(", ".join(names), cells) for cells, names in alike.items())
+    return tuple(Row(joined(", ", names), cells) for cells, names in alike.items())
 
 
 def _cell(one: Judged, coverage: float) -> Cell:
@@ -215,7 +228,7 @@ def _optimal(plan: Plan) -> tuple[Line, ...]:
     best = plan.optimal
     degrees = np.round(np.degrees(best.beta)).astype(int)
     return tuple(
-        Line(name, ", ".join(f"{d}°" for d in degrees[best.flipped == flipped]))
+        Line(name, joined(", ", (f"{d}°" for d in degrees[best.flipped == flipped])))
         for name, flipped in (("direct", False), ("flipped", True))
         if (best.flipped == flipped).any()
     )

@@ -3,6 +3,7 @@
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field
 
+from estimator.message import say
 from service.errors import ConflictError
 from service.flags.api import Handling
 from service.judging.schemas import said
@@ -150,7 +151,9 @@ def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now, 
     with reception.storage.database.reading() as store:
         owner = Sessions(store).get(new.session).unit
     if owner != serial:
-        raise ConflictError(f"Session {new.session} is of {owner}, not of {serial}.")
+        raise ConflictError(
+            say("Session {session} is of {owner}, not of {serial}.", session=new.session, owner=owner, serial=serial)
+        )
     step = Step(person.signs(new.by), now, new.why)
     session, _ = choose_reference(reception.storage, deriving(reception, now), new.session, step)
     reception.ring()

@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.judging.schemas import said
@@ -134,7 +135,9 @@ def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
     Sessions(store).get(id)
     found = Noises(store).get(id)
     if found is None:
-        raise NotFoundError(f"Session {id} tells nothing of noise: it holds no rests, or was not looked at yet.")
+        raise NotFoundError(
+            say("Session {id} tells nothing of noise: it holds no rests, or was not looked at yet.", id=id)
+        )
     return NoiseDocument.model_validate(found.to_dict())
 
 

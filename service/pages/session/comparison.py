@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.message import joined, say
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 from service.errors import ConflictError
@@ -72,7 +73,7 @@ def compare(store: Store, a: str, b: str, coverage_factor: float) -> Comparison:
     first, second = sorted((Sessions(store).get(a), Sessions(store).get(b)), key=lambda s: (s.started_at, s.id))
     if first.unit != second.unit:
         named = {"first": first.id, "second": second.id, "one": first.unit, "other": second.unit}
-        raise ConflictError(OF_TWO.format(**named))
+        raise ConflictError(say(OF_TWO, **named))
     known = Calibrations(store).in_force((first.id, second.id))
     before, after = known[first.id], known[second.id]
     return Comparison(
@@ -155,19 +156,19 @@ def in_common(first: StoredSession, second: StoredSession, services: Sequence[Se
     """One sentence for each matter that there is something to say of."""
     said = [_stand(first.stand, second.stand), DIRECT]
     if services:
-        said.append(SERVICED.format(days=", ".join(dict.fromkeys(day_of(service.at) for service in services))))
+        said.append(say(SERVICED, days=joined(", ", dict.fromkeys(day_of(service.at) for service in services))))
     if first.revision != second.revision:
-        said.append(OTHER_MODEL.format(first=first.revision, second=second.revision))
+        said.append(say(OTHER_MODEL, first=first.revision, second=second.revision))
     if first.programme != second.programme:
         named = (one.programme.replace("-", " ") for one in (first, second))
-        said.append(OTHER_METHOD.format(**dict(zip(("first", "second"), named, strict=True))))
+        said.append(say(OTHER_METHOD, **dict(zip(("first", "second"), named, strict=True))))
     return tuple(said)
 
 
 def _stand(first: str | None, second: str | None) -> str:
     if first is None or second is None:
         return NO_STAND
-    return ONE_STAND.format(stand=first) if first == second else TWO_STANDS.format(first=first, second=second)
+    return say(ONE_STAND, stand=first) if first == second else say(TWO_STANDS, first=first, second=second)
 
 
 NOT_COMPARED = "not told by both"
@@ -220,7 +221,7 @@ def comparison_page(found: Comparison) -> ComparisonPage:
         condition=condition_of(found.judged.verdict),
         reason=found.judged.reason,
         in_common=in_common(found.first, found.second, found.services),
-        motions=motions_in_words(found.judged.motions, k),
+        motions=motions_in_words(found.judged.motions, k, "between the two"),
         rows=tuple(
             _row(earlier.get(sensor.name), sensor, parameter, judged.get((sensor.name, parameter)), (found, k))
             for sensor in found.after.sensors

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from estimator.message import say, without_stop
 from estimator.parity import ParityResult
 from estimator.reading.sensors import PULSES
 from estimator.results import Calibration, Estimate, SensorCalibration
@@ -172,8 +173,8 @@ def _state(report: SessionReport) -> str:
     state = report.session.state
     if state is RecordState.ACCEPTED:
         return ""
-    said = f"{state_in_words(report.states[-1])}." if report.states else f"{STATES[state]}."
-    return f"{said.replace('..', '.')} {MEANINGS[state]}"
+    said = state_in_words(report.states[-1]) if report.states else STATES[state]
+    return say("{said}. {meaning}", said=without_stop(said), meaning=MEANINGS[state])
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:
@@ -232,13 +233,15 @@ def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float, r
 def _scale(value: float | None, spread: float | None, kind: str, reading_unit: str) -> str:
     """A scale factor is read with its relative uncertainty: ``1.1792038 V per g ± 4.0 ppm``."""
     plain = value_measure(kind, "scale", 0.0)
-    measure = Measure(f"{reading_unit} {plain.label}".strip(), plain.factor)
+    measure = Measure(
+        say("{unit} {label}", unit=reading_unit, label=plain.label) if reading_unit else plain.label, plain.factor
+    )
     if value is None or not spread or not value:
         return measured(value, None, measure)
     relative = deviation_measure(kind, "scale", spread / abs(value))
     share = spread / abs(value) * relative.factor
     shown = number(in_measure(value, measure), decimals(in_measure(spread, measure)))
-    return f"{shown} {measure.label} ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
+    return f"{shown} " + measure.label + f" ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
 
 
 def _axis(sensor: SensorCalibration, coverage: float) -> str:
@@ -280,4 +283,4 @@ def _probability(decision: Decision | None) -> str:
         return ""
     percent = 100 * decision.probability_out
     words = "more than 99" if percent > 99 else "less than 1" if percent < 1 else f"{percent:.0f}"
-    return f"{words} % chance to be out"
+    return say("{words} % chance to be out", words=words)

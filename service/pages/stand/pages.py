@@ -9,6 +9,7 @@ from urllib.parse import quote
 from fastapi import APIRouter, Form, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
+from estimator.message import say
 from service.groups.records import Level
 from service.kit.names import day_of
 from service.pages.flags import FlagCard, flag_cards
@@ -123,7 +124,7 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
 
 def _row(line: StandLine, now: datetime) -> StandRow:
     latest = held(line.certificates, now.date())
-    until = "none on record" if latest is None else f"until {day_of(latest.valid_until)}"
+    until = "none on record" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
     return StandRow(line.use, _word(line, now), condition_in_words(line.condition), until, flags_in_words(line.flags))
 
 
@@ -144,17 +145,23 @@ def _shifts(condition: StandCondition) -> tuple[ShiftRow, ...]:
 
 def _shift(one: StandEvidence) -> ShiftRow:
     lasts = one.until is None
-    when = f"since {day_of(one.since)}" if one.until is None else f"{day_of(one.since)} to before {day_of(one.until)}"
+    when = (
+        say("since {since}", since=day_of(one.since))
+        if one.until is None
+        else say("{since} to before {until}", since=day_of(one.since), until=day_of(one.until))
+    )
     word, tone = ("shifted", "conditional-fail") if lasts else ("back where it was", "conditional-pass")
     return _shift_row(one, when, word, tone)
 
 
 def _steady(one: StandEvidence) -> ShiftRow:
-    return _shift_row(one, f"most evident since {day_of(one.since)}", "steady: no more than chance", "pass")
+    return _shift_row(
+        one, say("most evident since {since}", since=day_of(one.since)), "steady: no more than chance", "pass"
+    )
 
 
 def _shift_row(one: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
-    units = f"{one.agreeing} of {one.units}"
+    units = say("{agreeing} of {units}", agreeing=one.agreeing, units=one.units)
     return ShiftRow(kind_of_shift(one.kind, one.quantity), size_of_shift(one), when, units, word, tone)
 
 

@@ -9,6 +9,7 @@ from urllib.parse import quote
 from fastapi import APIRouter, Depends, Form, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
+from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from estimator.wording import counted
 from service.groups.records import Level
@@ -145,7 +146,7 @@ def type_page(report: TypeReport, now: datetime, group: GroupSection | None = No
 
 def _row(line: TypeLine) -> TypeRow:
     known = line.unit_type
-    named = [f"{what} {text}" for what, text in _limits(known) if text != NOT_JUDGED]
+    named = [say("{what} {text}", what=what, text=text) for what, text in _limits(known) if text != NOT_JUDGED]
     return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
 
 
@@ -153,9 +154,9 @@ def _block(known: UnitType) -> str:
     """``6 accelerometers``."""
     count = len(known.sensors)
     if known.gyro_tolerances is not None:
-        return f"{count} accelerometers and gyros"
+        return say("{count} accelerometers and gyros", count=count)
     kind = KINDS.get(known.block, known.block)
-    return f"{count} {kind}{'' if count == 1 else 's'}"
+    return counted(count, kind)
 
 
 def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
@@ -176,9 +177,9 @@ def _limits(known: UnitType) -> tuple[tuple[str, str], ...]:
     """What units are judged by; of a mixed block each kind of sensor has its own."""
     allowed = tolerances_of(known)
     kinds = (known.block,) if known.gyro_tolerances is None else (ACCELEROMETER, GYROSCOPE)
-    of = {kind: f", {KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}
+    of = {kind: f"{KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}
     return tuple(
-        (f"{heading(name)}{of[kind]}", _limit(kind, name, allowed.get((kind, name))))
+        (joined(", ", filter(None, (heading(name), of[kind]))), _limit(kind, name, allowed.get((kind, name))))
         for kind in kinds
         for name in PARAMETERS
     )
@@ -194,7 +195,10 @@ def _sensor(name: str, kind: str, axis: tuple[float, float, float], scale: float
     measure = scale_measure(kind)
     vector = ", ".join(number(x, 4) for x in axis)
     return SensorModel(
-        name, KINDS.get(kind, kind), f"({vector})", f"{number(in_measure(scale, measure))} {measure.label}"
+        name,
+        KINDS.get(kind, kind),
+        f"({vector})",
+        say("{scale} {label}", scale=number(in_measure(scale, measure)), label=measure.label),
     )
 
 

@@ -9,6 +9,7 @@ from datetime import datetime
 from math import isclose, isfinite
 
 from estimator.errors import Problem
+from estimator.message import say
 from estimator.parity import ParityResult
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, GYROSCOPE, IN_SERVICE
@@ -88,7 +89,12 @@ def wanted(known: UnitType, form: Mapping[str, str]) -> Wanted:
             for kind, given in _kinds(known)}  # fmt: skip
     interval = _number(INTERVAL, form.get(INTERVAL, days(known)), faults)
     if interval is None or not SHORTEST <= interval <= LONGEST:
-        faults.append(Problem(INTERVAL, f"must be between {SHORTEST} and {LONGEST:,} days"))
+        faults.append(
+            Problem(
+                INTERVAL,
+                say("must be between {shortest} and {longest} days", shortest=SHORTEST, longest=f"{LONGEST:,}"),
+            )
+        )
     if faults or interval is None:
         raise RefusedError("The tolerances cannot be set.", tuple(faults))
     own, *others = read.values()
@@ -103,7 +109,11 @@ def _kinds(known: UnitType) -> tuple[tuple[str, Tolerances], ...]:
 
 
 def _label(known: UnitType, kind: str, name: str) -> str:
-    return heading(name) if known.gyro_tolerances is None else f"{heading(name)}, {kind}s"
+    return (
+        heading(name)
+        if known.gyro_tolerances is None
+        else say("{heading}, {kind}", heading=heading(name), kind=f"{kind}s")
+    )
 
 
 def _measure(kind: str, name: str) -> Measure:
@@ -150,18 +160,28 @@ def headline_of(found: TolerancePreview) -> str:
         return "No unit of this type has a session that tolerances decide"
     if not changed:
         return "With these, no unit changes"
-    return f"With these, {changed} of {found.judged} units {'changes' if changed == 1 else 'change'}"
+    return (
+        say("With these, {changed} of {judged} units changes", changed=changed, judged=found.judged)
+        if changed == 1
+        else say("With these, {changed} of {judged} units change", changed=changed, judged=found.judged)
+    )
 
 
 def notes_of(found: TolerancePreview) -> Iterator[str]:
     """What was not looked at, and why."""
     if found.references:
-        yield f"{counted(found.references, 'unit')} not counted: the latest session is a reference, judged by nothing."
+        yield say(
+            "{references} not counted: the latest session is a reference, judged by nothing.",
+            references=counted(found.references, "unit"),
+        )
     if found.recordings:
         units = counted(found.recordings, "unit")
-        yield f"{units} not counted: the latest session is a recording in service without a calibration beside it."
+        yield say(
+            "{units} not counted: the latest session is a recording in service without a calibration beside it.",
+            units=units,
+        )
     if found.beyond:
-        yield f"{counted(found.beyond, 'unit')} not looked at: only the worst ones are."
+        yield say("{beyond} not looked at: only the worst ones are.", beyond=counted(found.beyond, "unit"))
 
 
 CARRIED_APART = ("by", "why", "csrf")
@@ -232,7 +252,10 @@ def set_tolerances(
         current = UnitTypes(store).hold(name)
         if seen is not None and seen != current.revision:
             raise ConflictError(
-                f"Somebody set other tolerances meanwhile, revision {current.revision}: look at them, then set yours."
+                say(
+                    "Somebody set other tolerances meanwhile, revision {revision}: look at them, then set yours.",
+                    revision=current.revision,
+                )
             )
         said = {"why": why} if why else {}
         if interval_days is not None and interval_days != current.maximum_interval_days:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from estimator.message import say
 from service.kit.measures import deviation_measure, limit, measured, signed
 from service.papers.found_and_left import FoundAndLeft
 from service.sessions.decision import Decision
@@ -74,7 +75,11 @@ def events_of(
     listed = [
         Event(
             s.at,
-            f"{KINDS.get(s.kind, s.kind)}{f' of {s.sensor}' if s.sensor else ''}",
+            say(
+                "{kind}{sensor}",
+                kind=KINDS.get(s.kind, s.kind),
+                sensor=say(" of {sensor}", sensor=s.sensor) if s.sensor else "",
+            ),
             s.note,
             s.who,
             None,

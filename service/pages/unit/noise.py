@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from estimator.allan.results import TERMS
+from estimator.message import say
 from service.kit.measures import NOISE, in_measure
 from service.kit.names import day_of
 from service.outlook.charts import history_charts
@@ -59,7 +60,7 @@ def noise_part(points: Sequence[HistoryPoint], services: Sequence[Service], note
     for name in NAMES:
         for kind in kinds:
             own = [point for point in points if (point.parameter, point.kind) == (name, kind)]
-            heading = f"{NAMES[name]}, {kind}s" if len(kinds) > 1 else NAMES[name]
+            heading = say("{heading}, {kind}", heading=NAMES[name], kind=f"{kind}s") if len(kinds) > 1 else NAMES[name]
             if any(point.value is not None for point in own):
                 sections.append(_section(own, heading, services, notes))
             elif own:

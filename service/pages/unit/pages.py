@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from estimator.message import say
 from service.flags.records import Flag
 from service.kit.failure_words import unit_failed
 from service.kit.names import day_of, heading
@@ -145,7 +146,9 @@ def _reference(report: UnitReport) -> str:
     if report.reference_session is None:
         return ""
     dates = {s.id: day_of(s.started_at) for s in report.sessions}
-    return dates.get(report.reference_session, f"session {report.reference_session[:8]}")
+    return dates.get(
+        report.reference_session, say("session {reference_session}", reference_session=report.reference_session[:8])
+    )
 
 
 def _section(
@@ -161,7 +164,9 @@ def _section(
     judged = [condition for condition in latest if condition is not NOT_JUDGED]
     return ParameterSection(
         anchor=tracks[0].name,
-        heading=f"{heading(parameter)}, {kind}s" if several else heading(parameter),
+        heading=say("{heading}, {kind}", heading=heading(parameter), kind=f"{kind}s")
+        if several
+        else heading(parameter),
         meaning=MEANINGS[parameter],
         together=TOGETHER.get(parameter, ""),
         unit=tracks[0].unit.label,

@@ -2,6 +2,7 @@
 
 from datetime import datetime
 
+from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.store import Fleet
 from service.pages.unit.records import UnitReport
@@ -18,7 +19,7 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
     """The unit's condition, type, latest sessions and known breaks."""
     known = Fleet(store).unit_known(serial, now)
     if known is None:
-        raise NotFoundError(f"There is no unit {serial!r}.")
+        raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
     said = SaidOf(store).unit(serial)
     return UnitReport(
         summary=known.summary,

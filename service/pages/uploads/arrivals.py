@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 from pydantic import BaseModel
 
+from estimator.message import say_count
 from service.jobs.records import Job
 from service.jobs.store import Jobs
 from service.kit.measures import size_in_words
@@ -105,7 +106,7 @@ def _row(arrival: Arrival) -> ArrivalRow:
     session, refusal = arrival.session, arrival.refusal
     if refusal is not None:
         count = len(refusal.problems)
-        said = f"{count} problem{'' if count == 1 else 's'}: nothing was stored"
+        said = say_count("{n} problem: nothing was stored", "{n} problems: nothing was stored", count)
         return ArrivalRow(arrival, refusal.filename, size_in_words(refusal.size), None, said)
     assert session is not None, "an arrival is one of the two"
     condition = said_with(condition_of(session.verdict, is_reference=session.is_reference), session.reservations)

@@ -5,6 +5,7 @@ due date and its open flags; in doubt it may not.
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 
+from estimator.message import joined, say
 from estimator.session import CALIBRATIONS
 from service.flags.records import Flag, Matter
 from service.flags.store import Flags
@@ -86,8 +87,8 @@ def _left_uncertain(store: Store, report: UnitReport, reference: StoredSession) 
     """That a reference tells too little to be used by itself."""
     found = tuple(left_uncertain(Calibrations(store).get(reference.id), tolerances_of(report.unit_type), COVERAGE))
     if found:
-        more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
-        yield words.on(words.TOO_COARSE, reference.started_at, what=f"{', '.join(found[:MOST_NAMED])}{more}")
+        more = say(" and {most_named} more", most_named=len(found) - MOST_NAMED) if len(found) > MOST_NAMED else ""
+        yield words.on(words.TOO_COARSE, reference.started_at, what=joined(", ", found[:MOST_NAMED]) + more)
 
 
 def _yes(report: UnitReport, session: StoredSession | None, at: datetime) -> str:
@@ -122,7 +123,7 @@ def _against(
     yield from (words.flagged(flag) for flag in flags if flag.matter in FORBIDDING)
     due = report.summary.due
     if due is not None and due < now:
-        yield words.OVERDUE.format(due=day_of(due), reason=report.summary.due_reason)
+        yield say(words.OVERDUE, due=day_of(due), reason=report.summary.due_reason)
     elif due is None and session is not None and (session.is_reference or session.verdict in FIT):
         yield _undated(report) if report.summary.is_undated or report.summary.failed else words.NO_DUE
 
@@ -152,7 +153,7 @@ def _reservations(store: Store, session: StoredSession | None, flags: tuple[Flag
     """What does not forbid the use, but must be known."""
     if session is not None:
         if session.verdict is Verdict.CONDITIONAL_PASS:
-            yield words.CLOSE.format(reason=session.reason)
+            yield say(words.CLOSE, reason=session.reason)
         chain = traceability_of(store, session)
         if chain.has_expired:
             yield chain.text

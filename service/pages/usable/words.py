@@ -2,6 +2,7 @@
 
 from datetime import datetime
 
+from estimator.message import capitalised, say
 from service.flags.records import Flag
 from service.kit.names import day_of
 from service.sessions.doubt import Reservation
@@ -32,14 +33,14 @@ NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minut
 
 def flagged(flag: Flag) -> str:
     """An open flag."""
-    return FLAGGED.format(id=flag.id, summary=flag.summary)
+    return say(FLAGGED, id=flag.id, summary=flag.summary)
 
 
 def reserved(one: Reservation) -> str:
     """What a verdict is said with, as a sentence of its own."""
-    return f"{one.text[0].upper()}{one.text[1:]}: {one.advice}."
+    return say("{text}: {advice}.", text=capitalised(one.text), advice=one.advice)
 
 
 def on(sentence: str, at: datetime, **more: str) -> str:
     """The sentence with its day."""
-    return sentence.format(day=day_of(at), **more)
+    return say(sentence, day=day_of(at), **more)

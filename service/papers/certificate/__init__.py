@@ -27,11 +27,17 @@ def certificate_pdf(
     found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED, language: Language = Language.ENGLISH
 ) -> bytes:
     """The certificate as PDF; it carries the date of issue, so that one issue gives the same bytes every time."""
-    return typeset("certificate.typ", drawn_certificate(found, issue, signed), issue.issued_at, language)
+    return typeset("certificate.typ", drawn_certificate(found, issue, signed, language), issue.issued_at, language)
 
 
-def drawn_certificate(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> DrawnCertificate:
-    """All that the typesetter is given."""
+def drawn_certificate(
+    found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED, language: Language = Language.ENGLISH
+) -> DrawnCertificate:
+    """All that the typesetter is given, its drawings in a language."""
     return DrawnCertificate(
-        certificate(found, issue), histories_of(found), residuals_of(found), lines_of(signed), signed.sealed_by
+        certificate(found, issue),
+        histories_of(found, language),
+        residuals_of(found, language),
+        lines_of(signed),
+        signed.sealed_by,
     )

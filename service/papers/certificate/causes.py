@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import joined, say
 from service.diagnosis.words.finding import FindingView, finding_view
 from service.papers.certified import CertifiedSession
 
@@ -27,9 +28,9 @@ def causes_of(found: CertifiedSession) -> tuple[Cause, ...]:
     return tuple(
         Cause(
             sentence=view.sentence,
-            amplitudes="; ".join(part for part in (*view.amplitudes, view.shape) if part),
+            amplitudes=joined("; ", (part for part in (*view.amplitudes, view.shape) if part)),
             evidence=view.evidence,
-            alternatives=", ".join(choice.name for choice in view.choices),
+            alternatives=joined(", ", (choice.name for choice in view.choices)),
             corrected=_corrected(view),
         )
         for view in views
@@ -38,5 +39,5 @@ def causes_of(found: CertifiedSession) -> tuple[Cause, ...]:
 
 def _corrected(view: FindingView) -> str:
     if view.accepted:
-        return f"Taken into account by model revision {max(view.accepted)}."
+        return say("Taken into account by model revision {accepted}.", accepted=max(view.accepted))
     return "Not taken into account by the numbers of this certificate." if view.acceptable else ""

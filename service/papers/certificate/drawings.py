@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 
+from estimator.message import say
 from service.kit.names import spaced
+from service.languages.language import Language
 from service.outlook.charts import history_charts
 from service.outlook.tracks import tracks_of
 from service.papers.certified import CertifiedSession
@@ -28,7 +30,7 @@ class Drawing:
     svg: str
 
 
-def histories_of(found: CertifiedSession) -> tuple[Drawing, ...]:
+def histories_of(found: CertifiedSession, language: Language) -> tuple[Drawing, ...]:
     """The parameters closest to their tolerance, through time."""
     closest = sorted(found.report.decisions, key=_rank)[:MOST_HISTORIES]
     wanted = [(d.parameter, d.sensor) for d in closest if d.margin is not None]
@@ -36,7 +38,12 @@ def histories_of(found: CertifiedSession) -> tuple[Drawing, ...]:
     for tracks in tracks_of(found.history, found.services):
         charts = history_charts(tracks, found.services)
         drawn |= {
-            (track.parameter, track.sensor): _drawing(charts, place, f"{track.sensor} {spaced(track.parameter)}")
+            (track.parameter, track.sensor): _drawing(
+                charts,
+                place,
+                say("{sensor} {parameter}", sensor=track.sensor, parameter=spaced(track.parameter)),
+                language,
+            )
             for place, track in enumerate(tracks)
             if (track.parameter, track.sensor) in wanted and len(track.points) > 1
         }
@@ -48,15 +55,17 @@ def _rank(decision: Decision) -> float:
     return float("inf") if margin is None else margin
 
 
-def residuals_of(found: CertifiedSession) -> tuple[Drawing, ...]:
+def residuals_of(found: CertifiedSession, language: Language) -> tuple[Drawing, ...]:
     """By the angle of the head where there was a stand, else in the order measured."""
     sets = residual_charts(found.report.calibration)
     across = {charts.name.rpartition("-")[2] for charts in sets}
     wanted = "beta" if "beta" in across else "order"
     shown = [(charts, place) for charts in sets if charts.name.endswith(wanted) for place in range(len(charts.panels))]
-    return tuple(_drawing(charts, place, charts.panels[place].title) for charts, place in shown[:MOST_RESIDUALS])
+    return tuple(
+        _drawing(charts, place, charts.panels[place].title, language) for charts, place in shown[:MOST_RESIDUALS]
+    )
 
 
-def _drawing(charts: ChartSet, place: int, title: str) -> Drawing:
+def _drawing(charts: ChartSet, place: int, title: str, language: Language) -> Drawing:
     panel = charts.panels[place]
-    return Drawing(title, panel.description, picture(charts, panel, WIDTH))
+    return Drawing(title, panel.description, picture(charts, panel, WIDTH, language))

@@ -3,10 +3,12 @@
 from math import degrees
 
 from estimator.applied_vector import gravity
+from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
+from estimator.wording import counted
 from service.diagnosis.words.causes import cause_on
 from service.kit.measures import THIN, number, size_in_words
-from service.kit.names import day_of, method_name, spaced
+from service.kit.names import day_of, method_name, minute_of, spaced
 from service.papers.certificate.fact import Fact
 from service.papers.certified import CertifiedSession
 from service.papers.words import stated
@@ -31,7 +33,14 @@ def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
         Fact("Unit type", found.unit_type.name, is_written=True),
         Fact("Sensors", _sensors(source)),
         Fact("Programme", spaced(session.programme)),
-        Fact("Method", f"{method_name(found.report.calibration.method)}, version {found.software}"),
+        Fact(
+            "Method",
+            say(
+                "{method}, version {software}",
+                method=method_name(found.report.calibration.method),
+                software=found.software,
+            ),
+        ),
         Fact("Measured", _measured(found)),
         Fact("Operator", stated(session.operator), is_written=bool(session.operator)),
         Fact("Stand", _stand(source), is_written=source.stand is not None),
@@ -46,12 +55,12 @@ def _measured(found: CertifiedSession) -> str:
     if found.source.started_at is None:
         return "day not stated; see the upload under Record"
     at = found.report.session.started_at
-    return f"{day_of(at)}, {at:%H:%M} UTC"
+    return minute_of(at)
 
 
 def _sensors(source: CalibrationSession) -> str:
     kinds = [s.kind for s in source.sensors]
-    return ", ".join(f"{kinds.count(k)} {k}{'s' if kinds.count(k) > 1 else ''}" for k in dict.fromkeys(kinds))
+    return joined(", ", (counted(kinds.count(k), k) for k in dict.fromkeys(kinds)))
 
 
 def _stand(source: CalibrationSession) -> str:
@@ -59,48 +68,67 @@ def _stand(source: CalibrationSession) -> str:
         return "none"
     angles = (("α", source.stand.alpha), ("χ", source.stand.chi))
     set_to = (f"{name} = {number(degrees(angle))}°" for name, angle in angles if angle is not None)
-    return ", ".join([source.stand.id, *set_to])
+    return joined(", ", [source.stand.id, *set_to])
 
 
 def _site(source: CalibrationSession) -> str:
-    site, parts = source.site, []
+    site, parts = source.site, list[str]()
     if site.latitude is not None:
-        parts.append(f"latitude {number(degrees(site.latitude), 4)}°, height {number(site.height)}{THIN}m")
+        parts.append(
+            say(
+                "latitude {latitude}°, height {height}{thin}m",
+                latitude=number(degrees(site.latitude), 4),
+                height=number(site.height),
+                thin=THIN,
+            )
+        )
     if any(s.kind == ACCELEROMETER for s in source.sensors):
         origin = "measured" if site.gravity is not None else "by formula"
-        parts.append(f"g = {number(gravity(site), 6)}{THIN}m/s² ({origin})")
-    return ", ".join(parts) or stated("")
+        parts.append(say("g = {size}{thin}m/s² ({origin})", size=number(gravity(site), 6), thin=THIN, origin=origin))
+    return joined(", ", parts) or stated("")
 
 
 def _temperature(source: CalibrationSession) -> str:
     if source.temperature is None:
         return "not recorded"
     low, high = float(source.temperature.min()), float(source.temperature.max())
-    return f"{number(low, 1)} to {number(high, 1)}{THIN}°C" if high - low > STEADY else f"{number(low, 1)}{THIN}°C"
+    return (
+        say("{low} to {high}{thin}°C", low=number(low, 1), high=number(high, 1), thin=THIN)
+        if high - low > STEADY
+        else f"{number(low, 1)}{THIN}°C"
+    )
 
 
 def _judged_against(found: CertifiedSession) -> str:
     if found.reference is not None:
         other = found.reference.session
-        return f"session {other.id[:12]} of {day_of(other.started_at)}"
+        return say("session {id} of {started_at}", id=other.id[:12], started_at=day_of(other.started_at))
     return "nothing: it is the reference of later sessions" if found.report.session.is_reference else "no reference"
 
 
 def _state(found: CertifiedSession) -> str:
     """As found or as left, and what was last done to the unit."""
-    last = f"last service: {found.services[-1].kind}, {day_of(found.services[-1].at)}" if found.services else ""
+    last = (
+        say("last service: {kind}, {at}", kind=found.services[-1].kind, at=day_of(found.services[-1].at))
+        if found.services
+        else ""
+    )
     known = [part for part in (spaced(found.report.session.stage or ""), last) if part]
-    return ", ".join(known) or "no service recorded"
+    return joined(", ", known) or "no service recorded"
 
 
 def record_of(found: CertifiedSession) -> tuple[Fact, ...]:
     """Input, method, model, software."""
     session = found.report.session
     causes = (cause_on(r.cause, r.sensors) for r in found.revisions)
-    model = f"revision {session.revision}: baseline with {', '.join(causes)}" if session.revision else "baseline (0)"
+    model = (
+        say("revision {revision}: baseline with {causes}", revision=session.revision, causes=joined(", ", causes))
+        if session.revision
+        else "baseline (0)"
+    )
     return (
-        Fact("Input file", f"{session.filename}, {size_in_words(session.size)}"),
-        Fact("Uploaded", f"{day_of(session.uploaded_at)}, {session.uploaded_at:%H:%M} UTC"),
+        Fact("Input file", say("{filename}, {size}", filename=session.filename, size=size_in_words(session.size))),
+        Fact("Uploaded", minute_of(session.uploaded_at)),
         Fact("Model revision", model),
         Fact("Session", session.id),
         Fact("Software", f"imu-health {found.software}"),

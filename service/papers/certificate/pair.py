@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import say
 from service.kit.names import day_of
 from service.papers.found_and_left import FoundAndLeft
 from service.papers.moved import Moved, moved
@@ -27,4 +28,7 @@ class Pair:
 def pair_of(pair: FoundAndLeft) -> Pair:
     """What was judged of both sessions, in people's units."""
     rows = (PairRow(moved(before), None if after is None else moved(after)) for before, after in pair.decisions)
-    return Pair(f"session {pair.found.id[:12]} of {day_of(pair.found.started_at)}", tuple(rows))
+    return Pair(
+        say("session {id} of {started_at}", id=pair.found.id[:12], started_at=day_of(pair.found.started_at)),
+        tuple(rows),
+    )

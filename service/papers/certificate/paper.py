@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import joined, say
 from service.kit.names import day_of
 from service.papers.certificate.fact import Fact
 from service.papers.certified import CertifiedSession
@@ -53,7 +54,7 @@ def paper_of(found: CertifiedSession, issue: Issue) -> Paper:
 def _party(name: str, *parts: str) -> Fact:
     if not any(parts):
         return Fact(name, stated(""))
-    return Fact(name, ", ".join(stated(part) for part in parts), is_written=True)
+    return Fact(name, joined(", ", (stated(part) for part in parts)), is_written=True)
 
 
 def _statements(found: CertifiedSession) -> tuple[Fact, ...]:
@@ -74,7 +75,11 @@ def _whole_chain(found: CertifiedSession) -> str:
     """With that of the reference, which every deviation hangs on too."""
     if found.reference is None:
         return found.traceability.text
-    return f"{found.traceability.text} Of the reference session: {found.reference.traceability.text}"
+    return say(
+        "{text} Of the reference session: {text2}",
+        text=found.traceability.text,
+        text2=found.reference.traceability.text,
+    )
 
 
 def _departures(found: CertifiedSession) -> str:

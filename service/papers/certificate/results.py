@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from estimator.message import joined, say
 from estimator.results import SensorCalibration
 from service.kit.measures import deviation_measure, limit, value_measure
 from service.kit.names import heading as heading_of
@@ -49,7 +50,12 @@ def result_tables(found: CertifiedSession, k: float) -> tuple[ResultTable, ...]:
     )
     return tuple(
         _table(
-            f"{heading_of(parameter)}, {kind}s" if len(kinds) > 1 else heading_of(parameter), parameter, own, results
+            say("{heading}, {kind}", heading=heading_of(parameter), kind=f"{kind}s")
+            if len(kinds) > 1
+            else heading_of(parameter),
+            parameter,
+            own,
+            results,
         )
         for parameter, kind, own in groups
         if own
@@ -77,7 +83,7 @@ def _table(heading: str, parameter: str, sensors: list[SensorCalibration], resul
         heading=heading,
         value_measure="" if parameter == "axis" else _with_reading_unit(column.value.label, sensors, results),
         deviation_measure=column.deviation.label,
-        tolerance=" or ".join(limits),
+        tolerance=joined(" or ", limits),
         rows=tuple(rows),
     )
 
@@ -88,7 +94,7 @@ def _with_reading_unit(label: str, sensors: list[SensorCalibration], results: _R
     if not label.startswith("per ") or len(units) != 1:
         return label
     rate = "/s" if results.counts and "°" in label else ""
-    return f"{units.pop()}{rate} {label}"
+    return say("{units}{rate} {label}", units=units.pop(), rate=rate, label=label)
 
 
 def _column(parameter: str, sensors: list[SensorCalibration], decisions: list[Decision], k: float) -> ResultColumn:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import say
 from service.papers.records import Meaning, Signature
 from service.papers.words import BOUND, STATES, done_by, moment_of
 
@@ -48,5 +49,5 @@ def _line(signature: Signature) -> SignatureLine:
         who=f"{signature.name} ({signature.login})",
         at=moment_of(signature.signed_at),
         states=STATES[signature.meaning],
-        bound=BOUND.format(hash=signature.content_hash),
+        bound=say(BOUND, hash=signature.content_hash),
     )

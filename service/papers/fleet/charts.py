@@ -6,6 +6,7 @@ from typing import Any
 
 import altair as alt
 
+from estimator.message import say
 from estimator.wording import counted
 from service.fleet.records import LAST, NOT_JUDGED, STEP, Tally
 from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
@@ -13,7 +14,7 @@ from service.sessions.words.conditions import CONDITIONS, Condition, condition_o
 
 HEIGHT = 120
 """Pixels: the whole fleet in one low strip above its table."""
-TITLE = f"tolerance used by the worst parameter, U included, %; the last bar holds all from {LAST} on"
+TITLE = say("tolerance used by the worst parameter, U included, %; the last bar holds all from {last} on", last=LAST)
 TICKS = list(range(0, LAST + 1, 2 * STEP))
 """Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
 
@@ -27,7 +28,7 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
             key = (tally.bar * STEP, condition)
             counts[key] = counts.get(key, 0) + tally.units
     rows = _stacked(counts)
-    text = f"{counted(sum(counts.values()), 'unit')} by tolerance used"
+    text = say("{counts} by tolerance used", counts=counted(sum(counts.values()), "unit"))
     return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, None, {DATA_FORM: rows}),))
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
+from estimator.message import joined, say
 from estimator.wording import counted
 from service.fleet.condition import FleetCondition, UnitSummary
 from service.fleet.records import NOT_JUDGED, FleetQuery, Tally
@@ -76,21 +77,22 @@ def line_of(unit: UnitSummary) -> Line:
         unit_type=unit.unit_type,
         condition=condition_of(unit.verdict, is_reference=unit.is_reference),
         but=but(unit.reservations),
-        worst=f"{unit.worst_sensor or ''} {unit.worst_parameter or ''}".strip(),
+        worst=joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter))),
         used="" if unit.margin is None else f"{number(100 * (1 - unit.margin), 0)} %",
         last="" if unit.last_at is None else day_of(unit.last_at),
         simulated=unit.simulated,
     )
 
 
-def sections_of(store: Store, units: Sequence[UnitSummary]) -> tuple[Section, ...]:
+def sections_of(store: Store, units: Sequence[UnitSummary], language: Language) -> tuple[Section, ...]:
     """Sections of units, with three queries for all of them."""
     serials = tuple(unit.serial for unit in units)
     decisions = _grouped((serial, decision) for serial, _, decision in FleetRows(store).latest_decisions(serials))
     points = _grouped(FleetRows(store).worst_histories(serials))
     services = FleetRows(store).services(serials)
     return tuple(
-        _section(unit, decisions.get(unit.serial, []), points.get(unit.serial, []), services) for unit in units
+        _section(unit, decisions.get(unit.serial, []), points.get(unit.serial, []), services, language)
+        for unit in units
     )
 
 
@@ -102,10 +104,14 @@ def _grouped(rows: Iterable[tuple[str, T]]) -> dict[str, list[T]]:
 
 
 def _section(
-    unit: UnitSummary, decisions: list[Decision], points: list[HistoryPoint], services: tuple[Service, ...]
+    unit: UnitSummary,
+    decisions: list[Decision],
+    points: list[HistoryPoint],
+    services: tuple[Service, ...],
+    language: Language,
 ) -> Section:
     line, wrong = line_of(unit), _worst_first(decisions)
-    history = _history(points, tuple(service for service in services if service.unit == unit.serial))
+    history = _history(points, tuple(service for service in services if service.unit == unit.serial), language)
     return Section(
         line=line,
         reason=unit.reason,
@@ -122,12 +128,12 @@ def _worst_first(decisions: list[Decision]) -> list[Decision]:
     return sorted(wrong, key=lambda d: (-d.verdict.severity, d.margin or 0.0))
 
 
-def _history(points: list[HistoryPoint], services: tuple[Service, ...]) -> str:
+def _history(points: list[HistoryPoint], services: tuple[Service, ...], language: Language) -> str:
     tracks = tracks_of(points, services)
     if not tracks or len(points) < 2:
         return ""
     charts = history_charts(tracks[0], services)
-    return picture(charts, charts.panels[0], SECTION_WIDTH)
+    return picture(charts, charts.panels[0], SECTION_WIDTH, language)
 
 
 MOST_RANKED = 100
@@ -183,10 +189,10 @@ class FleetPaper:
 
 def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.ENGLISH) -> bytes:
     """The report as PDF: two pages and a section for each unit that is not fit, of the worst ones if they are many."""
-    return typeset("fleet.typ", fleet_paper(store, report), report.at, language)
+    return typeset("fleet.typ", fleet_paper(store, report, language), report.at, language)
 
 
-def fleet_paper(store: Store, report: FleetReport) -> FleetPaper:
+def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetPaper:
     """What the paper says."""
     judged = [t for t in report.tallies if t.bar != NOT_JUDGED and _condition(t) is not REFERENCE]
     overdue = [one for one in Outlooks(store).due(MOST_NOTICES) if one.at < report.at]
@@ -196,12 +202,12 @@ def fleet_paper(store: Store, report: FleetReport) -> FleetPaper:
         total=report.condition.units,
         simulated=report.condition.simulated,
         counts=_counts(report.condition),
-        chart=picture(chart, chart.panels[0], WIDTH) if judged else "",
+        chart=picture(chart, chart.panels[0], WIDTH, language) if judged else "",
         overdue=tuple(Notice(one.unit, _since(one, report)) for one in overdue),
         more_overdue=report.overdue - len(overdue),
         standing_out=_standing_out(store),
         ranked=tuple(line_of(unit) for unit in Fleet(store).units(FleetQuery(limit=MOST_RANKED))),
-        sections=sections_of(store, Fleet(store).units(FleetQuery(unfit=True, limit=MOST_SECTIONS))),
+        sections=sections_of(store, Fleet(store).units(FleetQuery(unfit=True, limit=MOST_SECTIONS)), language),
         not_fit=sum(tally.units for tally in report.tallies if _is_not_fit(tally)),
         software=report.software,
     )
@@ -216,7 +222,7 @@ def _counts(fleet: FleetCondition) -> tuple[Count, ...]:
 def _since(one: DueDate, report: FleetReport) -> str:
     """``since 3 Mar 2026 (263 days)``."""
     due = one.at
-    return f"since {day_of(due)} ({counted((report.at - due).days, 'day')})"
+    return say("since {due} ({days})", due=day_of(due), days=counted((report.at - due).days, "day"))
 
 
 def _standing_out(store: Store) -> tuple[Notice, ...]:
@@ -232,7 +238,12 @@ def _drift(one: Placed, own: Population) -> str:
     rate, sigma = one.value * one.tolerance, one.sigma * one.tolerance
     unit = deviation_measure(own.kind, own.parameter, abs(rate))
     write = measured if own.parameter == "axis" else signed
-    return f"{one.sensor} {own.parameter} drifts {write(rate, COVERAGE * sigma, unit)} a year"
+    return say(
+        "{sensor} {parameter} drifts {rate} a year",
+        sensor=one.sensor,
+        parameter=own.parameter,
+        rate=write(rate, COVERAGE * sigma, unit),
+    )
 
 
 def _condition(tally: Tally) -> Condition:

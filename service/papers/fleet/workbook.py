@@ -4,6 +4,7 @@ import io
 from collections.abc import Iterator
 from datetime import datetime
 
+from estimator.message import say
 from service.fleet.condition import UnitSummary
 from service.fleet.records import FleetQuery
 from service.fleet.rows_store import FleetRows
@@ -115,14 +116,28 @@ def _units(kind: str, parameter: str) -> tuple[Measure, Measure]:
 
 
 def _about(report: FleetReport, sessions: int, only: int | None) -> Iterator[tuple[Cell, ...]]:
-    yield "Made", f"{report.at:%Y-%m-%d %H:%M} UTC by imu-health {report.software}"
-    yield "Units", f"{report.condition.units}, of them {report.condition.simulated} simulated"
+    yield "Made", say("{at} UTC by imu-health {software}", at=f"{report.at:%Y-%m-%d %H:%M}", software=report.software)
+    yield (
+        "Units",
+        say(
+            "{units}, of them {simulated} simulated", units=report.condition.units, simulated=report.condition.simulated
+        ),
+    )
     if only is None:
         yield "Sheet Parameters", "The latest session of every unit: each parameter against its reference."
-        yield "Sheet Histories", f"The newest sessions of every unit, at most {sessions} of each."
+        yield (
+            "Sheet Histories",
+            say("The newest sessions of every unit, at most {sessions} of each.", sessions=sessions),
+        )
     else:
-        yield "Sheet Parameters", f"The latest session of each of the {only} units at the top of the sheet Fleet."
-        yield "Sheet Histories", f"The newest sessions of these {only} units, at most {sessions} of each."
+        yield (
+            "Sheet Parameters",
+            say("The latest session of each of the {only} units at the top of the sheet Fleet.", only=only),
+        )
+        yield (
+            "Sheet Histories",
+            say("The newest sessions of these {only} units, at most {sessions} of each.", only=only, sessions=sessions),
+        )
     yield "U", "Expanded uncertainty, k times the standard one."
     yield "Deviation", "From the unit's reference session, without what all sensors did together."
     yield "Tolerance used, with U", "(|deviation| + U) / tolerance of the parameter closest to its tolerance."

@@ -9,6 +9,7 @@ from cryptography.hazmat.primitives.asymmetric.ec import EllipticCurvePrivateKey
 from cryptography.hazmat.primitives.asymmetric.rsa import RSAPrivateKey
 from cryptography.hazmat.primitives.serialization import Encoding, PublicFormat, load_pem_private_key, pkcs12
 
+from estimator.message import say
 from service.errors import ConflictError, ServiceError
 
 PEM = b"-----BEGIN "
@@ -40,10 +41,10 @@ def read_key(file: Path, password_file: Path | None) -> KeyPair:
         password = None if password_file is None else password_file.read_bytes().rstrip(b"\r\n")
         pair = _from_pem(content, password) if PEM in content else _from_pkcs12(content, password)
     except (OSError, ValueError, TypeError) as fault:
-        raise ServiceError(UNREADABLE.format(file=file, fault=fault)) from fault
+        raise ServiceError(say(UNREADABLE, file=file, fault=fault)) from fault
     fault_found = _fault_of(pair)
     if fault_found:
-        raise ServiceError(UNREADABLE.format(file=file, fault=fault_found))
+        raise ServiceError(say(UNREADABLE, file=file, fault=fault_found))
     return pair
 
 
@@ -52,8 +53,12 @@ def require_valid(pair: KeyPair, now: datetime) -> None:
     since, until = pair.certificate.not_valid_before_utc, pair.certificate.not_valid_after_utc
     if not since <= now <= until:
         raise ConflictError(
-            f"The certificate of the laboratory's seal holds from {since:%Y-%m-%d} to {until:%Y-%m-%d}: whoever runs "
-            "the service must set a valid one. Nothing was signed."
+            say(
+                "The certificate of the laboratory's seal holds from {since} to {until}: whoever runs "
+                "the service must set a valid one. Nothing was signed.",
+                since=f"{since:%Y-%m-%d}",
+                until=f"{until:%Y-%m-%d}",
+            )
         )
 
 
@@ -84,5 +89,5 @@ def _fault_of(pair: KeyPair) -> str:
         return "its certificate, which must be the first one, is of another key"
     fewest = FEWEST_RSA_BITS if isinstance(pair.key, RSAPrivateKey) else FEWEST_CURVE_BITS
     if pair.key.key_size < fewest:
-        return f"it has {pair.key.key_size} bits; {fewest} are needed"
+        return say("it has {key_size} bits; {fewest} are needed", key_size=pair.key.key_size, fewest=fewest)
     return ""

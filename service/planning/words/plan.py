@@ -1,6 +1,7 @@
 """A plan in words: verdicts, what it would find and cannot see, time."""
 
 from estimator.causes import CATALOGUE
+from estimator.message import joined, say
 from estimator.planning import Judged, Plan
 from estimator.results import PARAMETERS
 from estimator.session import GYROSCOPE
@@ -38,9 +39,16 @@ def unobserved(plan: Plan) -> str:
         if missing:
             sensors.setdefault(missing, []).append(name)
     everyone = tuple(s.name for s in plan.schedule.sensors)
-    return "; ".join(
-        f"{' and '.join(parameters)} of {'every sensor' if missing == everyone else ', '.join(missing)}"
-        for missing, parameters in sensors.items()
+    return joined(
+        "; ",
+        (
+            say(
+                "{parameters} of {missing}",
+                parameters=joined(" and ", parameters),
+                missing="every sensor" if missing == everyone else joined(", ", missing),
+            )
+            for missing, parameters in sensors.items()
+        ),
     )
 
 
@@ -49,7 +57,7 @@ def sigma_in_words(judged: Judged, coverage: float) -> str:
     if judged.sigma is None:
         return UNSEEN
     measure = MEASURES[judged.kind, judged.parameter]
-    return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
 def tolerance_in_words(judged: Judged) -> str:
@@ -57,23 +65,37 @@ def tolerance_in_words(judged: Judged) -> str:
     if judged.tolerance is None:
         return ""
     measure = MEASURES[judged.kind, judged.parameter]
-    return f"of {number(in_measure(judged.tolerance, measure))}{THIN}{measure.label}"
+    return say(
+        "of {tolerance}{thin}{label}",
+        tolerance=number(in_measure(judged.tolerance, measure)),
+        thin=THIN,
+        label=measure.label,
+    )
 
 
 def duration(seconds: float) -> str:
     """``1 h 36 min``."""
     minutes = round(seconds / 60)
     hours, rest = divmod(minutes, 60)
-    return f"{hours} h {rest} min" if hours else f"{rest} min"
+    return say("{hours} h {rest} min", hours=hours, rest=rest) if hours else say("{rest} min", rest=rest)
 
 
 def headline(plan: Plan) -> str:
     """What the plan comes to, in a sentence."""
-    size = f"{plan.positions} positions in {'both runs' if len(plan.request.runs) == 2 else 'one run'}"
+    size = (
+        say("{positions} positions in both runs", positions=plan.positions)
+        if len(plan.request.runs) == 2
+        else say("{positions} positions in one run", positions=plan.positions)
+    )
     if plan.reached is None:
-        return f"{size}, {duration(plan.seconds)}: no tolerance was given to judge by."
+        return say("{size}, {seconds}: no tolerance was given to judge by.", size=size, seconds=duration(plan.seconds))
     if plan.reached:
-        return f"{size}, {duration(plan.seconds)}, reach every tolerance."
+        return say("{size}, {seconds}, reach every tolerance.", size=size, seconds=duration(plan.seconds))
     short = [j for j in plan.judged if j.verdict in ("usable", "undecidable")]
-    names = ", ".join(dict.fromkeys(j.parameter for j in short))
-    return f"{size}, {duration(plan.seconds)}, do not reach the tolerance of {names}."
+    names = joined(", ", dict.fromkeys(j.parameter for j in short))
+    return say(
+        "{size}, {seconds}, do not reach the tolerance of {names}.",
+        size=size,
+        seconds=duration(plan.seconds),
+        names=names,
+    )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from estimator.message import joined, say
 from estimator.readiness import Disturbance, Outlook, Readiness, State
 from estimator.readiness.faults import Fault, FaultKind
 from estimator.readiness.results import Kind
@@ -19,13 +20,13 @@ def headline(found: Readiness) -> str:
         case State.READY:
             return "Ready"
         case State.NOT_WARM if found.wait is not None:
-            return f"Wait about {minutes(found.wait[1])} minutes"
+            return say("Wait about {wait} minutes", wait=minutes(found.wait[1]))
         case State.NOT_WARM:
             return "Not warm: waiting alone will not do"
         case State.NOT_STILL:
-            return f"Not still: {_short(found)}"
+            return say("Not still: {found}", found=_short(found))
         case State.TOO_EARLY if found.needed is not None:
-            return f"Too early to tell: record about {minutes(found.needed)} minutes more"
+            return say("Too early to tell: record about {needed} minutes more", needed=minutes(found.needed))
         case State.TOO_EARLY:
             return "Not to be told: the sensors wander"
     return "Nothing can be told from this record"
@@ -48,7 +49,7 @@ def minutes(seconds: float) -> str:
 def amount(kind: str, value: float) -> str:
     """``12 µg``: of drift."""
     measure = deviation_measure(kind, "bias", abs(value))
-    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}{measure.label}"
+    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
 def clock(seconds: float) -> str:
@@ -60,21 +61,39 @@ def clock(seconds: float) -> str:
 def named(sensors: tuple[str, ...]) -> str:
     """``A1, A2, A3 and 3 more``."""
     rest = len(sensors) - FEW
-    return ", ".join(sensors[:FEW]) + (f" and {rest} more" if rest > 0 else "")
+    return joined(", ", sensors[:FEW]) + (say(" and {rest} more", rest=rest) if rest > 0 else "")
 
 
 def _of_drift(found: Readiness, worst: Outlook) -> list[str]:
     length = minutes(found.duration)
     bound, allowed = amount(worst.kind, worst.bound), amount(worst.kind, worst.allowed)
-    by = f"a quarter of the tolerance of its {'scale factor' if worst.limit == 'scale' else 'bias'}"
+    by = (
+        "a quarter of the tolerance of its scale factor"
+        if worst.limit == "scale"
+        else "a quarter of the tolerance of its bias"
+    )
     if found.state is State.READY:
         return [
-            f"No sensor will drift by more than it may in the {length} minutes of the programme: the most is {bound} "
-            f"of {worst.name}, with 95 % probability; allowed are {allowed}, {by}."
+            say(
+                "No sensor will drift by more than it may in the {length} minutes of the programme: the "
+                "most is {bound} of {name}, with 95 % probability; allowed are {allowed}, {by}.",
+                length=length,
+                bound=bound,
+                name=worst.name,
+                allowed=allowed,
+                by=by,
+            )
         ]
-    said = [
-        f"{worst.name} may still drift by {bound} in the {length} minutes of the programme (95 %); allowed are "
-        f"{allowed}, {by}."
+    said: list[str] = [
+        say(
+            "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
+            "allowed are {allowed}, {by}.",
+            name=worst.name,
+            bound=bound,
+            length=length,
+            allowed=allowed,
+            by=by,
+        )
     ]
     if found.state is State.NOT_WARM:
         return [*said, *_of_waiting(found)]
@@ -90,22 +109,36 @@ def _of_waiting(found: Readiness) -> list[str]:
             "draught, the sun or a loose fixture, or plan a shorter programme."
         ]
     low, middle, high = found.wait
-    until = f"up to {minutes(high)} minutes" if high < float("inf") else "how long at most cannot be told yet"
+    until = (
+        say("up to {high} minutes", high=minutes(high))
+        if high < float("inf")
+        else "how long at most cannot be told yet"
+    )
     return [
-        f"It settles: wait about {minutes(middle)} minutes more (at least {minutes(low)}, {until}), and ask again with "
-        "a new record."
+        say(
+            "It settles: wait about {middle} minutes more (at least {low}, {until}), and ask again with a new record.",
+            middle=minutes(middle),
+            low=minutes(low),
+            until=until,
+        )
     ]
 
 
 def _of_telling(found: Readiness, worst: Outlook) -> list[str]:
     if found.needed is not None:
         return [
-            "The record is too short to tell: leave the unit as it is and record about "
-            f"{minutes(found.needed)} minutes more."
+            say(
+                "The record is too short to tell: leave the unit as it is and record about {needed} minutes more.",
+                needed=minutes(found.needed),
+            )
         ]
     return [
-        f"No length of record would tell: {worst.name} wanders by {amount(worst.kind, worst.wander)} in the time of "
-        "the programme by itself. Plan a shorter programme, or have the sensor looked at."
+        say(
+            "No length of record would tell: {name} wanders by {kind} in the time of the programme "
+            "by itself. Plan a shorter programme, or have the sensor looked at.",
+            name=worst.name,
+            kind=amount(worst.kind, worst.wander),
+        )
     ]
 
 
@@ -115,10 +148,10 @@ def _short(found: Readiness) -> str:
 
 
 SHORT: dict[Kind, Callable[[Disturbance], str]] = {
-    Kind.STEP: lambda one: f"somebody touched it at {clock(one.start)}",
-    Kind.BURST: lambda one: f"it shook at {clock(one.start)}",
+    Kind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
+    Kind.BURST: lambda one: say("it shook at {start}", start=clock(one.start)),
     Kind.SHAKING: lambda one: "it shakes all the time",
-    Kind.CLIPPED: lambda one: f"{named(one.sensors)} at the end of the range",
+    Kind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
     Kind.CREEP: lambda one: "the fixture creeps",
 }
 """What disturbs, in a few words."""
@@ -130,26 +163,44 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
     after = "; what came after it is judged alone." if one.passed else ". Leave it alone and record anew."
     match one.kind:
         case Kind.STEP:
-            return (
-                f"{who} changed by {size} between {clock(one.start)} and {clock(one.stop)}: somebody touched it{after}"
+            return say(
+                "{who} changed by {size} between {start} and {stop}: somebody touched it{after}",
+                who=who,
+                size=size,
+                start=clock(one.start),
+                stop=clock(one.stop),
+                after=after,
             )
         case Kind.BURST:
-            return f"{who} shook by {size} rms from {clock(one.start)} to {clock(one.stop)}{after}"
+            return say(
+                "{who} shook by {size} rms from {start} to {stop}{after}",
+                who=who,
+                size=size,
+                start=clock(one.start),
+                stop=clock(one.stop),
+                after=after,
+            )
         case Kind.SHAKING:
-            return (
-                f"{who} shake by {size} rms all the time: a quadratic term within its tolerance would turn that into "
-                "more than the drift allowed. Find what vibrates, or decouple the stand from it."
+            return say(
+                "{who} shake by {size} rms all the time: a quadratic term within its tolerance would "
+                "turn that into more than the drift allowed. Find what vibrates, or decouple the stand "
+                "from it.",
+                who=who,
+                size=size,
             )
         case Kind.CLIPPED:
             share = number(float(f"{100 * one.size:.2g}"))
-            return (
-                f"{who} stands at the end of its range for {share} % of the samples: set a larger range, or stop what "
-                "vibrates."
+            return say(
+                "{who} stands at the end of its range for {share} % of the samples: set a larger range, "
+                "or stop what vibrates.",
+                who=who,
+                share=share,
             )
     turn = number(float(f"{one.size * ARCSEC.factor:.2g}"))
-    return (
-        f"All accelerometers drift as if the block turned, by {turn} arcsec over the programme: the fixture creeps. "
-        "Tighten the mounting, let the stand's locks settle, and record anew."
+    return say(
+        "All accelerometers drift as if the block turned, by {turn} arcsec over the programme: "
+        "the fixture creeps. Tighten the mounting, let the stand's locks settle, and record anew.",
+        turn=turn,
     )
 
 
@@ -160,41 +211,51 @@ def fault_in_words(fault: Fault) -> str:
         case FaultKind.NO_TIME:
             return "The rows have no times: add time_s, or sample_rate_hz for a raw log."
         case FaultKind.CLOCK_BACK:
-            return (
-                f"The clock goes back at row {fault.amount:.0f}: it was restarted. Record anew, or cut the file there."
+            return say(
+                "The clock goes back at row {amount}: it was restarted. Record anew, or cut the file there.",
+                amount=f"{fault.amount:.0f}",
             )
         case FaultKind.CLOCK_STANDS:
             return "The clock stands still over most rows: check time_s."
         case FaultKind.NOT_FINITE:
-            return f"Row {fault.amount:.0f} holds a reading that is no number: take the row out."
+            return say(
+                "Row {amount} holds a reading that is no number: take the row out.", amount=f"{fault.amount:.0f}"
+            )
         case FaultKind.FEW:
-            return (
-                f"{fault.amount:.0f} readings are too few to tell drift from noise: record at least twelve in one "
-                "position."
+            return say(
+                "{amount} readings are too few to tell drift from noise: record at least twelve in one position.",
+                amount=f"{fault.amount:.0f}",
             )
         case FaultKind.POSITIONS:
-            return (
-                f"The rows stand in {fault.amount:.0f} positions: leave the block in one, and read it again and again."
+            return say(
+                "The rows stand in {amount} positions: leave the block in one, and read it again and again.",
+                amount=f"{fault.amount:.0f}",
             )
         case FaultKind.STUCK:
-            return (
-                f"One and the same reading throughout: {who}. That is a dead channel and no rest; check power and "
-                "cables."
+            return say(
+                "One and the same reading throughout: {who}. That is a dead channel and no rest; check "
+                "power and cables.",
+                who=who,
             )
         case FaultKind.COARSE:
-            return (
-                f"One step of the readings is larger than the drift allowed: {who}. Average more samples, with more "
-                "digits."
+            return say(
+                "One step of the readings is larger than the drift allowed: {who}. Average more samples, "
+                "with more digits.",
+                who=who,
             )
         case FaultKind.UNITS:
-            return (
-                f"At rest the accelerometers should show 1 g and show {number(float(f'{fault.amount:.3g}'))} g: check "
-                "nominal_scale, nominal_offset and reading_unit."
+            return say(
+                "At rest the accelerometers should show 1 g and show {amount} g: check nominal_scale, "
+                "nominal_offset and reading_unit.",
+                amount=number(float(f"{fault.amount:.3g}")),
             )
         case FaultKind.TURNING:
-            return f"The block turns, or the units are wrong: {who}. Let it rest, or check nominal_scale."
+            return say("The block turns, or the units are wrong: {who}. Let it rest, or check nominal_scale.", who=who)
         case FaultKind.NOT_JUDGED:
             return "No tolerance says how far these sensors may drift: give one."
         case FaultKind.GAP:
-            return f"There is a gap of {minutes(fault.amount)} minutes in the record; it is judged all the same."
-    return f"{who} is alone: a fixture that creeps cannot be told from a drift of its own."
+            return say(
+                "There is a gap of {amount} minutes in the record; it is judged all the same.",
+                amount=minutes(fault.amount),
+            )
+    return say("{who} is alone: a fixture that creeps cannot be told from a drift of its own.", who=who)

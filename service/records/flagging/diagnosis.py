@@ -5,6 +5,7 @@ from datetime import datetime
 
 from estimator.causes import cause
 from estimator.diagnosis import Finding
+from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.diagnosis.records import Diagnosed, StoredDiagnosis
 from service.diagnosis.words.causes import UNKNOWN_CAUSE, what_is_wrong
@@ -43,7 +44,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
 
 def _clear(session: StoredSession) -> Iterator[tuple[str, str, str]]:
     """What the session no longer shows where it names nothing; on one stand it says nothing of another."""
-    gone = GONE.format(day=day_of(session.started_at))
+    gone = say(GONE, day=day_of(session.started_at))
     yield Matter.CAUSE.value, ANY, gone
     yield Matter.UNEXPLAINED.value, ANY, gone
     if session.stand is not None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from estimator.message import joined
 from service.flags.records import Concern, Flag, Matter
 from service.flags.store import Flags
 from service.judging.store import Derivations
@@ -65,4 +66,4 @@ def _concerns(outlook: UnitOutlook) -> Iterator[Concern]:
             found.setdefault((MATTERS[change.kind], trend.sensor), []).append((trend, change))
     for (matter, sensor), changes in found.items():
         ordered = sorted(changes, key=lambda pair: pair[1].p_value)
-        yield Concern(matter, sensor, 1, " ".join(change_in_words(trend, change) for trend, change in ordered))
+        yield Concern(matter, sensor, 1, joined(" ", (change_in_words(trend, change) for trend, change in ordered)))

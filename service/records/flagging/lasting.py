@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from datetime import datetime
 
 from estimator.groups import GroupFinding
+from estimator.message import say
 from service.flags.records import Concern, Flag, FlagState, Matter, NoticeKind
 from service.flags.store import Flags
 from service.groups.records import Group, Member
@@ -73,7 +74,9 @@ def settle_accepted(store: Store, revision: ModelRevision, finding: GroupFinding
 
 
 def _resolve(store: Store, occasion: Occasion, flag: Flag, revision: ModelRevision) -> None:
-    why = ACCEPTED.format(whose=f"{revision.scope} {revision.subject}", revision=revision.id)
+    why = say(
+        ACCEPTED, whose=say("{scope} {subject}", scope=revision.scope, subject=revision.subject), revision=revision.id
+    )
     resolve_as_done(store, occasion, flag, why)
 
 

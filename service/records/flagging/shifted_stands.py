@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from datetime import datetime
 
+from estimator.message import say
 from service.errors import ServiceError
 from service.flags.records import Concern, Flag, FlagState, Matter
 from service.flags.store import FlagQuery, Flags
@@ -74,10 +75,12 @@ def _propose(storage: Storage, flag: Flag, now: datetime) -> None:
         unit = Units(store).hold(flag.unit)
         for own in Flags(store).open_of(unit):
             if own.id == flag.id and not own.proposal:
-                propose(store, Occasion(unit, None, now), own, GONE.format(stand=flag.place))
+                propose(store, Occasion(unit, None, now), own, say(GONE, stand=flag.place))
 
 
 def _require_whole(one: StandCondition) -> None:
     """Tells of sessions whose common motion cannot be used; without them the stand is still judged."""
     if one.unreadable:
-        raise ServiceError(f"What is stored of these sessions cannot be used: {', '.join(one.unreadable)}.")
+        raise ServiceError(
+            say("What is stored of these sessions cannot be used: {why}.", why=", ".join(one.unreadable))
+        )

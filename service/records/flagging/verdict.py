@@ -2,6 +2,7 @@
 
 from datetime import datetime
 
+from estimator.message import joined, say
 from service.flags.records import Concern, Matter, NoticeKind
 from service.flags.store import Notices
 from service.fleet.store import Refreshed
@@ -28,7 +29,7 @@ def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: R
         return
     before = condition_of(was.before, is_reference=was.was_reference).word
     now = verdict_in_words(condition_of(latest.verdict, is_reference=latest.is_reference), latest.reservations)
-    text = f"{before} → {now}. {latest.reason}"
+    text = say("{before} → {now}. {reason}", before=before, now=now, reason=latest.reason)
     Notices(store).add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=latest.id)
 
 
@@ -42,9 +43,9 @@ def told_by(measured_at: datetime, judged: Judged) -> Told:
         if failed:
             concerns.append(_concern(sensor, failed))
         elif judged.is_reference:
-            clear.append((Matter.TOLERANCE.value, sensor, NEW_REFERENCE.format(day=day, sensor=sensor)))
+            clear.append((Matter.TOLERANCE.value, sensor, say(NEW_REFERENCE, day=day, sensor=sensor)))
         elif own and all(d.verdict in PASSES for d in own):
-            clear.append((Matter.TOLERANCE.value, sensor, WITHIN.format(day=day, sensor=sensor)))
+            clear.append((Matter.TOLERANCE.value, sensor, say(WITHIN, day=day, sensor=sensor)))
     return Told(tuple(concerns), tuple(clear))
 
 
@@ -59,5 +60,5 @@ def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
     """The worst parameter in a sentence, the others by name."""
     severity = max(d.verdict.severity for d in failed)
     others = [d.parameter for d in failed if d is not worst_of(failed)]
-    more = f" Also out of tolerance: {', '.join(others)}." if others else ""
+    more = say(" Also out of tolerance: {others}.", others=joined(", ", others)) if others else ""
     return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)

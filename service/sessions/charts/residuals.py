@@ -6,6 +6,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 
+from estimator.message import say
 from estimator.results import Calibration, Residuals
 from service.kit.measures import THIN, Measure, deviation_measure
 from service.sessions.charts import (
@@ -74,7 +75,7 @@ def _chart_set(calibration: Calibration, kind: str, across: Across, several: boo
     unit = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"residuals-{kind}-{across.name}",
-        heading=f"{across.heading}, {kind}s" if several else across.heading,
+        heading=say("{heading}, {kind}", heading=across.heading, kind=f"{kind}s") if several else across.heading,
         spec=_filled(across, unit, largest * unit.factor, wider=noise.times is not None),
         panels=tuple(_panel(calibration, i, across, unit) for i in columns),
     )
@@ -84,11 +85,15 @@ def _panel(calibration: Calibration, column: int, across: Across, unit: Measure)
     residuals = calibration.residuals
     noise = noise_of(residuals, calibration)
     value, sigma = residuals.value[:, column], noise.stated[:, column]
-    outside = f", {np.sum(np.abs(value) > 2 * sigma)} of {len(value)} outside ±2σ" if np.isfinite(sigma).any() else ""
+    outside = (
+        say(", {np} of {value} outside ±2σ", np=np.sum(np.abs(value) > 2 * sigma), value=len(value))
+        if np.isfinite(sigma).any()
+        else ""
+    )
     rms = scatter_in_words(float(np.sqrt(np.nanmean(value**2))), unit)
     return Panel(
         title=calibration.sensors[column].name,
-        description=f"rms {rms}{THIN}{unit.label}{outside}",
+        description=say("rms {rms}{thin}{label}{outside}", rms=rms, thin=THIN, label=unit.label, outside=outside),
         condition=None,
         datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
     )
@@ -117,7 +122,11 @@ def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> di
     left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
     low, high = padded(-largest, largest)
     ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
-    texts = {UNIT: unit.label, RESIDUAL: f"residual, {unit.label}", BAND: f"2σ stated, {unit.label}"}
+    texts = {
+        UNIT: unit.label,
+        RESIDUAL: say("residual, {label}", label=unit.label),
+        BAND: say("2σ stated, {label}", label=unit.label),
+    }
     found: dict[str, Any] = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
     return found
 

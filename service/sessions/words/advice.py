@@ -1,5 +1,6 @@
 """What to measure so that a session tells what it leaves open."""
 
+from estimator.message import joined, say, say_count
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER
 from service.kit.measures import number
@@ -12,8 +13,13 @@ def what_to_add(calibration: Calibration) -> str:
         return "measure the same positions in the other run too"
     if not add:
         return "more or other positions would tell it"
-    up = ", ".join(f"({', '.join(number(x, 2) for x in direction)})" for direction in add)
-    return f"add {len(add)} still orientation{'s' if len(add) > 1 else ''} with up, in block axes, along {up}"
+    up = joined(", ", (f"({', '.join(number(x, 2) for x in direction)})" for direction in add))
+    return say_count(
+        "add {n} still orientation with up, in block axes, along {up}",
+        "add {n} still orientations with up, in block axes, along {up}",
+        len(add),
+        up=up,
+    )
 
 
 def too_few(calibration: Calibration) -> str:
@@ -21,9 +27,11 @@ def too_few(calibration: Calibration) -> str:
     add = calibration.fit.positions_to_add
     if not add:
         return ""
-    return (
-        f"Too few positions to give an uncertainty: add {add}, or state the standard errors of the readings. "
-        "The parameters take all that the readings tell, and nothing is left to estimate the noise by."
+    return say(
+        "Too few positions to give an uncertainty: add {add}, or state the standard errors of "
+        "the readings. The parameters take all that the readings tell, and nothing is left to "
+        "estimate the noise by.",
+        add=add,
     )
 
 
@@ -35,5 +43,10 @@ def left_open(calibration: Calibration) -> str:
     if not blind or calibration.parity is not None:
         return ""
     missing = [name for name in needed if any(not s.observable[name] for s in felt)]
-    who = "every accelerometer" if len(blind) == len(felt) else ", ".join(blind)
-    return f"It does not show {', '.join(missing)} of {who}: {what_to_add(calibration)}."
+    who = "every accelerometer" if len(blind) == len(felt) else joined(", ", blind)
+    return say(
+        "It does not show {missing} of {who}: {calibration}.",
+        missing=joined(", ", missing),
+        who=who,
+        calibration=what_to_add(calibration),
+    )

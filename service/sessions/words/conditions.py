@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from estimator.message import say
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
 
@@ -88,4 +89,8 @@ def said_with(condition: Condition, reservations: Reservations) -> Condition:
     """The same verdict, marked where it is said with a reservation: ``Fit, with reservation``."""
     if not reservations:
         return condition
-    return replace(condition, word=f"{condition.word}, {WITH_RESERVATION}", reserved=True)
+    return replace(
+        condition,
+        word=say("{word}, {with_reservation}", word=condition.word, with_reservation=WITH_RESERVATION),
+        reserved=True,
+    )

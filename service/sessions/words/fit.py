@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import isfinite, sqrt
 
+from estimator.message import say, say_count
 from estimator.results import Calibration, Fit
 from service.kit.measures import number
 from service.sessions.words.advice import too_few, what_to_add
@@ -45,9 +46,11 @@ def bands_in_words(calibration: Calibration, times: float | None) -> str:
     )
     if times is None:
         return band
-    return (
-        f"{band} The readings scatter more than that: the dashed lines are ±2σ of the noise that the calibration "
-        f"reckons with instead, up to {number(times, 1)} times as much."
+    return say(
+        "{band} The readings scatter more than that: the dashed lines are ±2σ of the noise that "
+        "the calibration reckons with instead, up to {times} times as much.",
+        band=band,
+        times=number(times, 1),
     )
 
 
@@ -67,19 +70,33 @@ def _detail(fit: Fit) -> str:
     chance = ""
     if fit.p_value is not None:
         percent = "less than 0.01" if fit.p_value < SMALLEST else number(100 * fit.p_value, 1 + (fit.p_value < 0.01))
-        chance = f"; a sound model would give this much or more in {percent} % of sessions"
-    return f"χ² = {number(fit.chi2, 1)} for {fit.dof} degree{'' if fit.dof == 1 else 's'} of freedom{chance}."
+        chance = say("; a sound model would give this much or more in {percent} % of sessions", percent=percent)
+    return say_count(
+        "χ² = {chi2} for {n} degree of freedom{chance}.",
+        "χ² = {chi2} for {n} degrees of freedom{chance}.",
+        fit.dof,
+        chi2=number(fit.chi2, 1),
+        chance=chance,
+    )
 
 
 def _warnings(fit: Fit) -> list[str]:
-    found = []
+    found: list[str] = []
     if fit.covariance_factor > 1 and isfinite(fit.covariance_factor):
         found.append(
-            f"All uncertainties were enlarged {number(sqrt(fit.covariance_factor), 2)} times, because the stated "
-            "noise cannot explain the residuals. Look for structure in them."
+            say(
+                "All uncertainties were enlarged {covariance_factor} times, because the stated noise "
+                "cannot explain the residuals. Look for structure in them.",
+                covariance_factor=number(sqrt(fit.covariance_factor), 2),
+            )
         )
     if not fit.converged:
-        found.append(f"The estimation did not settle within {fit.iterations} iterations: do not rely on these numbers.")
+        found.append(
+            say(
+                "The estimation did not settle within {iterations} iterations: do not rely on these numbers.",
+                iterations=fit.iterations,
+            )
+        )
     return found
 
 
@@ -89,6 +106,11 @@ def _open(calibration: Calibration) -> list[str]:
     if fit.rank >= fit.parameters:
         return []
     return [
-        f"The session determines {fit.rank} of {fit.parameters} parameters. The least known is {fit.weakest[0]}; "
-        f"{what_to_add(calibration)}."
+        say(
+            "The session determines {rank} of {parameters} parameters. The least known is {weakest}; {calibration}.",
+            rank=fit.rank,
+            parameters=fit.parameters,
+            weakest=fit.weakest[0],
+            calibration=what_to_add(calibration),
+        )
     ]

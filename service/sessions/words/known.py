@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from estimator.message import joined, say
 from estimator.results import KnownCombination
 from service.kit.measures import COVERAGE, MINUS, Measure, measured, scale_measure, value_measure
 
@@ -32,10 +33,17 @@ def combination_in_words(known: KnownCombination, kind: str) -> str:
     lead = max(terms, key=lambda t: abs(t.coefficient))
     shares = [(t.coefficient / lead.coefficient, t.name) for t in terms]
     first, *others = [(share, name) for share, name in shares if abs(share) > NEGLIGIBLE]
-    rest = "".join(f" {MINUS if share < 0 else '+'} {_product(abs(share), name)}" for share, name in others)
+    rest = joined(
+        "",
+        (
+            say(" {sign} {product}", sign=MINUS if share < 0 else "+", product=_product(abs(share), name))
+            for share, name in others
+        ),
+    )
     expanded = None if known.sigma is None else COVERAGE * known.sigma
     total = measured(known.value, expanded, Measure(lead.measure.label, 1 / lead.coefficient)).rstrip()
-    return f"{MINUS if first[0] < 0 else ''}{_product(abs(first[0]), first[1])}{rest} = {total}"
+    sign, product = MINUS if first[0] < 0 else "", _product(abs(first[0]), first[1])
+    return say("{sign}{product}{rest} = {total}", sign=sign, product=product, rest=rest, total=total)
 
 
 def _term(name: str, coefficient: float, kind: str) -> _Term:
@@ -50,4 +58,6 @@ def _term(name: str, coefficient: float, kind: str) -> _Term:
 
 def _product(share: float, name: str) -> str:
     """``0.5 × quadratic``, the share above zero."""
-    return name if share == 1 else f"{share:.6f}".rstrip("0").rstrip(".") + f" × {name}"
+    if share == 1:
+        return name
+    return say("{share} × {name}", share=f"{share:.6f}".rstrip("0").rstrip("."), name=name)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.health.common_motion import AXES, SEPARATED, UNCLEAR, CommonMotion
+from estimator.message import joined, say
 from estimator.wording import few
 from service.kit.measures import COARSE_MEASURES, DEGREE, Measure, deviation_measure, measured, number, signed
 
@@ -22,10 +23,13 @@ class MotionLine:
     text: str
 
 
-def motions_in_words(motions: Sequence[CommonMotion], coverage: float) -> tuple[MotionLine, ...]:
+def motions_in_words(
+    motions: Sequence[CommonMotion], coverage: float, since: str = "since the reference"
+) -> tuple[MotionLine, ...]:
     """One sentence for each quantity that there is something to say of."""
     several = len({motion.kind for motion in motions}) > 1
-    lines = [_line(motion, coverage, f" of the {motion.kind}s" if several else "") for motion in motions]
+    of = {motion.kind: say(" of the {kind}s", kind=motion.kind) if several else "" for motion in motions}
+    lines = [_line(motion, coverage, of[motion.kind], since) for motion in motions]
     return tuple(line for line in lines if line is not None)
 
 
@@ -34,24 +38,36 @@ def is_significant(motion: CommonMotion) -> bool:
     return motion.state == SEPARATED and motion.p_value is not None and motion.p_value < SIGNIFICANT
 
 
-def _line(motion: CommonMotion, coverage: float, whose: str) -> MotionLine | None:
+def _line(motion: CommonMotion, coverage: float, whose: str, since: str) -> MotionLine | None:
     if motion.state != SEPARATED:
         return MotionLine("none", _undivided(motion, whose))
     if is_significant(motion):
-        return MotionLine("undecidable", f"{_together(motion, coverage, whose)}{_alone(motion)}")
+        return MotionLine("undecidable", joined("", (_together(motion, coverage, whose, since), _alone(motion))))
     return None
 
 
-def _together(motion: CommonMotion, coverage: float, whose: str) -> str:
+def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> str:
     if motion.quantity == AXES:
         size = measured(motion.size, coverage * motion.sigma, _turn_measure(motion))
-        return (
-            f"The whole block{whose} turned by {size} about {_about(motion)} since the reference: "
-            f"it sits otherwise, or the stand has turned. {JUDGED}"
+        return say(
+            "The whole block{whose} turned by {size} about {motion} {since}: it sits "
+            "otherwise, or the stand has turned. {judged}",
+            whose=whose,
+            size=size,
+            motion=_about(motion),
+            since=since,
+            judged=JUDGED,
         )
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
-    return f"All scale factors{whose} changed together by {size} since the reference: that is of {cause}. {JUDGED}"
+    return say(
+        "All scale factors{whose} changed together by {size} {since}: that is of {cause}. {judged}",
+        whose=whose,
+        size=size,
+        since=since,
+        cause=cause,
+        judged=JUDGED,
+    )
 
 
 def _turn_measure(motion: CommonMotion) -> Measure:
@@ -77,15 +93,34 @@ def _alone(motion: CommonMotion) -> str:
     what = "input axis" if motion.quantity == AXES else "scale factor"
     *others, last = motion.left_out
     if not others:
-        return f" Beside that, the {what} of {last} moved on its own."
+        return say(" Beside that, the {what} of {last} moved on its own.", what=what, last=last)
     several = "input axes" if motion.quantity == AXES else "scale factors"
-    return f" Beside that, the {several} of {', '.join(others)} and {last} moved on their own."
+    return say(
+        " Beside that, the {several} of {others} and {last} moved on their own.",
+        several=several,
+        others=joined(", ", others),
+        last=last,
+    )
 
 
 def _undivided(motion: CommonMotion, whose: str) -> str:
-    turn = f"a turn of the whole block{whose}" if motion.quantity == AXES else f"a change of all scale factors{whose}"
+    turn = (
+        say("a turn of the whole block{whose}", whose=whose)
+        if motion.quantity == AXES
+        else say("a change of all scale factors{whose}", whose=whose)
+    )
     one = "a change of one sensor"
     judged = "every sensor is judged on its whole change"
     if motion.state == UNCLEAR:
-        return f"The sensors do not agree on {turn}, and it cannot be told which of them moved: {judged}."
-    return f"{few(len(motion.sensors), 'sensor')} to tell {turn} from {one}: {judged}."
+        return say(
+            "The sensors do not agree on {turn}, and it cannot be told which of them moved: {judged}.",
+            turn=turn,
+            judged=judged,
+        )
+    return say(
+        "{sensors} to tell {turn} from {one}: {judged}.",
+        sensors=few(len(motion.sensors), "sensor"),
+        turn=turn,
+        one=one,
+        judged=judged,
+    )

@@ -7,6 +7,7 @@ import numpy as np
 
 from estimator.allan.growth import Course, Growth, growth
 from estimator.allan.results import TERMS, interval_of
+from estimator.message import say
 from service.kit.measures import NOISE, THIN, decimals, in_measure, number
 from service.sessions.records import HistoryPoint
 
@@ -39,7 +40,14 @@ def size_in_words(kind: str, name: str, value: float | None, sigma: float | None
     measure = NOISE[kind, name]
     digits = decimals(sigma * measure.factor)
     low, high = (number(in_measure(end, measure), digits) for end in interval_of(value, sigma))
-    return f"{number(in_measure(value, measure), digits)}{THIN}{measure.label} ({low} to {high})"
+    return say(
+        "{digits}{thin}{label} ({low} to {high})",
+        digits=number(in_measure(value, measure), digits),
+        thin=THIN,
+        label=measure.label,
+        low=low,
+        high=high,
+    )
 
 
 def term_in_words(point: HistoryPoint) -> str:
@@ -79,8 +87,14 @@ def _sentences(courses: Sequence[Points], found: Sequence[Growth]) -> tuple[str,
     last, times = larger[0][0], sorted(one.times for _, one in larger)
     sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
     return (
-        f"{NAMES[last.parameter]} is larger in all {sensors}: {least} to {most} times what it was. Look at the bench "
-        "and at what runs beside it first.",
+        say(
+            "{names} is larger in all {sensors}: {least} to {most} times what it was. Look at the "
+            "bench and at what runs beside it first.",
+            names=NAMES[last.parameter],
+            sensors=sensors,
+            least=least,
+            most=most,
+        ),
     )
 
 
@@ -90,7 +104,13 @@ def _place(point: HistoryPoint) -> tuple[str, str]:
 
 def _sentence(last: HistoryPoint, found: Growth) -> str:
     measure = NOISE[last.kind, last.parameter]
-    return (
-        f"{NAMES[last.parameter]} of {last.sensor} is {number(found.times, 2)} times what it was: "
-        f"{term_in_words(last)}, before {number(in_measure(found.usual, measure))}{THIN}{measure.label}."
+    return say(
+        "{names} of {sensor} is {times} times what it was: {last}, before {usual}{thin}{label}.",
+        names=NAMES[last.parameter],
+        sensor=last.sensor,
+        times=number(found.times, 2),
+        last=term_in_words(last),
+        usual=number(in_measure(found.usual, measure)),
+        thin=THIN,
+        label=measure.label,
     )

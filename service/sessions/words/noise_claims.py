@@ -4,6 +4,7 @@ from collections.abc import Collection, Sequence
 from math import isfinite
 
 from estimator.diagnosis.results import NoiseScale
+from estimator.message import joined, say
 from service.kit.measures import number
 
 WHOLE = 2.95
@@ -15,24 +16,35 @@ NEAR = 1.15
 def wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> tuple[str, ...]:
     """``The stated standard errors are about 4 times too small.``; by kind where a session holds several,
     and whose they are where not all sensors'."""
-    return tuple(f"The {clause}." for clause in _clauses(noise, kinds))
+    return tuple(say("The {clause}.", clause=clause) for clause in _clauses(noise, kinds))
 
 
 def but_wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> str:
     """The same as the end of a sentence: ``, but the stated …``; empty where the readings contradict none."""
     clauses = _clauses(noise, kinds)
-    return f", but {' and '.join(f'the {clause}' for clause in clauses)}" if clauses else ""
+    return (
+        say(", but {clause}", clause=joined(" and ", (say("the {clause}", clause=clause) for clause in clauses)))
+        if clauses
+        else ""
+    )
 
 
 def _clauses(noise: Sequence[NoiseScale], kinds: Collection[str]) -> list[str]:
-    return [f"stated standard errors{_whose(n, kinds)} are {_how_far_off(n.factor)}" for n in noise]
+    return [
+        say("stated standard errors{some} are {factor}", some=_whose(n, kinds), factor=_how_far_off(n.factor))
+        for n in noise
+    ]
 
 
 def _whose(scale: NoiseScale, kinds: Collection[str]) -> str:
     if scale.sensors:
         *others, last = scale.sensors
-        return f" of {', '.join(others)} and {last}" if others else f" of {last}"
-    return f" of the {scale.kind}s" if len(set(kinds)) > 1 else ""
+        return (
+            say(" of {others} and {last}", others=joined(", ", others), last=last)
+            if others
+            else say(" of {last}", last=last)
+        )
+    return say(" of the {kind}s", kind=scale.kind) if len(set(kinds)) > 1 else ""
 
 
 def _how_far_off(factor: float) -> str:
@@ -40,7 +52,7 @@ def _how_far_off(factor: float) -> str:
     if not isfinite(factor) or factor <= 0:
         return "wrong by more than can be told"
     side = "small" if factor > 1 else "large"
-    return f"about {_rounded(max(factor, 1 / factor))} times too {side}"
+    return say("about {factor} times too {side}", factor=_rounded(max(factor, 1 / factor)), side=side)
 
 
 def _rounded(times: float) -> str:

@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 
+from estimator.message import joined, say
 from service.sessions.doubt import DoubtKind as Doubt
 from service.sessions.doubt import Reservation, Reservations
 
 LOOKING = "causes are still being looked for"
-STILL_LOOKING = f"; {LOOKING}"
-
-
+STILL_LOOKING = say("; {looking}", looking=LOOKING)
 MOST_TOLD = 2
 """Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""
 
@@ -19,9 +18,21 @@ def but(reservations: Reservations) -> str:
         return STILL_LOOKING
     if not reservations:
         return ""
+    return say(", {but}", but=but_alone(reservations))
+
+
+def but_alone(reservations: Reservations) -> str:
+    """The same where no word stands before it."""
+    if reservations is None:
+        return LOOKING
     told, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
-    rest = f"; and {more} more" if more > 0 else ""
-    return f", but {'; and '.join(one.text for one in told)}{rest}: {' and '.join(_advice(told))}"
+    rest = say("; and {more} more", more=more) if more > 0 else ""
+    return say(
+        "but {text}{rest}: {told}",
+        text=joined("; and ", (one.text for one in told)),
+        rest=rest,
+        told=joined(" and ", _advice(told)),
+    )
 
 
 def _advice(told: Sequence[Reservation]) -> tuple[str, ...]:

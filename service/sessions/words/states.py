@@ -1,5 +1,6 @@
 """What became of a record, in a sentence."""
 
+from estimator.message import say
 from service.kit.names import day_of
 from service.sessions.states import RecordState, StateChange
 
@@ -19,4 +20,10 @@ MEANINGS = {
 
 def state_in_words(change: StateChange) -> str:
     """``Withdrawn on 21 Nov 2026 by K. Ito: wrong unit``."""
-    return f"{STATES[change.state]} on {day_of(change.at)} by {change.who}: {change.why}"
+    return say(
+        "{states} on {at} by {who}: {why}",
+        states=STATES[change.state],
+        at=day_of(change.at),
+        who=change.who,
+        why=change.why,
+    )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from estimator.errors import Problem
+from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
 from service.ingest.layout.decoding import ENCODINGS
@@ -219,11 +220,11 @@ def _sensor_names(found: Preview) -> list[str]:
 def _meanings(meaning: str, sensors: Sequence[str]) -> Iterator[Choice]:
     yield Choice("", "left out", not meaning)
     for name in sensors:
-        yield Choice(name, f"reading of {name}", name == meaning)
+        yield Choice(name, say("reading of {name}", name=name), name == meaning)
     for key in COLUMNS:
         yield Choice(key, LABELS.get(key, key), key == meaning)
     for name in sensors:
-        yield Choice(f"{name}_se", f"standard error of {name}", f"{name}_se" == meaning)
+        yield Choice(f"{name}_se", say("standard error of {name}", name=name), f"{name}_se" == meaning)
 
 
 def _taken(found: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
@@ -279,10 +280,14 @@ def _first(found: Preview) -> dict[str, Any]:
     rows = first_rows(found.session)
     measure = "m/s²" if found.session.block == ACCELEROMETER else "rad/s"
     units = {"beta_rad": "β, rad", "time_s": "t, s", "temperature_c": "T, °C", "run": "run"}
-    headings = tuple(units.get(name, f"{name}, {measure}") for name in rows[0])
+    headings = tuple(units.get(name, say("{name}, {measure}", name=name, measure=measure)) for name in rows[0])
     cells = tuple(tuple(value if isinstance(value, str) else number(value) for value in row.values()) for row in rows)
     length = felt_length(found.session)
-    return {"preview": cells, "headings": headings, "felt": f"{number(length)} {measure}"}
+    return {
+        "preview": cells,
+        "headings": headings,
+        "felt": say("{length} {measure}", length=number(length), measure=measure),
+    }
 
 
 HINTS = COLUMN_HINTS

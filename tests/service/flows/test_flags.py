@@ -3,13 +3,14 @@
 from datetime import UTC, datetime, timedelta
 
 import pytest
-from sqlalchemy import text
+from sqlalchemy import select, text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import ConflictError, NotFoundError
 from service.flags.changes import acknowledge_flag, resolve_flag
 from service.flags.records import Flag, FlagState, Matter, NoticeKind
 from service.flags.store import FlagQuery, Flags
+from service.flags.tables import NoticeRow
 from service.fleet.store import Fleet
 from service.storage import Storage
 from service.uploads.receive import upload
@@ -156,6 +157,6 @@ def test_the_database_refuses_to_change_a_life(flagged: Storage, statement: str)
 def test_another_verdict_is_told(flagged: Storage) -> None:
     measured(flagged, 3)
     with flagged.database.engine.connect() as connection:
-        query = text("SELECT text FROM notices WHERE kind = :kind ORDER BY id DESC")
-        told = connection.scalars(query, {"kind": NoticeKind.VERDICT.value}).all()
+        query = select(NoticeRow.text).where(NoticeRow.kind == NoticeKind.VERDICT.value).order_by(NoticeRow.id.desc())
+        told = connection.scalars(query).all()
     assert [line.split(";")[0] for line in told] == ["Unfit → Fit", "Reference set → Unfit"]

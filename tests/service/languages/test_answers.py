@@ -3,7 +3,6 @@
 import httpx
 import pytest
 
-from service.web import in_language
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 
 HTML = {"Accept": "text/html"}
@@ -49,13 +48,6 @@ def test_every_problem_of_a_file_is_said_with_what_to_do(client: httpx.Client) -
     answer = client.post("/api/v1/sessions", content=b'{"format": "imu-session/1"}', headers=RU)
     assert answer.status_code == 422
     assert "отсутствует" in {one["message"].split(";")[0] for one in answer.json()["problems"]}
-
-
-def test_a_refusal_whose_sentences_take_too_long_ends_in_english(
-    client: httpx.Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(in_language, "PATIENCE", 0.0)
-    assert client.get("/api/v1/units/none", headers=RU).json()["detail"] == "There is no unit 'none'."
 
 
 @pytest.mark.parametrize("method", ["HEAD", "GET"])

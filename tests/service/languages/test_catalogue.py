@@ -5,8 +5,8 @@ from babel.messages import Catalog
 from babel.messages.pofile import read_po
 
 from service.languages.catalogue import forms_of, path_of
+from service.languages.entry import places_of
 from service.languages.language import Language
-from service.languages.message import places_of
 from service.languages.sources import messages
 from service.languages.update import untold, updated
 

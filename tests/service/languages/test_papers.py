@@ -68,9 +68,9 @@ def test_a_unit_in_a_workbook_keeps_its_name(holding: Holding) -> None:
 
 
 def test_what_names_something_for_a_template_is_left_alone() -> None:
-    document = {"key": "fail", "word": "Unfit", "rows": [{"unit": "Fit", "svg": '<svg><text x="1">Fit</text></svg>'}]}
+    document = {"key": "fail", "word": "Unfit", "rows": [{"unit": "Fit", "condition": "Fit"}]}
     assert document_in(document, str.upper) == {
         "key": "fail",
         "word": "UNFIT",
-        "rows": [{"unit": "Fit", "svg": '<svg><text x="1">FIT</text></svg>'}],
+        "rows": [{"unit": "Fit", "condition": "FIT"}],
     }

@@ -3,8 +3,8 @@
 import re
 from dataclasses import dataclass
 
-PLACE = re.compile(r"\{(\w+)\}")
-"""Where a value stands in a message."""
+from estimator.message import PLACE
+
 LETTERS = re.compile(r"[A-Za-z]{2}")
 """What every message has."""
 COUNT = "n"
@@ -14,7 +14,7 @@ TAG = re.compile(r"</?[a-z]\w*>")
 
 
 @dataclass(frozen=True)
-class Message:
+class Entry:
     """What a catalogue has one entry for."""
 
     text: str

@@ -1,0 +1,23 @@
+"""Axes of time in another language: the locale of dates, as d3 wants it."""
+
+from collections.abc import Mapping
+
+from service.languages.language import Language
+
+MONTHS = (
+    *("январь", "февраль", "март", "апрель", "май", "июнь"),
+    *("июль", "август", "сентябрь", "октябрь", "ноябрь", "декабрь"),
+)
+DAYS = ("вс", "пн", "вт", "ср", "чт", "пт", "сб")
+TIME: Mapping[Language, Mapping[str, object]] = {
+    Language.RUSSIAN: {
+        "dateTime": "%d.%m.%Y %H:%M:%S",
+        "date": "%d.%m.%Y",
+        "time": "%H:%M:%S",
+        "periods": ["", ""],
+        "days": DAYS,
+        "shortDays": DAYS,
+        "months": MONTHS,
+        "shortMonths": [name[:3] for name in MONTHS],
+    }
+}

@@ -1,0 +1,39 @@
+"""A message is said in Russian by its parts; a text is said where it stands in the catalogue as a whole."""
+
+from datetime import UTC, datetime
+
+import pytest
+
+from estimator.message import joined, say
+from estimator.wording import counted
+from service.kit.names import day_of
+from service.languages.catalogue import catalogue_of
+from service.languages.language import Language
+
+ZERO = say("{sensors} drifts.", sensors="A2")
+SAID = (
+    ("Fit", "Годен"),
+    ("fit", "годен"),
+    (day_of(datetime(2026, 5, 3, tzinfo=UTC)), "3 мая 2026"),
+    (joined(" and ", ("bias", "scale factor")), "смещение нуля и масштабный коэффициент"),
+    (joined("; ", ("Fit", say("{n} more", n=1))), "Годен; 1 more"),
+    (
+        say("{place} moved {moved} (U {spread}) beyond the tolerance of {allowed}.",
+            place=say("{sensor} {worst}", sensor="A3", worst="bias"), moved="+85 µg", spread="2.9 µg", allowed="50 µg"),
+        "A3 смещение нуля: изменение +85 µg (U 2.9 µg) больше допуска 50 µg.",
+    ),
+)  # fmt: skip
+
+
+def said(text: str) -> str:
+    return catalogue_of(Language.RUSSIAN).say(text)
+
+
+@pytest.mark.parametrize(("english", "russian"), SAID)
+def test_a_message_with_its_parts(english: str, russian: str) -> None:
+    assert said(english) == russian
+
+
+@pytest.mark.parametrize(("count", "expected"), [(1, "1 сеанс"), (3, "3 сеанса"), (11, "11 сеансов"), (21, "21 сеанс")])
+def test_a_number_chooses_among_three_forms(count: int, expected: str) -> None:
+    assert said(counted(count, "session")) == expected
