@@ -36,7 +36,9 @@ class Detection:
     unnamed: float = 0.0
     """Probability that no cause of the catalogue acts here, but something that only a free course describes."""
     event: tuple[int, ...] = ()
-    """Sensors that share one event with this finding, its own among them: all of them are one misfortune."""
+    """Sensors that share one course with this finding, its own among them: all of them are one misfortune."""
+    follows: bool = False
+    """Whether it is of a sensor that follows a shared course below what can be named alone."""
 
     @property
     def cause_log_evidence(self) -> float:
