@@ -79,6 +79,8 @@ class SearchState:
     """Names taken back, because readings far out in the tails of the errors explain as much."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
+    apart: bool = False
+    """Whether it is known that sensors share no course, each wandering by itself."""
 
     @property
     def baseline(self) -> Baseline:

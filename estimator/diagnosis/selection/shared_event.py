@@ -24,7 +24,8 @@ import numpy as np
 from scipy.special import logsumexp
 
 from estimator.arrays import eigh
-from estimator.causes.contract import SensorCause
+from estimator.causes.contract import SensorCause, Shape
+from estimator.causes.shared import SharedCourse
 from estimator.content import once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER, backward_elimination
@@ -32,10 +33,12 @@ from estimator.diagnosis.selection.forward import forward_selection, with_struct
 from estimator.diagnosis.selection.membership import SIZES, SURE, Loadings, Members, counts_of, log_sets
 from estimator.diagnosis.selection.ranking import conditional_log_evidence, extended_basis, scores_given
 from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Detection, SearchState
-from estimator.diagnosis.selection.shared_shape import fits_better_shared, gained_alone, refined_together
+from estimator.diagnosis.selection.shared_shape import APART, log_shared, powers, refined_together
+from estimator.diagnosis.signatures.free_course import FreeCourse
+from estimator.diagnosis.signatures.products import Products
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
-from estimator.diagnosis.signatures.wandering import log_beside_wandering, log_marginal, log_mean, log_turning
+from estimator.diagnosis.signatures.wandering import log_beside_wandering, log_marginal, log_mean, log_turning, wanderings
 from estimator.least_squares import orthonormal
 from estimator.session import Array
 from estimator.significance import family_wise, p_value
@@ -63,7 +66,7 @@ class Course:
     traces: Traces
     numbers: tuple[int, ...]
     """Of the shapes, in the order of the sensors."""
-    tried: int
+    tried: float
     """n_ψ, how many nonlinear parameters the cause is tried with."""
 
     @property
@@ -138,15 +141,30 @@ def is_plainly_shared(start: SearchState) -> bool:
 @once
 def shared_event(start: SearchState) -> tuple[Detection, ...]:
     """The most likely shared course, its sensors the strongest first; empty where there is none."""
+    candidate = None if start.apart else significant_course(start)
+    if candidate is None or has_likelier_rival(start, candidate[0]):
+        return ()
+    return ranked(start, *candidate)
+
+
+def is_apart(start: SearchState) -> bool:
+    """Whether sensors show something together, but each rather wanders by itself: whatever the noise is taken to be,
+    they share nothing then."""
+    candidate = significant_course(start)
+    return candidate is not None and has_likelier_rival(start, candidate[0])
+
+
+@once
+def significant_course(start: SearchState) -> tuple[Followed, tuple[Scored, ...]] | None:
+    """The likeliest course that several sensors follow, and what each shows; None where none is significant."""
     candidates = [t for t in start.traces if t.cause.shared_sentence and t.nuisance is None]
     every = [course for traces in candidates for course in courses(start.residuals, traces)]
+    every += without_formula(start)
     followed = likeliest(start, closest(start, every)) if every else None
-    if followed is None:
-        return ()
-    event = priced(start, followed)
-    if family_p_value(start, event) >= LEVEL or has_likelier_rival(start, followed):
-        return ()
-    return ranked(start, followed, event)
+    event = () if followed is None else priced(start, followed)
+    if followed is None or family_p_value(start, event) >= LEVEL:
+        return None
+    return followed, event
 
 
 def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
@@ -161,6 +179,21 @@ def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
         grouped.setdefault(traces.shapes[k].nonlinear, []).append(k)
     several = [tuple(numbers) for numbers in grouped.values() if len(numbers) > 1]
     return [Course(traces, numbers, len(several)) for numbers in several]
+
+
+def without_formula(start: SearchState) -> list[Course]:
+    """The likeliest smooth course that no formula gives, of all sensors; none in a block of one."""
+    residuals, setting, m = start.residuals, start.baseline.setting, start.sensor_count
+    if m < 2:
+        return []
+    found, cause = FreeCourse.of(wanderings(residuals)[1].trace, residuals.z, m), SharedCourse()
+    nonlinear = tuple(found.waves.tolist())
+    shapes = tuple(Shape((i,), cause.placed(setting, i, nonlinear), nonlinear) for i in range(m))
+    columns = np.concatenate([shape.columns for shape in shapes], axis=-1)
+    trace, raw = residuals.trace(columns, 0.0).T[..., None], np.linalg.norm(residuals.whitened(columns), axis=0)
+    products, sensor = Products.of(residuals, trace), np.arange(m)
+    traces = Traces(cause, shapes, (False,) * m, sensor, trace, raw[:, None], m, products)
+    return [replace(course, tried=found.tried) for course in courses(residuals, traces)]
 
 
 def closest(start: SearchState, every: Sequence[Course]) -> list[Course]:
@@ -196,30 +229,32 @@ def likeliest(start: SearchState, near: Sequence[Course]) -> Followed | None:
 
 def without_departing(start: SearchState, course: Course, members: Members) -> Followed | None:
     """A course with its members, but for those that have a shape of their own; None where all fit better apart."""
-    chosen, left = list(members.chosen), 0
-    while len(chosen) > 1:
-        gained = own_gain(start, course.of([course.numbers[k] for k in chosen]))
+    kept = course.of([course.numbers[k] for k in members.chosen])
+    while len(kept.numbers) > 1:
+        apart, own = powers_apart(start, kept)
+        gained = [0.5 * float(values.max() - known) for values, known in zip(apart, own, strict=True)]
         worst = int(np.argmax(gained))
         if gained[worst] - np.log(course.tried) < FURTHER:
             break
-        chosen.pop(worst)
-        left += 1
-    if len(chosen) < 2 or not fits_better_shared(gained, course.tried, left):
+        kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
+    if len(kept.numbers) < 2:
         return None
-    again = course.of([course.numbers[k] for k in chosen])
-    sure = {course.sensors[k] for k in members.sure if k in chosen}
-    return Followed(again, frozenset(sure), members.log_evidence - float(np.log(course.tried)))
+    together = [energy_of(start.residuals, other.on(kept.sensors))[0] for other in courses(start.residuals, course.traces)]
+    if log_shared(np.array(together), energy_of(start.residuals, kept)[0], apart, own) < APART:
+        return None
+    sure = {course.sensors[k] for k in members.sure} & set(kept.sensors)
+    return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)))
 
 
-def own_gain(start: SearchState, course: Course) -> list[float]:
-    """What each sensor of a course would gain by a shape of its own, ln evidence."""
-    shared = unit_traces(course)
-    gained = []
+def powers_apart(start: SearchState, course: Course) -> tuple[list[Array], list[float]]:
+    """What each sensor of a course explains by every shape of its own beside the others, and by the one they share."""
+    shared, every, own = unit_traces(course), list[Array](), list[float]()
     for k, sensor in enumerate(course.sensors):
-        of_sensor = np.flatnonzero(course.traces.sensor == sensor)
-        own = course.traces.columns[of_sensor, :, 0].T
-        gained.append(gained_alone(start.residuals.z, own, np.delete(shared, k, axis=1), shared[:, k]))
-    return gained
+        of_sensor = course.traces.columns[np.flatnonzero(course.traces.sensor == sensor), :, 0].T
+        values = powers(start.residuals.z, np.column_stack([shared[:, k], of_sensor]), np.delete(shared, k, axis=1))
+        every.append(values[1:])
+        own.append(float(values[0]))
+    return every, own
 
 
 def energies(residuals: WhitenedResiduals, every: Sequence[Course]) -> tuple[Array, Array]:

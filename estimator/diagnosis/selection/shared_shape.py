@@ -9,27 +9,32 @@ X̂ orthonormal: ψ is where it is largest. About it the effect is linear in the
 
 one column more for all sensors together, so that ψ has an uncertainty and every size that of ψ in it.
 
-Against it every sensor may have a shape of its own: of so many as are tried, each costs its choice, and each sensor
-that leaves is a misfortune of its own. Sensors share a shape where they fit better so than apart:
+Against it every sensor may have a shape of its own, each of those that are tried as likely beforehand as for all. With
+T_i(ψ) what a sensor's own trace explains beside those of the others at ψ̂, they share one shape where
 
-    Σ [½T_i(ψ_i) − ½T_i(ψ)] < (k − 1)·ln n_ψ − d·ln 100,        the sums over the k that stay
+    ln mean_ψ exp ½[T(ψ) − T(ψ̂)] − Σ_i ln mean_ψ exp ½[T_i(ψ) − T_i(ψ̂)] > −ln 3,
 
-with d that left. No share of them decides, and no strong few: a weak one that fits ill speaks against it as it stands.
+the ln of the Bayes factor: below it apart is likelier, and about zero the session does not tell, so that one
+misfortune is likelier than many. No share of the sensors decides, and no strong few: a weak one that fits ill speaks
+against it as loudly as it can.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import logsumexp
 
 from estimator.causes.contract import SensorCause, Setting, Shape
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.backward import FURTHER
 from estimator.diagnosis.selection.search_state import NEW_DIRECTION
 from estimator.diagnosis.signatures.lasting import absorbed_before
 from estimator.diagnosis.signatures.traces import Scored
 from estimator.least_squares import FAINT, least_squares, orthonormal
 from estimator.session import Array
+
+APART = float(-np.log(3))
+"""ln Bayes factor below which each sensor's own shape is plainly likelier than one for all (Jeffreys)."""
 
 VAGUE = 2.0
 """Sigmas of its own below which no size is known once ψ is free: then the session does not tell ψ."""
@@ -105,18 +110,23 @@ def is_vague(columns: Array, z: Array, attributed: Array) -> bool:
     return bool(np.all(np.abs(fit.value[:-1]) < VAGUE * sigma))
 
 
-def gained_alone(z: Array, own: Array, others: Array, shared: Array) -> float:
-    """½T_i(ψ_i) − ½T_i(ψ): what a shape of its own explains more of a sensor than the ``shared`` one (n,), beside
-    ``others`` (n, k − 1); ``own`` (n, S) its traces at every shape that is tried."""
-    basis = orthonormal(others, NEW_DIRECTION) if others.shape[1] else np.zeros((len(z), 0))
-    columns = np.column_stack([shared, own])
-    new = columns - basis @ (basis.T @ columns)
-    length = np.maximum((new**2).sum(axis=0), NEW_DIRECTION * (columns**2).sum(axis=0))
-    power = (z @ new) ** 2 / np.where(length > 0, length, 1.0)
-    return 0.5 * float(power[1:].max(initial=power[0]) - power[0])
+def powers(z: Array, traces: Array, beside: Array) -> Array:
+    """(S,) T of each of traces (n, S) by itself in residuals z (n,), standard errors, given ``beside`` (n, k)."""
+    basis = orthonormal(beside, NEW_DIRECTION) if beside.shape[1] else np.zeros((len(z), 0))
+    new = traces - basis @ (basis.T @ traces)
+    length = np.maximum((new**2).sum(axis=0), NEW_DIRECTION * (traces**2).sum(axis=0))
+    return np.asarray((z @ new) ** 2 / np.where(length > 0, length, 1.0))
 
 
-def fits_better_shared(gained: Sequence[float], tried: int, left: int) -> bool:
-    """Whether sensors fit better with one shape than apart: each ``gained`` so much by one of its own, of so many
-    ``tried``, and so many ``left`` for one."""
-    return sum(gained) < (len(gained) - 1) * np.log(tried) - left * FURTHER if tried > 1 else True
+def log_shared(together: Array, shared: float, apart: Sequence[Array], own: Sequence[float]) -> float:
+    """ln Bayes factor of one shape for all against one for each.
+
+    ``together`` (S,) T of all at every shape, ``shared`` at that which all have; ``apart``, ``own``: T_i, the same of
+    every sensor.
+    """
+    each = [_log_mean_half(values - known) for values, known in zip(apart, own, strict=True)]
+    return _log_mean_half(together - shared) - sum(each)
+
+
+def _log_mean_half(values: Array) -> float:
+    return float(logsumexp(0.5 * values) - np.log(len(values)))

@@ -22,6 +22,7 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.causes.fixture import turned
+from estimator.causes.shared import walk, walking_rate
 from estimator.content import once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
@@ -29,9 +30,6 @@ from estimator.session import Array
 
 SPREADS = 4.0 ** np.arange(-3, 9)
 """g: from an eighth of a standard error, which hundreds of readings together may tell, to 256; all equally likely."""
-
-WAVES = 12
-"""Leading waves of a course that are kept: of a random walk they hold 97 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,23 +131,3 @@ def marginal(gram: Array, along: Array, sizes: Array) -> tuple[Array, Array]:
 def log_mean(values: Sequence[float] | Array) -> float:
     """ln of the mean of what values (G,) are the ln of."""
     return float(np.logaddexp.reduce(values) - np.log(len(values)))
-
-
-def walk(rows: int) -> Array:
-    """(R, w) waves of a random walk over the rows, of mean square one together."""
-    t = np.arange(1, rows + 1) / rows
-    return leading(np.minimum.outer(t, t))
-
-
-def walking_rate(rows: int) -> Array:
-    """(R, w) the same of a zero whose rate walks."""
-    t = np.arange(1, rows + 1) / rows
-    first, last = np.minimum.outer(t, t), np.maximum.outer(t, t)
-    return leading(first**2 * (last / 2 - first / 6))
-
-
-def leading(covariance: Array) -> Array:
-    """(R, w) the strongest waves of a covariance (R, R) about its mean."""
-    about = covariance - covariance.mean(axis=0) - covariance.mean(axis=1)[:, None] + covariance.mean()
-    size, wave = eigh(about * len(about) / np.trace(about))
-    return np.asarray(wave[:, -WAVES:] * np.sqrt(np.maximum(size[-WAVES:], 0.0)))
