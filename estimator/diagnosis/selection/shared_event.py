@@ -229,9 +229,11 @@ def likeliest(start: SearchState, near: Sequence[Course]) -> Followed | None:
 
 def without_departing(start: SearchState, course: Course, members: Members) -> Followed | None:
     """A course with its members, but for those that have a shape of their own; None where all fit better apart."""
+    every = courses(start.residuals, course.traces)
     kept = course.of([course.numbers[k] for k in members.chosen])
     while len(kept.numbers) > 1:
-        apart, own = powers_apart(start, kept)
+        others = [other.on(kept.sensors) for other in every if set(kept.sensors) <= set(other.sensors)]
+        apart, own = powers_apart(start, kept, others)
         gained = [0.5 * float(values.max() - known) for values, known in zip(apart, own, strict=True)]
         worst = int(np.argmax(gained))
         if gained[worst] - np.log(course.tried) < FURTHER:
@@ -239,18 +241,19 @@ def without_departing(start: SearchState, course: Course, members: Members) -> F
         kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
     if len(kept.numbers) < 2:
         return None
-    together = [energy_of(start.residuals, other.on(kept.sensors))[0] for other in courses(start.residuals, course.traces)]
-    if log_shared(np.array(together), energy_of(start.residuals, kept)[0], apart, own) < APART:
+    together = energies(start.residuals, others)[0]
+    if log_shared(together, energy_of(start.residuals, kept)[0], apart, own) < APART:
         return None
     sure = {course.sensors[k] for k in members.sure} & set(kept.sensors)
     return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)))
 
 
-def powers_apart(start: SearchState, course: Course) -> tuple[list[Array], list[float]]:
-    """What each sensor of a course explains by every shape of its own beside the others, and by the one they share."""
+def powers_apart(start: SearchState, course: Course, others: Sequence[Course]) -> tuple[list[Array], list[float]]:
+    """What each sensor of a course explains by its shape in every one of ``others`` beside what the rest of them share,
+    and by the one that it shares with them."""
     shared, every, own = unit_traces(course), list[Array](), list[float]()
-    for k, sensor in enumerate(course.sensors):
-        of_sensor = course.traces.columns[np.flatnonzero(course.traces.sensor == sensor), :, 0].T
+    for k in range(len(course.sensors)):
+        of_sensor = course.traces.columns[[other.numbers[k] for other in others], :, 0].T
         values = powers(start.residuals.z, np.column_stack([shared[:, k], of_sensor]), np.delete(shared, k, axis=1))
         every.append(values[1:])
         own.append(float(values[0]))
