@@ -70,7 +70,18 @@ class OverSessions(Document, forms={"since": MOMENT}):
 @dataclass(frozen=True)
 class Shared(
     Document,
-    order=("group", "shape", "shape_sigma", "more", "more_amplitude", "more_sigma", "course", "measured", "band"),
+    order=(
+        "group",
+        "shape",
+        "shape_sigma",
+        "more",
+        "more_amplitude",
+        "more_sigma",
+        "drawn_for",
+        "course",
+        "measured",
+        "band",
+    ),
 ):
     """The one course that the sensors of a finding follow, each by a size of its own. R rows."""
 
@@ -85,10 +96,12 @@ class Shared(
     more_amplitude: tuple[float, ...]
     """Of these, in the unit of the finding's amplitudes for their kind."""
     more_sigma: tuple[float, ...]
+    drawn_for: str
+    """The sensor that shows it most, whose course is drawn."""
     course: tuple[float, ...]
-    """(R,) m/s² (rad/s), as the first sensor of the finding shows it, about its mean."""
+    """(R,) m/s² (rad/s), as that sensor has it, about its mean."""
     measured: tuple[float, ...]
-    """(R,) the same as all sensors together read it, each scaled onto the first."""
+    """(R,) the same as all sensors together read it, each scaled onto that one."""
     band: tuple[float, ...]
     """(R,) one standard error of what they read."""
 

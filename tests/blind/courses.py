@@ -18,7 +18,7 @@ BLOCKS = (
 SPREAD = 0.6
 """Of the ln of the sizes: a sensor in six shows less than half of what is usual, one in six almost twice as much."""
 SHOWN = 0.4
-"""Share of a course that the calibration must leave: a step between the runs of a stand is taken for a turn of the axes."""
+"""Share of a course that the calibration must leave: a step between the runs of a stand is taken for a turn."""
 SAFE = 4
 """Rows before and after a step at least."""
 

@@ -15,10 +15,11 @@ def named_cause(cause: Cause, sensors: tuple[str, ...], p_value: float, strength
     return Finding(cause.identifier, sentence(cause, sensors), cause.advice, sensors, p_value, strength)
 
 
-def shared_event(cause: Cause, finding: Finding) -> Finding:
-    """A finding of several sensors that share one event, in words for all of them."""
-    text = cause.shared_sentence.format(sensors=", ".join(finding.sensors))
-    return replace(finding, sentence=text[:1].upper() + text[1:], advice=cause.shared_advice)
+def shared_course(cause: Cause, finding: Finding, who: str, more: int) -> Finding:
+    """A finding of sensors that share a course, in words for all of them; ``more`` only follow it."""
+    text = cause.shared_sentence.format(sensors=who)
+    besides = f" {more} more follow it below what can be named of one alone." if more else ""
+    return replace(finding, sentence=text[:1].upper() + text[1:] + besides, advice=cause.shared_advice)
 
 
 def listed(sensors: tuple[str, ...]) -> str:

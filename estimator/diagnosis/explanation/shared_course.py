@@ -10,13 +10,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.diagnosis.explanation.extended_model import Amplitudes
-from estimator.diagnosis.explanation.naming import merged, shared_event
+from estimator.diagnosis.explanation.naming import merged, shared_course
 from estimator.diagnosis.results import Finding, Shared
 from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.session import Array
+from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 
 ALL, SOME = "all", "some"
 """Groups of sensors; one of a kind is called by the kind."""
+
+WHO = {
+    ALL: "all sensors of the block",
+    ACCELEROMETER: "all accelerometers of the block",
+    GYROSCOPE: "all gyros of the block",
+}
+"""Groups in words."""
+
+LISTED = 8
+"""Sensors that a sentence names; more are counted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,25 +42,36 @@ class Member:
 def shared_finding(state: SearchState, members: Sequence[Member], fitted: Amplitudes) -> Finding:
     """The one finding of sensors that share a course; those that only follow it are counted in it."""
     named = [m for m in members if not m.detection.follows] or list(members)
-    more = [m for m in members if m not in named]
-    cause = members[0].detection.best.cause
-    whole = shared_event(cause, merged([(cause, m.finding) for m in named])[0])
+    more, cause = [m for m in members if m not in named], members[0].detection.best.cause
+    group = group_of(state, [m.detection.best.sensors[0] for m in members])
+    who = WHO.get(group) or some([m.finding.sensors[0] for m in named], state.sensor_count)
+    whole = merged([(cause, m.finding) for m in sorted(named, key=lambda m: m.detection.best.sensors)])[0]
+    whole = shared_course(cause, whole, who, len(more) if group == SOME else 0)
     shape, sigma = shape_of(members, fitted)
     course, measured, band = drawn(state, [*named, *more], fitted)
     each = dict(zip(members[0].finding.nonlinear, shape, strict=False))
     shared = Shared(
-        group=group_of(state, [m.detection.best.sensors[0] for m in members]),
+        group=group,
         shape=each,
         shape_sigma=dict(zip(each, sigma, strict=False)),
         more=tuple(m.finding.sensors[0] for m in more),
         more_amplitude=tuple(m.finding.amplitude[0] for m in more),
         more_sigma=tuple(m.finding.sigma[0] for m in more),
+        drawn_for=named[0].finding.sensors[0],
         course=tuple(course.tolist()),
         measured=tuple(measured.tolist()),
         band=tuple(band.tolist()),
     )
     strength = float(np.sqrt(sum(m.finding.strength**2 for m in members)))
     return replace(whole, shared=shared, strength=strength, nonlinear_each=(each,) * len(named))
+
+
+def some(names: Sequence[str], count: int) -> str:
+    """``A1, A4 and A5``, in the order of the block; of many, how many of so many they are."""
+    if len(names) > LISTED:
+        return f"{len(names)} of {count} sensors"
+    order = sorted(names, key=lambda name: (name.rstrip("0123456789"), len(name), name))
+    return f"{', '.join(order[:-1])} and {order[-1]}"
 
 
 def group_of(state: SearchState, sensors: Sequence[int]) -> str:

@@ -38,7 +38,13 @@ from estimator.diagnosis.signatures.free_course import FreeCourse
 from estimator.diagnosis.signatures.products import Products
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
-from estimator.diagnosis.signatures.wandering import log_beside_wandering, log_marginal, log_mean, log_turning, wanderings
+from estimator.diagnosis.signatures.wandering import (
+    log_beside_wandering,
+    log_marginal,
+    log_mean,
+    log_turning,
+    wanderings,
+)
 from estimator.least_squares import orthonormal
 from estimator.session import Array
 from estimator.significance import family_wise, p_value
@@ -304,7 +310,9 @@ def noise_given_course(residuals: WhitenedResiduals, course: Course, unit: Array
 def places_of(start: SearchState, course: Course) -> float:
     """Number of shapes and sets of sensors among which a course with its sensors was chosen."""
     kinds = start.baseline.setting.kinds
-    return course.tried * float(np.exp(log_sets(counts_of(kinds), {kinds[i] for i in course.sensors}, len(course.numbers))))
+    return course.tried * float(
+        np.exp(log_sets(counts_of(kinds), {kinds[i] for i in course.sensors}, len(course.numbers)))
+    )
 
 
 def priced(start: SearchState, followed: Followed) -> tuple[Scored, ...]:

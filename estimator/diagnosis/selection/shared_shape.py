@@ -72,7 +72,10 @@ def refined_together(residuals: WhitenedResiduals, members: Sequence[Scored], at
     traces = [traces_at(residuals, cause, shapes, lasting=lasting) for shapes in tried]
     best = int(np.argmax([explained(columns, residuals.z, attributed) for columns in traces]))
     shapes, columns = tried[best], traces[best]
-    each = [replace(s, shape=shape, trace=columns[:, k : k + 1]) for k, (s, shape) in enumerate(zip(members, shapes, strict=True))]
+    each = [
+        replace(s, shape=shape, trace=columns[:, k : k + 1])
+        for k, (s, shape) in enumerate(zip(members, shapes, strict=True))
+    ]
     sizes = size_of(columns, residuals.z, attributed)
     bent = np.concatenate([cause.derivative(setting, shape) for shape in shapes], axis=-1) @ sizes
     moved = bent_trace(residuals, cause, shapes, sizes, lasting=lasting)

@@ -10,9 +10,9 @@ projected out, and amplitudes N(0, g),
     ln B = ½ z'X(X'X + I/g)⁻¹X'z − ½ ln|I + g·X'X|,        mean over g
 
 against no effect in known noise. In noise known up to a factor from ν degrees of freedom, with Q twice the first term,
-it is −½ ν ln(1 − Q/z'z) instead. Traces Y of a course that sensors share are weighed beside the waves with (I + g·XX')⁻¹
-in place of the noise, which the eigenvectors of X'X give for every g at once. The same of the three amplitudes of a block that turned before one of the rows, a
-mean over rows: every sensor shows that too, by its axis.
+it is −½ ν ln(1 − Q/z'z) instead. Traces of a course that sensors share are weighed beside the waves with the inverse of
+1 + g·XX' in place of the noise, which the eigenvectors of X'X give for every g at once. The same of the three
+amplitudes of a block that turned before one of the rows, a mean over rows: every sensor shows that too, by its axis.
 """
 
 from collections.abc import Sequence
