@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
+from estimator.causes import CATALOGUE, OF_SEVERAL, ON_TURNTABLE, Cause
 from service.languages import python_sources, typst_sources
 from service.languages.message import LETTERS, PLACE, Message
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
@@ -90,7 +90,9 @@ def messages() -> Iterator[Message]:
 def _all() -> Iterator[Message]:
     yield from (Message(word, place="service/languages/short.py") for word in STANDING_ALONE)
     yield from (
-        Message(text, place="estimator/causes") for cause in (*CATALOGUE, *ON_TURNTABLE) for text in _names_of(cause)
+        Message(text, place="estimator/causes")
+        for cause in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL)
+        for text in _names_of(cause)
     )
     yield from (Message(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
     for path in sorted((ROOT / TEMPLATES).glob("*.html")):

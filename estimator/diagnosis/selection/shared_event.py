@@ -58,8 +58,9 @@ CLOSEST = 3
 OVERLAP = 1e-4
 """Least eigenvalue of the correlation of traces that counts as a direction: below it amplitudes would cancel."""
 
-ONE_ROW = 0.5
-"""Share of a shape's energy that one row may hold: more is something that befell the row."""
+ONE_ROW = 0.7
+"""Share of a shape's energy that one row may hold, as the first does of a block that settles within three: more is
+something that befell the row."""
 
 RULED_OUT = 20.0
 """ln evidence by which a rival of a course is out of the question: no list shows a share of 1e-9."""
