@@ -18,7 +18,7 @@ BLOCKS = (
 SPREAD = 0.6
 """Of the ln of the sizes: a sensor in six shows less than half of what is usual, one in six almost twice as much."""
 SHOWN = 0.4
-"""Share of a course that the calibration must leave: a step between the runs of a stand is taken for a turn."""
+"""Share of a step that the calibration must leave: one between the runs of a stand is taken for a turn of the axes."""
 SAFE = 4
 """Rows before and after a step at least."""
 
@@ -77,7 +77,7 @@ def draw_course(
     m = world.unit.size
     shape, value = COURSES[course](time, rng)
     sensors = np.sort(rng.choice(m, count, replace=False))
-    if _share_left(block, world, up, sensors, shape) < SHOWN:
+    if course == "step" and _share_left(block, world, up, sensors, shape) < SHOWN:
         return draw_course(block, course, count, together, rng, even=even)
     each = np.ones(count) if even else np.exp(SPREAD * rng.standard_normal(count))
     strengths = together * each / np.linalg.norm(each)
@@ -119,7 +119,7 @@ def draw_settling_at(block: Block, shares: Array, each: float, rng: np.random.Ge
 
 
 def _share_left(block: Block, world: Session, up: Array, sensors: Array, shape: Array) -> float:
-    """Least share, over some sensors, of a course (R,) that the calibration leaves."""
+    """Least share, over some sensors, of a step (R,) that the calibration leaves."""
     error = np.hypot(world.noise.reading, world.noise.repeatability)
     alone = np.linalg.norm(shape - shape.mean()) / error
     return min(float(strength_left(block, world, up, int(i), shape[:, None])[0] / alone[i]) for i in sensors)

@@ -62,6 +62,9 @@ ONE_ROW = 0.7
 """Share of a shape's energy that one row may hold, as the first does of a block that settles within three: more is
 something that befell the row."""
 
+MOST = 1e15
+"""Shapes and sets of sensors that are counted: nothing that was chosen among more is believed."""
+
 RULED_OUT = 20.0
 """ln evidence by which a rival of a course is out of the question: no list shows a share of 1e-9."""
 
@@ -326,7 +329,7 @@ def priced(start: SearchState, followed: Followed) -> tuple[Scored, ...]:
     for member in refined_together(start.residuals, [course.scored(k) for k in order], basis):
         scored.append(rescored(start.residuals, member, basis))
         basis = extended_basis(basis, scored[-1].trace)
-    places = max(round(places_of(start, course)), 1)
+    places = max(round(min(places_of(start, course), MOST)), 1)
     first = replace(scored[0], places=places, log_evidence=scored[0].log_evidence - float(np.log(places)))
     return (first, *scored[1:])
 

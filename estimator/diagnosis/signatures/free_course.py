@@ -28,6 +28,9 @@ SIZES = 4.0 ** np.arange(1, 9, 2)
 TURNS = 12
 """Of the regressions by turns; two courses that are told apart at all part by a factor each turn."""
 
+MOST = 30.0
+"""ln n at most: beyond it no course is believed, and n would no longer be a number."""
+
 RIDGE = 0.1
 """Prior information of a wave on a sensor where the turns start."""
 
@@ -70,7 +73,7 @@ class FreeCourse:
         given = float(np.linalg.slogdet(np.eye(m) + g * of_sizes(gram, v))[1])
         prior = 0.5 * float(v @ v)
         value = explained - prior - 0.5 * float(beta @ beta) / g - 0.5 * whole
-        return cls(v, beta, value, float(np.exp(prior + 0.5 * (whole - given))))
+        return cls(v, beta, value, float(np.exp(min(prior + 0.5 * (whole - given), MOST))))
 
 
 def of_sizes(gram: Array, v: Array) -> Array:
