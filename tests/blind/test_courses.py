@@ -1,4 +1,4 @@
-"""A board that warms is one finding of all that warm, and of nobody else; what each has to itself is no course of all."""
+"""A board that warms is one finding of all that warm and of nobody else; what each has to itself is not shared."""
 
 import numpy as np
 import pytest

@@ -21,7 +21,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.arrays import eigh
 from estimator.causes.contract import SensorCause, Shape
@@ -211,20 +210,25 @@ def closest(start: SearchState, every: Sequence[Course]) -> list[Course]:
     energy, freedom = energies(start.residuals, every)
     price = np.log([course.tried for course in every])
     whole = bayes_factor(energy, freedom) - price
-    few = np.array([likeliest_few(start, course) for course in every]) - price
+    few = likeliest_few(start, every) - price
     if (p_value(energy, freedom) * len(every)).min() > SCREEN and few.max() < SURE:
         return []
     leaders = [k for values in (whole, few) for k in np.argsort(-values, kind="stable")[:CLOSEST].tolist()]
     return [every[k] for k in dict.fromkeys(leaders)]
 
 
-def likeliest_few(start: SearchState, course: Course) -> float:
-    """ln p of the likeliest set of a course's sensors (`membership.py`) if their traces did not overlap."""
-    along = np.sort((start.residuals.z @ unit_traces(course)) ** 2)[::-1]
-    each = 0.5 * along * SIZES[:, None] / (1 + SIZES[:, None]) - 0.5 * np.log1p(SIZES[:, None])
-    together = logsumexp(np.cumsum(each, axis=1), axis=0) - np.log(len(SIZES))
-    counts, kinds = counts_of(start.baseline.setting.kinds), set(start.baseline.setting.kinds)
-    return float(max(value - log_sets(counts, kinds, k) for k, value in enumerate(together.tolist(), 1)))
+def likeliest_few(start: SearchState, every: Sequence[Course]) -> Array:
+    """(C,) ln p of the likeliest set of each course's sensors (`membership.py`) if their traces did not overlap."""
+    kinds = start.baseline.setting.kinds
+    counts, values = counts_of(kinds), []
+    price = np.array([log_sets(counts, set(kinds), k) for k in range(1, len(kinds) + 1)])
+    grown = 1 + SIZES[:, None]
+    for course in every:
+        along = np.sort((start.residuals.z @ unit_traces(course)) ** 2)[::-1]
+        each = np.cumsum(0.5 * along * SIZES[:, None] / grown - 0.5 * np.log(grown), axis=1)
+        together = np.logaddexp.reduce(each, axis=0) - np.log(len(SIZES))
+        values.append((together - price[: len(together)]).max())
+    return np.array(values)
 
 
 def likeliest(start: SearchState, near: Sequence[Course]) -> Followed | None:
