@@ -4,7 +4,7 @@ Where two causes leave the very same trace the earlier one is named first: what 
 blocks have.
 """
 
-from estimator.causes import environment, fixture, gyro, lag, record, sensor, stand, turntable, vibration
+from estimator.causes import environment, fixture, gyro, lag, record, sensor, shared, stand, turntable, vibration
 from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 
@@ -54,14 +54,16 @@ CATALOGUE: tuple[Cause, ...] = (
 
 ON_TURNTABLE: tuple[Cause, ...] = (turntable.LeverArm(),)
 """What is looked for in alignments; `CATALOGUE` in calibrations."""
+OF_SEVERAL: tuple[Cause, ...] = (shared.SharedCourse(),)
+"""What only several sensors together show."""
 UNEXPLAINED = "unexplained"
 
 
 def find(identifier: str) -> Cause | None:
     """The cause called ``identifier``; None where the catalogue holds none, as of a result of another version."""
-    return next((c for c in (*CATALOGUE, *ON_TURNTABLE) if c.identifier == identifier), None)
+    return next((c for c in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL) if c.identifier == identifier), None)
 
 
 def cause(identifier: str) -> Cause:
     """The cause called ``identifier``; KeyError if the catalogue holds none."""
-    return {c.identifier: c for c in (*CATALOGUE, *ON_TURNTABLE)}[identifier]
+    return {c.identifier: c for c in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL)}[identifier]

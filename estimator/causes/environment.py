@@ -36,6 +36,8 @@ class BiasTemperature(SensorCause):
     alike = True
     sentence = "The zero of {sensors} follows the temperature."
     advice = "Model the temperature coefficient of the bias, or hold the temperature during the session."
+    shared_sentence = "The zeros of {sensors} follow the temperature together."
+    shared_advice = "Model the temperature coefficients of these biases, or hold the temperature during the session."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 1) T − T̄, °C."""
@@ -65,6 +67,8 @@ class TemperatureRate(SensorCause):
     alike = True
     sentence = "The zero of {sensors} follows how fast the temperature changes."
     advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
+    shared_sentence = "The zeros of {sensors} follow together how fast the temperature changes."
+    shared_advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
 
     def available(self, setting: Setting) -> bool:
         return super().available(setting) and setting.time is not None and bool(np.all(np.diff(setting.time) > 0))
@@ -85,6 +89,8 @@ class BiasRamp(SensorCause):
     alike = True
     sentence = "The zero of {sensors} drifts steadily through the session."
     advice = "Repeat the first position at the end; let the unit warm up longer; watch this sensor."
+    shared_sentence = "The zeros of {sensors} drift together, steadily through the session."
+    shared_advice = "Repeat the first position at the end; let the unit warm up longer, or record its temperature."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 1) t − t̄, s."""
@@ -134,6 +140,8 @@ class WarmUp(GridCause):
     alike = True
     sentence = "The zero of {sensors} settles after switching on."
     advice = "Switch the unit on earlier and wait for several time constants before the first position."
+    shared_sentence = "The zeros of {sensors} settle together after switching on."
+    shared_advice = "Switch the unit on earlier and wait for three time constants, or record its temperature."
     steps = 10
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:

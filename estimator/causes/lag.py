@@ -52,6 +52,8 @@ class ThermalLag(SensorCause):
         "Change the temperature more slowly than the time constant, or let the unit soak; model the coefficient with "
         "its time constant until then."
     )
+    shared_sentence = "The zeros of {sensors} follow the temperature together, and late."
+    shared_advice = "Change the temperature more slowly than the time constant, or let the unit soak before measuring."
     steps = 10
 
     def available(self, setting: Setting) -> bool:

@@ -67,6 +67,45 @@ class OverSessions(Document, forms={"since": MOMENT}):
     """Probability that this session has it too."""
 
 
+@dataclass(frozen=True)
+class Shared(
+    Document,
+    order=(
+        "group",
+        "shape",
+        "shape_sigma",
+        "more",
+        "more_amplitude",
+        "more_sigma",
+        "drawn_for",
+        "course",
+        "measured",
+        "band",
+    ),
+):
+    """The one course that the sensors of a finding follow, each by a size of its own. R rows."""
+
+    group: str
+    """``all`` sensors of the block, all of a kind (``accelerometer``, ``gyroscope``), or ``some``."""
+    shape: dict[str, float]
+    """The shape parameters that all have, by unit, rows counted from 1."""
+    shape_sigma: dict[str, float]
+    """Of those that are continuous, where the session tells them."""
+    more: tuple[str, ...]
+    """Sensors that follow it below what can be named of one alone."""
+    more_amplitude: tuple[float, ...]
+    """Of these, in the unit of the finding's amplitudes for their kind."""
+    more_sigma: tuple[float, ...]
+    drawn_for: str
+    """The sensor that shows it most, whose course is drawn."""
+    course: tuple[float, ...]
+    """(R,) m/s² (rad/s), as that sensor has it, about its mean."""
+    measured: tuple[float, ...]
+    """(R,) the same as all sensors together read it, each scaled onto that one."""
+    band: tuple[float, ...]
+    """(R,) one standard error of what they read."""
+
+
 def _with_all_shapes(document: dict[str, Any]) -> dict[str, Any]:
     """Earlier versions stated the shape of the first sensor alone."""
     return document | {"nonlinear_each": document.get("nonlinear_each") or [document["nonlinear"]]}
@@ -78,7 +117,9 @@ class Finding(
     order=(
         "cause", "sensors", "amplitude", "sigma", "units", "nonlinear", "nonlinear_each", "p_value", "strength",
         "alternatives", "separations", "ranking", "sentence", "advice", "parity", "new", "over_sessions",
+        "shared",
     ),
+    optional=("shared",),
     earlier=_with_all_shapes,
 ):  # fmt: skip
     """One named cause with its evidence."""
@@ -106,6 +147,8 @@ class Finding(
     """Whether it came since the history; None without history or where the session cannot tell."""
     over_sessions: OverSessions | None = None
     """Of what only several sessions show together: the amplitudes are theirs; None of what this session shows."""
+    shared: Shared | None = None
+    """Where all its sensors follow one course; None where each is a matter of its own."""
 
     @property
     def nonlinear(self) -> dict[str, float]:

@@ -1,16 +1,19 @@
 """A diagnosis in one line, and the course of the applied vector, as sections of a page."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.diagnosis.results import Course, Structure
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Course, Shared, Structure
 from estimator.message import say
-from estimator.results import Residuals
+from estimator.results import Calibration, Residuals
 from service.diagnosis.charts import course_charts, measure_of
+from service.diagnosis.shared_charts import shared_chart
 from service.diagnosis.words.structures import course_in_words
 from service.kit.failure_words import session_failed
+from service.kit.measures import COVERAGE, deviation_measure
 from service.sessions.charts import ChartSet
 from service.sessions.records import DiagnosisState, DiagnosisSummary
 from service.sessions.residual_table import ResidualTable, rows_of
@@ -57,6 +60,41 @@ def course_views(structures: Sequence[Structure], residuals: Residuals) -> tuple
     """Every course that can be drawn; one without components is told in words alone."""
     courses = [s.course for s in structures if s.course is not None and s.course.components]
     return tuple(_view(course, residuals, f"course-{number}") for number, course in enumerate(courses, 1))
+
+
+@dataclass(frozen=True)
+class SharedView:
+    """The course of one finding, for people."""
+
+    sensor: str
+    """That shows it most."""
+    chart: ChartSet
+    table: ResidualTable
+
+
+def shared_views(findings: Sequence[Finding], calibration: Calibration) -> tuple[SharedView | None, ...]:
+    """Of every finding in turn; None where its sensors share no course."""
+    kinds = {sensor.name: sensor.kind for sensor in calibration.sensors}
+    return tuple(
+        None if f.shared is None else _shared(f.shared, kinds, calibration.residuals, f"shared-{number}")
+        for number, f in enumerate(findings, 1)
+    )
+
+
+def _shared(shared: Shared, kinds: Mapping[str, str], residuals: Residuals, name: str) -> SharedView:
+    kind = kinds[shared.drawn_for]
+    columns = np.stack([shared.course, shared.measured, COVERAGE * np.array(shared.band)], axis=1)
+    measure = deviation_measure(kind, "bias", float(np.max(np.abs(columns))))
+    heads = ("the course", "all sensors together", "U")
+    return SharedView(
+        sensor=shared.drawn_for,
+        chart=shared_chart(shared, kind, residuals, name),
+        table=ResidualTable(
+            heads=tuple(say("{c}, {label}", c=head, label=measure.label) for head in heads),
+            beta=residuals.beta is not None,
+            rows=rows_of(columns * measure.factor, residuals),
+        ),
+    )
 
 
 def _view(course: Course, residuals: Residuals, name: str) -> CourseView:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
+from estimator.causes import CATALOGUE, OF_SEVERAL, ON_TURNTABLE, Cause
 from estimator.message import PLACE
 from service.languages import python_sources, typst_sources
 from service.languages.entry import LETTERS, Entry
@@ -91,7 +91,9 @@ def messages() -> Iterator[Entry]:
 def _all() -> Iterator[Entry]:
     yield from (Entry(word, place="service/languages/short.py") for word in STANDING_ALONE)
     yield from (
-        Entry(text, place="estimator/causes") for cause in (*CATALOGUE, *ON_TURNTABLE) for text in _names_of(cause)
+        Entry(text, place="estimator/causes")
+        for cause in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL)
+        for text in _names_of(cause)
     )
     yield from (Entry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
     for path in sorted((ROOT / TEMPLATES).glob("*.html")):

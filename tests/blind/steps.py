@@ -54,11 +54,11 @@ class Stepped:
 
 def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apart: bool = False) -> Stepped:
     """So many sensors step by ``strengths`` (k,) standard errors each; ``apart``: each at a row of its own."""
-    world, up = _session(block, rng), _directions(rng)
+    world, up = session_of(block, rng), directions(rng)
     rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
     sensors = np.sort(rng.choice(m, len(strengths), replace=False))
     after = (np.arange(rows)[:, None] >= np.arange(rows)) * 1.0
-    seen = np.array([_strength(block, world, up, i, after) for i in range(m)])
+    seen = np.array([strength_left(block, world, up, i, after) for i in range(m)])
     alone = np.array([_strength_alone(world, i, after) for i in range(m)])
     able = np.flatnonzero((seen > SHOWN * alone).all(axis=0))
     able = able[(able >= SAFE) & (able <= rows - SAFE)]
@@ -69,12 +69,12 @@ def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apar
     added = np.zeros((rows, m))
     added[:, sensors] = after[:, row] * size
     names = tuple(world.unit.names[i] for i in sensors)
-    return Stepped(_file(block, world, up, added, rng), names, tuple((row + 1).tolist()), tuple(size.tolist()))
+    return Stepped(steps_file(block, world, up, added, rng), names, tuple((row + 1).tolist()), tuple(size.tolist()))
 
 
 def draw_others(block: Block, kind: str, strength: float, rng: np.random.Generator) -> Stepped:
     """What may look like a step of all zeros and is none, of so many standard errors: ``kind`` of `OTHERS`."""
-    world, up = _session(block, rng), _directions(rng)
+    world, up = session_of(block, rng), directions(rng)
     rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
     added = OTHERS[kind](world, rows, rng)
     common = kind == TURNED
@@ -82,7 +82,7 @@ def draw_others(block: Block, kind: str, strength: float, rng: np.random.Generat
         columns = np.zeros((rows, m, 1))
         columns[:, list(own), 0] = added[:, list(own)]
         added[:, list(own)] *= strength / float(_left(block, world, up, columns)[0])
-    return Stepped(_file(block, world, up, added, rng), tuple(world.unit.names), (), ())
+    return Stepped(steps_file(block, world, up, added, rng), tuple(world.unit.names), (), ())
 
 
 def _walks(world: Session, rows: int, rng: np.random.Generator) -> Array:
@@ -115,7 +115,7 @@ OTHERS: dict[str, Callable[[Session, int, np.random.Generator], Array]] = {
 """A block that turns is seen on a stand only: in orientations nothing is known of how it was held."""
 
 
-def _session(block: Block, rng: np.random.Generator) -> Session:
+def session_of(block: Block, rng: np.random.Generator) -> Session:
     unit = draw_unit(Arrangement(block.accelerometers, block.gyros), rng)
     site = draw_site(rng)
     wanted = Wanted(int(rng.integers(10, 17)), (False, True), rng.random() < 0.7, False, "wander", True, True)
@@ -125,12 +125,12 @@ def _session(block: Block, rng: np.random.Generator) -> Session:
     return Session(unit, draw_schedule(wanted, rng), site, draw_stand(site, rng), draw_mounting(rng), noise)
 
 
-def _directions(rng: np.random.Generator) -> Array:
+def directions(rng: np.random.Generator) -> Array:
     up = rng.standard_normal((ORIENTATIONS, 3))
     return np.asarray(up / np.linalg.norm(up, axis=1, keepdims=True))
 
 
-def _strength(block: Block, world: Session, up: Array, sensor: int, steps: Array) -> Array:
+def strength_left(block: Block, world: Session, up: Array, sensor: int, steps: Array) -> Array:
     """(S,) standard errors of steps (R, S) of one unit, m/s² or rad/s, beside what the calibration absorbs."""
     columns = np.zeros((steps.shape[0], world.unit.size, steps.shape[1]))
     columns[:, sensor] = steps
@@ -170,7 +170,7 @@ def _absorbed(world: Session, up: Array) -> Array:
     return (columns / world.noise.reading[:, None]).reshape(R * m, -1)
 
 
-def _file(block: Block, world: Session, up: Array, added: Array, rng: np.random.Generator) -> dict[str, Any]:
+def steps_file(block: Block, world: Session, up: Array, added: Array, rng: np.random.Generator) -> dict[str, Any]:
     if block.stand:
         readings, _ = measure(world, (), rng)
         return session_file(world, readings + world.unit.scale * added)

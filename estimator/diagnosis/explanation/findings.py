@@ -8,9 +8,10 @@ import numpy as np
 from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis.explanation.extended_model import Amplitudes
-from estimator.diagnosis.explanation.naming import merged, named_cause, shared_event
+from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
+from estimator.diagnosis.explanation.shared_course import Member, shared_finding
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.noise_claim import BEYOND_NOISE
@@ -31,20 +32,23 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     ``new``: of every finding, whether it came since the history.
     """
     named = [
-        (f.best.cause, finding(state, f, fitted, part, since))
+        Member(f, finding(state, f, fitted, part, since), part)
         for f, part, since in zip(state.detections, fitted.slices, new, strict=True)
     ]
     cause = noise_cause(state)
     excess = [] if cause is None else [excess_finding(state, cause, e) for e in state.excess]
-    together = (as_event(state, event) for event in merged(named))
-    return tuple(sorted((*together, *excess), key=lambda f: -f.strength))
+    shared = [shared_finding(state, members, fitted) for members in courses(named)]
+    own = merged([(m.detection.best.cause, m.finding) for m in named if not any(m in c for c in courses(named))])
+    return tuple(sorted((*shared, *own, *excess), key=lambda f: -f.strength))
 
 
-def as_event(state: SearchState, finding: Finding) -> Finding:
-    """A finding in the words of one event, where all its sensors share one."""
-    related = [f for f in state.detections if f.best.cause.identifier == finding.cause]
-    is_shared = len(related) > 1 and len({f.event for f in related}) == 1 and bool(related[0].event)
-    return shared_event(related[0].best.cause, finding) if is_shared else finding
+def courses(named: Sequence[Member]) -> list[list[Member]]:
+    """Findings of sensors that share a course, course by course."""
+    together: dict[tuple[str, tuple[int, ...]], list[Member]] = {}
+    for m in named:
+        if m.detection.event:
+            together.setdefault((m.detection.best.cause.identifier, m.detection.event), []).append(m)
+    return [members for members in together.values() if len(members) > 1]
 
 
 def finding(state: SearchState, detection: Detection, fitted: Amplitudes, part: slice, new: bool | None) -> Finding:

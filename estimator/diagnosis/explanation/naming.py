@@ -16,10 +16,12 @@ def named_cause(cause: Cause, sensors: tuple[str, ...], p_value: float, strength
     return Finding(cause.identifier, sentence(cause, sensors), cause.advice, sensors, p_value, strength)
 
 
-def shared_event(cause: Cause, finding: Finding) -> Finding:
-    """A finding of several sensors that share one event, in words for all of them."""
-    text = say(cause.shared_sentence, sensors=joined(", ", finding.sensors))
-    return replace(finding, sentence=capitalised(text), advice=cause.shared_advice)
+def shared_course(cause: Cause, finding: Finding, who: str, more: int) -> Finding:
+    """A finding of sensors that share a course, in words for all of them; ``more`` only follow it."""
+    text = capitalised(say(cause.shared_sentence, sensors=who))
+    if more:
+        text = joined(" ", (text, say("{more} more follow it below what can be named of one alone.", more=more)))
+    return replace(finding, sentence=text, advice=cause.shared_advice)
 
 
 def listed(sensors: tuple[str, ...]) -> str:

@@ -16,7 +16,13 @@ import numpy as np
 from estimator.calibration.calibrate import averaged
 from estimator.causes.contract import Cause
 from estimator.content import remembered
-from estimator.diagnosis.record.expected import Expected, explained, in_orientations, on_stand
+from estimator.diagnosis.record.expected import (
+    Expected,
+    explained,
+    in_orientations,
+    on_stand,
+    unexplained_in_halves,
+)
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
@@ -106,7 +112,7 @@ def clips_among(session: CalibrationSession, suspects: Sequence[Suspect], cause:
 def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
     """The sensor that is clipped in a single row, or in one on each side, where the readings do not fit together with
     it and do without: so much beyond its limit a row spoils the orientations that the linear search starts from."""
-    if explained(session):
+    if explained(session) or unexplained_in_halves(session):
         return []
     ends = [(UPPER, np.argmax), (LOWER, np.argmin)]
     felt = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]

@@ -38,6 +38,10 @@ Cells = tuple[int, Array]
 """A sensor, and rows (k,) of it."""
 
 
+HALVED = 12
+"""Accelerometers from which on each half of them, two triads, says by itself whether it fits."""
+
+
 @dataclass(frozen=True, eq=False)
 class Expected:
     """What a sensor should have read in k rows."""
@@ -96,8 +100,18 @@ def on_stand(session: CalibrationSession, cells: Cells) -> Expected | None:
 def explained(session: CalibrationSession) -> bool:
     """Whether accelerometers in orientations fit together within their stated noise, or state none to judge by."""
     felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
-    if not felt.any():
-        return True
+    return not felt.any() or fits(session, felt)
+
+
+def unexplained_in_halves(session: CalibrationSession) -> bool:
+    """Whether neither half of the accelerometers, every second one, fits together: it is no single one of them then."""
+    felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    second = felt & (np.cumsum(felt) % 2 == 0)
+    return felt.sum() >= HALVED and not fits(session, second) and not fits(session, felt & ~second)
+
+
+def fits(session: CalibrationSession, felt: Array) -> bool:
+    """Whether some accelerometers (m,) bool fit together within their stated noise, or state none to judge by."""
     prepared, stated = accelerometer_rows(session, felt, gravity(session.site))
     if not stated:
         return True

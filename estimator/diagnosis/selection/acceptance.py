@@ -18,7 +18,7 @@ from estimator.diagnosis.selection.noise_claim import (
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search import search
 from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.selection.shared_event import shared_event
+from estimator.diagnosis.selection.shared_event import is_apart, is_plainly_shared, searched_with_event, shared_event
 from estimator.diagnosis.signatures.noise import NoiseClaim
 
 
@@ -28,6 +28,7 @@ def accepted(start: SearchState) -> SearchState:
     An event of most sensors makes all of them scatter. It is one shape with a size of each, which cannot stand in for
     noise: where it leaves readings that scatter as stated, the stated noise is right.
     """
+    start = replace(start, apart=True) if is_apart(start) else start
     claims, state = doubted(start), None
     if not claims or shared_event(start):
         state = accepted_against_course(start)
@@ -83,6 +84,9 @@ def accepted_against_course(start: SearchState) -> SearchState:
 
 def fitting_causes(start: SearchState) -> SearchState:
     """The causes that a search finds and that fit; what sensors share counts once."""
+    plain = searched_with_event(start) if is_plainly_shared(start) else None
+    if plain is not None:
+        return without_misfits(with_refined_shapes(plain))
     state = without_misfits(with_refined_shapes(search(start)))
     shared = with_events(start, state)
     return state if shared is state else without_misfits(with_refined_shapes(shared))

@@ -10,10 +10,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.causes.contract import Shape
+from estimator.causes.shared import SharedCourse
 from estimator.content import once
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.prediction import FOLDS, Prediction, fold_of, predicted, predicted_without_effects
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.selection.chosen_together import shapes_together, units, without_formula
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
 from estimator.diagnosis.selection.search_state import NEW_DIRECTION, Detection, SearchState
@@ -37,7 +39,7 @@ def without_unpredictive(state: SearchState) -> SearchState:
 
     What they explained is then structure; where no pattern holds it, as it is.
     """
-    judged = [f for f in state.detections if predicts(state, f)]
+    judged = [f for unit in units(state.detections) if predicts(state, unit) for f in unit]
     if not judged:
         return state
     nothing = predicted_without_effects(state.baseline)
@@ -50,16 +52,16 @@ def without_unpredictive(state: SearchState) -> SearchState:
     return rest if rest.structures else replace(rest, structures=tuple(judged))
 
 
-def predicts(state: SearchState, detection: Detection) -> bool:
-    """Whether a finding says something of rows by which it was not chosen.
+def predicts(state: SearchState, unit: Sequence[Detection]) -> bool:
+    """Whether a finding, or all of one course together, says something of rows by which it was not chosen.
 
     It does not where it shows in what changed since the history rather than in the session's own rows, nor where a fold
     holds most of what shows of it: without those rows nobody could know.
     """
-    if detection.best.cause.between:
+    if unit[0].best.cause.between:
         return False
     rows, m = state.baseline.setting.rows, state.sensor_count
-    basis, _ = np.linalg.qr(detection.best.trace)
+    basis, _ = np.linalg.qr(np.concatenate([f.best.trace for f in unit], axis=1))
     fitted = (basis @ (basis.T @ state.residuals.z)) ** 2
     each = fitted[: rows * m].reshape(rows, m).sum(axis=1)
     by_fold = np.bincount(fold_of(rows), weights=each)
@@ -80,23 +82,50 @@ def chosen_in_folds(
     residuals: WhitenedResiduals, traces: Sequence[Traces], judged: Sequence[Detection]
 ) -> list[list[Array]]:
     """For every fold the columns (R, m, q), m/s² (rad/s), of the causes chosen without its rows."""
-    candidates = [list(shapes_of(traces, f)) for f in judged]
-    whitened = [alike(residuals, [shape for shape, _ in members]) for members in candidates]
+    found = [(unit, candidates(residuals, traces, unit)) for unit in units(judged)]
     chosen = []
     for rest in without_folds(residuals.baseline):
-        remaining, basis, z = rest.remaining, rest.basis, rest.z
-        columns = []
-        for members, groups in zip(candidates, whitened, strict=True):
-            weight = np.empty(len(members))
-            for group in groups:
-                weight[group.number] = weights(basis, z, group.columns[:, remaining])
-            best = int(np.argmax(weight - [shared for _, shared in members]))
-            columns.append(members[best][0].columns)
-            seen = residuals.whitened(members[best][0].columns)[remaining]
-            basis = extended_basis(basis, seen)
+        basis, z, columns = rest.basis, rest.z, []
+        for unit, known in found:
+            columns.append(chosen_from(residuals, known, unit, Rest(rest.remaining, basis, z)))
+            basis = extended_basis(basis, residuals.whitened(columns[-1])[rest.remaining])
             z = z - basis @ (basis.T @ z)
         chosen.append(columns)
     return chosen
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """Shapes among which a finding is chosen again."""
+
+    columns: tuple[Array, ...]
+    """(R, m, q) each, m/s² (rad/s)."""
+    price: tuple[float, ...]
+    """ln of how many share the prior of each one's cause."""
+    whitened: tuple["Alike", ...]
+
+
+def candidates(residuals: WhitenedResiduals, traces: Sequence[Traces], unit: Sequence[Detection]) -> Candidates:
+    """Those of a finding, or of all findings of one course."""
+    if len(unit) > 1 and not isinstance(unit[0].best.cause, SharedCourse):
+        priced = list(shapes_together(traces, unit, LEADERS))
+    elif len(unit) > 1:
+        priced = []
+    else:
+        priced = [(shape.columns, price) for shape, price in shapes_of(traces, unit[0])]
+    columns = tuple(each for each, _ in priced)
+    return Candidates(columns, tuple(price for _, price in priced), tuple(alike(residuals, columns)))
+
+
+def chosen_from(residuals: WhitenedResiduals, known: Candidates, unit: Sequence[Detection], rest: "Rest") -> Array:
+    """(R, m, q) m/s² (rad/s): the shape that is likeliest by the rows left."""
+    fitted = list(without_formula(residuals, unit, rest.remaining, rest.basis, rest.z)) if not known.columns else []
+    if fitted:
+        return fitted[0][0]
+    weight = np.empty(len(known.columns))
+    for group in known.whitened:
+        weight[group.number] = weights(rest.basis, rest.z, group.columns[:, rest.remaining])
+    return known.columns[int(np.argmax(weight - known.price))]
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,13 +178,13 @@ class Alike:
     """(S, N, q) standard errors per unit amplitude."""
 
 
-def alike(residuals: WhitenedResiduals, shapes: Sequence[Shape]) -> list[Alike]:
-    """Shapes whitened, those of equally many amplitudes together."""
-    width = np.array([shape.columns.shape[-1] for shape in shapes])
+def alike(residuals: WhitenedResiduals, shapes: Sequence[Array]) -> list[Alike]:
+    """Shapes (R, m, q), m/s² (rad/s), whitened, those of equally many amplitudes together."""
+    width = np.array([columns.shape[-1] for columns in shapes])
     groups = []
     for q in np.unique(width):
         number = np.flatnonzero(width == q)
-        white = residuals.whitened(np.concatenate([shapes[k].columns for k in number.tolist()], axis=-1))
+        white = residuals.whitened(np.concatenate([shapes[k] for k in number.tolist()], axis=-1))
         groups.append(Alike(number, white.reshape(len(white), -1, q).swapaxes(0, 1)))
     return groups
 

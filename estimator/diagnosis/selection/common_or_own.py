@@ -26,7 +26,8 @@ from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.selection.shared_event import with_shared_event
 from estimator.diagnosis.selection.start import restart_from
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course, components
-from estimator.diagnosis.signatures.scores import score
+from estimator.diagnosis.signatures.lasting import absorbed_before
+from estimator.diagnosis.signatures.scores import rescored, score
 from estimator.diagnosis.signatures.traces import Group, Scored
 from estimator.session import Array
 
@@ -280,8 +281,22 @@ def rescored_detections(start: SearchState, detections: Sequence[Detection]) -> 
         same = [s for s in score(start.residuals, candidates, nothing) if s.shape.nonlinear == old.best.shape.nonlinear]
         if same:
             best = max(same, key=lambda s: s.log_evidence)
-            seen.append(replace(old, best=sharing(best, old.best.places) if old.event else best))
+        elif old.best.shape.nonlinear:
+            best = rescored(start.residuals, traced(start, old.best), nothing)
+        else:
+            continue
+        seen.append(replace(old, best=sharing(best, old.best.places) if old.event else best))
     return tuple(seen)
+
+
+def traced(start: SearchState, old: Scored) -> Scored:
+    """A shape between the points of the grid with what the residuals of ``start`` show of it."""
+    columns, width = old.shape.columns, len(old.cause.units)
+    before = absorbed_before(start.residuals, old.cause, [old.shape.first(width)]) if old.lasting else 0.0
+    own = start.residuals.trace(columns[..., :width], before)
+    if columns.shape[-1] == width:
+        return replace(old, trace=own)
+    return replace(old, trace=np.concatenate([own, start.residuals.trace(columns[..., width:])], axis=1))
 
 
 def sharing(best: Scored, places: int) -> Scored:

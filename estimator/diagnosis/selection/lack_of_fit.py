@@ -53,7 +53,7 @@ def without_misfits(state: SearchState) -> SearchState:
 
 def without_common_rows(state: SearchState) -> SearchState:
     """The state without causes of single rows that most sensors show: something befell the rows, not the sensors."""
-    single = tuple(f for f in state.detections if f.best.cause.passing and f.best.sensors)
+    single = tuple(f for f in state.detections if f.best.cause.passing and f.best.sensors and not f.event)
     if 2 * len({f.best.sensors for f in single}) <= max(state.sensor_count, 4):
         return state
     detections = tuple(f for f in state.detections if f not in single)

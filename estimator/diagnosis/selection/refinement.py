@@ -29,6 +29,8 @@ def with_refined_shapes(state: SearchState) -> SearchState:
     that the parameter keeps its value of the grid.
     """
     for detection in state.detections:
+        if detection.event:
+            continue  # moved with all that share its course (`shared_shape.py`)
         best = refined(state, detection)
         if best is detection.best:
             continue

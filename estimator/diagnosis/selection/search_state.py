@@ -36,7 +36,9 @@ class Detection:
     unnamed: float = 0.0
     """Probability that no cause of the catalogue acts here, but something that only a free course describes."""
     event: tuple[int, ...] = ()
-    """Sensors that share one event with this finding, its own among them: all of them are one misfortune."""
+    """Sensors that share one course with this finding, its own among them: all of them are one misfortune."""
+    follows: bool = False
+    """Whether it is of a sensor that follows a shared course below what can be named alone."""
 
     @property
     def cause_log_evidence(self) -> float:
@@ -77,6 +79,8 @@ class SearchState:
     """Names taken back, because readings far out in the tails of the errors explain as much."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
+    apart: bool = False
+    """Whether it is known that sensors share no course, each wandering by itself."""
 
     @property
     def baseline(self) -> Baseline:

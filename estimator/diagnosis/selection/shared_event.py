@@ -1,59 +1,71 @@
-"""One event that several sensors show: a shape that they share, and a size of each.
+"""One course that several sensors show: a shape that they share, and a size of each.
 
-A bump, a break of the supply or a block seated anew moves the zeros of many sensors at one moment. Sensor by sensor
-that is as many misfortunes as sensors, which no session has; it is one, and is weighed as one.
+A board that warms, a bump or a break of the supply moves many sensors at once. Sensor by sensor that is as many
+misfortunes as sensors, which no session has; it is one, and is weighed as one.
 
 Theory
 ------
-The event adds k_i·h(r; ψ) at the input of every sensor i of a set S, with one ψ. Let X(ψ) be the whitened traces of the
-sensors side by side, what the calibration absorbs projected out, and X̂ an orthonormal basis of them: T = |X̂'z|² is χ²
-without the event, with as many degrees of freedom as sensors (the traces of sensors overlap where a row's β error or an
-unknown direction is common to them). ψ is where T of all sensors is largest, of the n_ψ that are tried. Which
-sensors belong to the event is chosen there jointly, for the traces of sensors that only follow others overlap with
-theirs: with A = X'X of k of m sensors, each trace of length one, and y = X'z, sizes that are N(0, g) give the set
+The course adds k_i·h(r; ψ) at the input of every sensor i of a set S, with one ψ. Let X(ψ) be the whitened traces of
+the sensors side by side, what the calibration absorbs projected out, and X̂ an orthonormal basis of them: T = |X̂'z|² is
+χ² without the course, with as many degrees of freedom as sensors (the traces of sensors overlap where a row's β error
+or an unknown direction is common to them). Of the n_ψ shapes of every cause those are looked at closely by which most
+sensors, or a few, show most. Which sensors follow is chosen there (`membership.py`), and which of them rather have a
+shape of their own (`shared_shape.py`); then ψ is moved to its best.
 
-    ln p(S) = ½ y'(A + I/g)⁻¹y − ½ ln|I + g·A| − ln C(m, k),        mean over g     (every k equally likely beforehand)
-
-The event is weighed as one finding against what was found sensor by sensor, and against zeros that wander, each by
-itself, or a block that turned (`wandering.py`).
+The course is weighed as one finding against what was found sensor by sensor, against zeros that wander, each by
+itself, beside it or instead of it, and against a block that turned (`wandering.py`).
 Any cause may be shared: those with a sentence for it (`Cause.shared_sentence`) can be named, the others are rivals.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import comb
 
 import numpy as np
 
 from estimator.arrays import eigh
+from estimator.causes.contract import SensorCause, Shape
+from estimator.causes.shared import SharedCourse
+from estimator.content import once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.backward import backward_elimination
+from estimator.diagnosis.selection.backward import FURTHER, backward_elimination
 from estimator.diagnosis.selection.forward import forward_selection, with_structures
-from estimator.diagnosis.selection.ranking import extended_basis, scores_given
-from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
+from estimator.diagnosis.selection.membership import SIZES, SURE, Loadings, Members, counts_of, log_sets
+from estimator.diagnosis.selection.ranking import conditional_log_evidence, extended_basis, scores_given
+from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Detection, SearchState
+from estimator.diagnosis.selection.shared_shape import APART, log_shared, powers, refined_together
+from estimator.diagnosis.signatures.free_course import FreeCourse
+from estimator.diagnosis.signatures.products import Products
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
-from estimator.diagnosis.signatures.wandering import log_marginal, log_mean, log_turning, log_wandering, marginal
+from estimator.diagnosis.signatures.wandering import (
+    log_beside_wandering,
+    log_marginal,
+    log_mean,
+    log_turning,
+    wanderings,
+)
+from estimator.least_squares import orthonormal
 from estimator.session import Array
 from estimator.significance import family_wise, p_value
 
-SURE = float(np.log(19))
-"""ln odds by which a sensor joins an event: one in twenty that joined last is a bystander."""
-
-SIZES = 4.0 ** np.arange(1, 9)
-"""g: mean square sizes of an event's sensors, standard errors, from 2 to 256 of them; all equally likely."""
-
 SCREEN = 0.01
-"""p-value of the best moment, all moments together, below which it is looked at closely; it names nothing."""
+"""p-value of the best course, all courses together, below which it is looked at closely; it names nothing."""
 
 CLOSEST = 3
-"""Moments that are looked at closely: next to the best one others may explain almost as much."""
+"""Courses that are looked at closely by either measure: next to the best one others may explain almost as much."""
 
 OVERLAP = 1e-4
 """Least eigenvalue of the correlation of traces that counts as a direction: below it amplitudes would cancel."""
 
-ONE_ROW = 0.5
-"""Share of a shape's energy that one row may hold: more is something that befell the row."""
+ONE_ROW = 0.7
+"""Share of a shape's energy that one row may hold, as the first does of a block that settles within three: more is
+something that befell the row."""
+
+MOST = 1e15
+"""Shapes and sets of sensors that are counted: nothing that was chosen among more is believed."""
+
+RULED_OUT = 20.0
+"""ln evidence by which a rival of a course is out of the question: no list shows a share of 1e-9."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +75,13 @@ class Course:
     traces: Traces
     numbers: tuple[int, ...]
     """Of the shapes, in the order of the sensors."""
+    tried: float
+    """n_ψ, how many nonlinear parameters the cause is tried with."""
+
+    @property
+    def sensors(self) -> tuple[int, ...]:
+        """Of its shapes."""
+        return tuple(int(i) for i in self.traces.sensor[list(self.numbers)])
 
     def on(self, sensors: Sequence[int]) -> "Course":
         """Those of some sensors."""
@@ -70,53 +89,91 @@ class Course:
 
     def of(self, numbers: Sequence[int]) -> "Course":
         """Those of some numbers."""
-        return Course(self.traces, tuple(numbers))
+        return replace(self, numbers=tuple(numbers))
 
-    def scored(self, k: int, places: int = 1) -> Scored:
+    def scored(self, k: int) -> Scored:
         """The shape of one number, still to be scored."""
         shape, trace = self.traces.whole(k)
-        return Scored(self.traces.cause, shape, self.traces.lasting[k], trace, 0.0, 0, 0.0, 1.0, places)
+        return Scored(self.traces.cause, shape, self.traces.lasting[k], trace, 0.0, 0, 0.0, 1.0, 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A course with the sensors that follow it."""
+
+    course: Course
+    """Of these sensors alone."""
+    sure: frozenset[int]
+    """Sensors that can be named alone."""
+    log_evidence: float
+    """Against no effect, the choice of shape and sensors paid for."""
 
 
 def with_shared_event(
     start: SearchState, state: SearchState, log_evidence: Callable[[SearchState, SearchState], float]
 ) -> SearchState:
-    """The state, or its rival with one event that sensors share and what is found beside it, whichever is likelier.
+    """The state, or its rival with one course that sensors share and what is found beside it, whichever is likelier.
 
     ``start``: nothing found; ``log_evidence`` of a state against ``start``.
     """
-    event = shared_event(start)
-    if not event:
-        return state
-    rival = searched_with_event(start, event)
+    rival = searched_with_event(start)
     is_likelier = rival is not None and log_evidence(start, rival) > log_evidence(start, state)
     return rival if rival is not None and is_likelier else state
 
 
-def searched_with_event(start: SearchState, event: tuple[Detection, ...]) -> SearchState | None:
-    """What is found beside an event; None where the search takes it for noise."""
-    state = forward_selection(replace(start, detections=event))
+@once
+def searched_with_event(start: SearchState) -> SearchState | None:
+    """What is found beside a shared course; None where there is none or the search takes it for noise."""
+    event = shared_event(start)
+    state = forward_selection(replace(start, detections=event)) if event else start
     if not any(f.event for f in state.detections):
         return None
     return backward_elimination(with_structures(state))
 
 
+def is_plainly_shared(start: SearchState) -> bool:
+    """Whether a shared course explains so much more than each sensor's own likeliest cause that nobody need search for
+    what the sensors would have without it."""
+    event = shared_event(start)
+    if not event:
+        return False
+    nothing = np.zeros((len(start.residuals.z), 0))
+    own: dict[int, Detection] = {}
+    given = scores_given(start, start.traces, None)
+    for k, value in given.ranked():
+        if value > FURTHER:
+            own.setdefault(int(given.sensor[k]), Detection(given.scored(k), 0.0, ()))
+    apart = conditional_log_evidence(start.residuals, nothing, tuple(own.values())) - FURTHER * max(len(own) - 1, 0)
+    return conditional_log_evidence(start.residuals, nothing, event) - apart > RULED_OUT
+
+
+@once
 def shared_event(start: SearchState) -> tuple[Detection, ...]:
-    """The most likely event, its sensors the strongest first; empty where there is none."""
+    """The most likely shared course, its sensors the strongest first; empty where there is none."""
+    candidate = None if start.apart else significant_course(start)
+    if candidate is None or has_likelier_rival(start, candidate[0]):
+        return ()
+    return ranked(start, *candidate)
+
+
+def is_apart(start: SearchState) -> bool:
+    """Whether sensors show something together, but each rather wanders by itself: whatever the noise is taken to be,
+    they share nothing then."""
+    candidate = significant_course(start)
+    return candidate is not None and has_likelier_rival(start, candidate[0])
+
+
+@once
+def significant_course(start: SearchState) -> tuple[Followed, tuple[Scored, ...]] | None:
+    """The likeliest course that several sensors follow, and what each shows; None where none is significant."""
     candidates = [t for t in start.traces if t.cause.shared_sentence and t.nuisance is None]
     every = [course for traces in candidates for course in courses(start.residuals, traces)]
-    if not every:
-        return ()
-    energy, freedom = energies(start.residuals, every)
-    best = np.argsort(-bayes_factor(energy, freedom), kind="stable")[:CLOSEST]
-    if p_value(energy[best[0]], freedom[best[0]]) * len(every) > SCREEN:
-        return ()
-    tried = [(every[k], *joined(start, every[k])) for k in best]
-    course, chosen, _ = max(tried, key=lambda candidate: candidate[2])
-    event = with_prior_cost(start, course, chosen, len(every)) if len(chosen) > 1 else ()
-    if not event or family_p_value(start, event) >= LEVEL or has_likelier_rival(start, course.of(chosen), len(every)):
-        return ()
-    return ranked(start, event)
+    every += without_formula(start)
+    followed = likeliest(start, closest(start, every)) if every else None
+    event = () if followed is None else priced(start, followed)
+    if followed is None or family_p_value(start, event) >= LEVEL:
+        return None
+    return followed, event
 
 
 def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
@@ -129,7 +186,92 @@ def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
     grouped: dict[tuple[float, ...], list[int]] = {}
     for k in np.flatnonzero(shown & (traces.sensor >= 0)).tolist():
         grouped.setdefault(traces.shapes[k].nonlinear, []).append(k)
-    return [Course(traces, tuple(numbers)) for numbers in grouped.values() if len(numbers) > 1]
+    several = [tuple(numbers) for numbers in grouped.values() if len(numbers) > 1]
+    return [Course(traces, numbers, len(several)) for numbers in several]
+
+
+def without_formula(start: SearchState) -> list[Course]:
+    """The likeliest smooth course that no formula gives, of all sensors; none in a block of one."""
+    residuals, setting, m = start.residuals, start.baseline.setting, start.sensor_count
+    if m < 2:
+        return []
+    found, cause = FreeCourse.of(wanderings(residuals)[1].trace, residuals.z, m), SharedCourse()
+    nonlinear = tuple(found.waves.tolist())
+    shapes = tuple(Shape((i,), cause.placed(setting, i, nonlinear), nonlinear) for i in range(m))
+    columns = np.concatenate([shape.columns for shape in shapes], axis=-1)
+    trace, raw = residuals.trace(columns, 0.0).T[..., None], np.linalg.norm(residuals.whitened(columns), axis=0)
+    products, sensor = Products.of(residuals, trace), np.arange(m)
+    traces = Traces(cause, shapes, (False,) * m, sensor, trace, raw[:, None], m, products)
+    return [replace(course, tried=found.tried) for course in courses(residuals, traces)]
+
+
+def closest(start: SearchState, every: Sequence[Course]) -> list[Course]:
+    """The courses that all sensors together, or a few of them, show best; none where that is chance."""
+    energy, freedom = energies(start.residuals, every)
+    price = np.log([course.tried for course in every])
+    whole = bayes_factor(energy, freedom) - price
+    few = likeliest_few(start, every) - price
+    if (p_value(energy, freedom) * len(every)).min() > SCREEN and few.max() < SURE:
+        return []
+    leaders = [k for values in (whole, few) for k in np.argsort(-values, kind="stable")[:CLOSEST].tolist()]
+    return [every[k] for k in dict.fromkeys(leaders)]
+
+
+def likeliest_few(start: SearchState, every: Sequence[Course]) -> Array:
+    """(C,) ln p of the likeliest set of each course's sensors (`membership.py`) if their traces did not overlap."""
+    kinds = start.baseline.setting.kinds
+    counts, values = counts_of(kinds), []
+    price = np.array([log_sets(counts, set(kinds), k) for k in range(1, len(kinds) + 1)])
+    grown = 1 + SIZES[:, None]
+    for course in every:
+        along = np.sort((start.residuals.z @ unit_traces(course)) ** 2)[::-1]
+        each = np.cumsum(0.5 * along * SIZES[:, None] / grown - 0.5 * np.log(grown), axis=1)
+        together = np.logaddexp.reduce(each, axis=0) - np.log(len(SIZES))
+        values.append((together - price[: len(together)]).max())
+    return np.array(values)
+
+
+def likeliest(start: SearchState, near: Sequence[Course]) -> Followed | None:
+    """The likeliest course that several sensors share rather than one having it; None where there is none."""
+    tried = [(course, loadings(start, course).members()) for course in near]
+    tried = [(course, members) for course, members in tried if members.are_several]
+    if not tried:
+        return None
+    course, members = max(tried, key=lambda pair: pair[1].log_evidence - np.log(pair[0].tried))
+    return without_departing(start, course, members)
+
+
+def without_departing(start: SearchState, course: Course, members: Members) -> Followed | None:
+    """A course with its members, but for those that have a shape of their own; None where all fit better apart."""
+    every = courses(start.residuals, course.traces)
+    kept = course.of([course.numbers[k] for k in members.chosen])
+    while len(kept.numbers) > 1:
+        others = [other.on(kept.sensors) for other in every if set(kept.sensors) <= set(other.sensors)]
+        apart, own = powers_apart(start, kept, others)
+        gained = [0.5 * float(values.max() - known) for values, known in zip(apart, own, strict=True)]
+        worst = int(np.argmax(gained))
+        if gained[worst] - np.log(course.tried) < FURTHER:
+            break
+        kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
+    if len(kept.numbers) < 2:
+        return None
+    together = energies(start.residuals, others)[0]
+    if log_shared(together, energy_of(start.residuals, kept)[0], apart, own) < APART:
+        return None
+    sure = {course.sensors[k] for k in members.sure} & set(kept.sensors)
+    return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)))
+
+
+def powers_apart(start: SearchState, course: Course, others: Sequence[Course]) -> tuple[list[Array], list[float]]:
+    """What each sensor of a course explains by its shape in every one of ``others`` beside what the rest of them share,
+    and by the one that it shares with them."""
+    shared, every, own = unit_traces(course), list[Array](), list[float]()
+    for k in range(len(course.sensors)):
+        of_sensor = course.traces.columns[[other.numbers[k] for other in others], :, 0].T
+        values = powers(start.residuals.z, np.column_stack([shared[:, k], of_sensor]), np.delete(shared, k, axis=1))
+        every.append(values[1:])
+        own.append(float(values[0]))
+    return every, own
 
 
 def energies(residuals: WhitenedResiduals, every: Sequence[Course]) -> tuple[Array, Array]:
@@ -155,38 +297,11 @@ def unit_traces(course: Course) -> Array:
     return np.asarray(flat / np.where(norms > 0, norms, 1.0))
 
 
-def joined(start: SearchState, course: Course) -> tuple[list[int], float]:
-    """Numbers of the shapes of the sensors that a course acts on, and the ln of how likely they are.
-
-    The likeliest set is climbed to from none and from all: where what sensors show overlaps, one of them may show what
-    others do, and many together what none does alone.
-    """
-    unit = unit_traces(course)
-    gram, along = unit.T @ unit, unit.T @ start.residuals.z / noise_given_course(start.residuals, course, unit)
-    everyone = frozenset(range(len(along)))
-    climbed = [likeliest_set(gram, along, start.sensor_count, begun) for begun in (frozenset[int](), everyone)]
-    best, value = max(climbed, key=lambda result: result[1])
-    return [course.numbers[k] for k in sorted(best)], value
-
-
-def likeliest_set(gram: Array, along: Array, m: int, begun: frozenset[int]) -> tuple[frozenset[int], float]:
-    """The sensors, one joining or leaving at a time from those ``begun`` with, and the ln of how likely they are."""
-    best, value = begun, log_likely(gram, along, m, begun)
-    while True:
-        near = [best ^ {k} for k in range(len(along))]
-        values = [log_likely(gram, along, m, members) for members in near]
-        if max(values) <= value:
-            return best, value
-        value = max(values)
-        best = near[values.index(value)]
-
-
-def log_likely(gram: Array, along: Array, m: int, chosen: frozenset[int]) -> float:
-    """ln p of a set of sensors, of m, less what every one that joins must be surer; ``gram`` (k, k), ``along`` (k,) of
-    traces of length one."""
-    members = sorted(chosen)
-    power, size = marginal(gram[np.ix_(members, members)], along[members], SIZES)
-    return log_mean(0.5 * (power - size)) - float(np.log(comb(m, len(members)))) - SURE * max(len(members) - 1, 0)
+def loadings(start: SearchState, course: Course) -> Loadings:
+    """What the sensors show along a course, in the noise that it leaves where none is known."""
+    unit, kinds = unit_traces(course), start.baseline.setting.kinds
+    along = unit.T @ start.residuals.z / noise_given_course(start.residuals, course, unit)
+    return Loadings(unit.T @ unit, along, tuple(kinds[i] for i in course.sensors), counts_of(kinds))
 
 
 def noise_given_course(residuals: WhitenedResiduals, course: Course, unit: Array) -> Array:
@@ -200,77 +315,79 @@ def noise_given_course(residuals: WhitenedResiduals, course: Course, unit: Array
     return np.asarray(np.where(residuals.baseline.unstated[sensors], np.sqrt(ratio), 1.0))
 
 
-def with_prior_cost(start: SearchState, course: Course, numbers: Sequence[int], moments: int) -> tuple[Scored, ...]:
-    """Sensors of an event, each scored on what those before it leave; the first pays for the choice of them, and of
-    one of so many ``moments``."""
-    basis, priced_scores = np.zeros((len(start.residuals.z), 0)), list[Scored]()
-    for k in numbers:
-        priced_scores.append(rescored(start.residuals, course.scored(k), basis))
-        basis = extended_basis(basis, priced_scores[-1].trace)
-    m = start.sensor_count
-    places = moments * comb(m, len(priced_scores)) * m
-    first = replace(priced_scores[0], places=places, log_evidence=priced_scores[0].log_evidence - float(np.log(places)))
-    return (first, *priced_scores[1:])
+def places_of(start: SearchState, course: Course) -> float:
+    """Number of shapes and sets of sensors among which a course with its sensors was chosen."""
+    kinds = start.baseline.setting.kinds
+    return course.tried * float(
+        np.exp(log_sets(counts_of(kinds), {kinds[i] for i in course.sensors}, len(course.numbers)))
+    )
+
+
+def priced(start: SearchState, followed: Followed) -> tuple[Scored, ...]:
+    """Sensors of a course at its best shape, each scored on what those before it leave, the strongest first; the first
+    pays for the choice of shape and sensors."""
+    course = followed.course
+    strength = np.abs(unit_traces(course).T @ start.residuals.z)
+    order = [course.numbers[k] for k in np.argsort(-strength, kind="stable").tolist()]
+    basis, scored = np.zeros((len(start.residuals.z), 0)), list[Scored]()
+    for member in refined_together(start.residuals, [course.scored(k) for k in order], basis):
+        scored.append(rescored(start.residuals, member, basis))
+        basis = extended_basis(basis, scored[-1].trace)
+    places = max(round(min(places_of(start, course), MOST)), 1)
+    first = replace(scored[0], places=places, log_evidence=scored[0].log_evidence - float(np.log(places)))
+    return (first, *scored[1:])
 
 
 def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
-    """p-value of an event or anything as strong in the catalogue, at any moment, on any sensors (Bonferroni)."""
+    """p-value of a course or anything as strong in the catalogue, of any shape, on any sensors (Bonferroni)."""
     power, freedom = sum(s.statistic for s in event), sum(s.freedom for s in event)
     return family_wise(float(p_value(power, freedom)), event[0].places * start.families)
 
 
-def has_likelier_rival(start: SearchState, course: Course, moments: int) -> bool:
-    """Whether something else is likelier than an event of a course's sensors at one of so many ``moments``: zeros that
-    wander, each by itself, or the whole block turned at one moment."""
-    m, k = start.sensor_count, len(course.numbers)
-    event = log_mean(log_marginal(start.residuals, unit_traces(course), SIZES)) - float(np.log(moments))
-    rivals = log_wandering(start.residuals), log_turning(start.residuals, SIZES)
-    return event - float(np.log(m * comb(m, k))) < max(rivals)
+def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
+    """Whether something else is likelier than a course that sensors share: zeros that wander, each by itself, or the
+    whole block turned at one moment. Zeros that wander are a misfortune more at least; beside them a course must be
+    plain."""
+    unit, price = unit_traces(followed.course), float(np.log(places_of(start, followed.course)))
+    alone = log_mean(log_marginal(start.residuals, unit, SIZES)) - price
+    wandering, beside = log_beside_wandering(start.residuals, unit, SIZES)
+    if log_turning(start.residuals, SIZES) > max(alone, beside - price):
+        return True
+    return alone < wandering - FURTHER and beside - price - SURE < wandering
 
 
-def joint_with_others(start: SearchState, event: Sequence[Scored], member: Scored) -> Array:
-    """(n, f) orthonormal, dimensionless: the span of what an event does to all sensors but one."""
-    attributed = np.zeros((len(start.residuals.z), 0))
-    for other in event:
-        attributed = attributed if other is member else extended_basis(attributed, other.trace)
-    return attributed
-
-
-def ranked(start: SearchState, event: Sequence[Scored]) -> tuple[Detection, ...]:
-    """The event's sensors as findings, with the causes that the same sensors may share instead; empty where one of
+def ranked(start: SearchState, followed: Followed, event: Sequence[Scored]) -> tuple[Detection, ...]:
+    """The course's sensors as findings, with the causes that the same sensors may share instead; empty where one of
     these is likelier."""
-    sensors = sorted(s.sensors[0] for s in event)
+    sensors = followed.course.sensors
     power, freedom = sum(s.statistic for s in event), sum(s.freedom for s in event)
-    whole = float(bayes_factor(power, freedom)) - float(np.log(event[0].places))
+    whole = float(bayes_factor(power, freedom)) - float(np.log(followed.course.tried))
     rivals = shared_rivals(start, event, sensors)
     if any(log_evidence > whole for _, log_evidence in rivals):
         return ()
-    common = [
-        (detections.scored(k), e)
-        for detections in (scores_given(start, start.traces, None),)
-        for k, e in detections.ranked()
-    ]
-    common = [(s, e) for s, e in common if not s.sensors]
-    p_family, detections = family_p_value(start, event), []
+    rivals = [(course, log_evidence) for course, log_evidence in rivals if log_evidence > whole - RULED_OUT]
+    given = scores_given(start, start.traces, None)
+    common = [(given.scored(k), e) for k, e in given.ranked() if given.sensor[k] < 0]
+    p_family, named = family_p_value(start, event), followed.sure if len(followed.sure) > 1 else frozenset(sensors)
+    detections = []
     for member in event:
-        attributed = joint_with_others(start, event, member)
-        again = [
-            (rescored(start.residuals, c.scored(c.on(member.sensors).numbers[0]), attributed), e) for c, e in rivals
-        ]
+        others = orthonormal(np.concatenate([o.trace for o in event if o is not member], axis=1), NEW_DIRECTION)
+        again = [(rescored(start.residuals, c.scored(c.on(member.sensors).numbers[0]), others), e) for c, e in rivals]
         ranking = sorted([(member, whole), *again, *common], key=lambda pair: -pair[1])
-        detections.append(Detection(member, p_family, tuple(ranking), event=tuple(sensors)))
+        follows = member.sensors[0] not in named
+        detections.append(Detection(member, p_family, tuple(ranking), event=tuple(sorted(sensors)), follows=follows))
     return tuple(detections)
 
 
 def shared_rivals(start: SearchState, event: Sequence[Scored], sensors: Sequence[int]) -> list[tuple[Course, float]]:
-    """Every other cause that all sensors of an event may share, at its best shape, with its ln evidence."""
+    """Every other cause that all sensors of a course may share, at its best shape, with its ln evidence."""
     best: dict[str, tuple[Course, float]] = {}
     for traces in start.traces:
         if traces.common or traces.cause.between or traces.nuisance is not None or traces.cause is event[0].cause:
             continue
         every = [c.on(sensors) for c in courses(start.residuals, traces)]
         every = [c for c in every if len(c.numbers) == len(sensors)]
-        if every:
+        if every and isinstance(traces.cause, SensorCause):
             energy, freedom = energies(start.residuals, every)
             values = bayes_factor(energy, freedom) - np.log(len(every))
             k, name = int(np.argmax(values)), traces.cause.identifier

@@ -122,4 +122,4 @@ def remaining_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> t
 def restart_from(state: SearchState, baseline: Baseline) -> SearchState:
     """The search begun anew with another baseline; what the file states of the noise is kept."""
     again = begin(baseline, state.history, state.catalogue)
-    return replace(again, stated=state.stated, noise_claims=state.noise_claims)
+    return replace(again, stated=state.stated, noise_claims=state.noise_claims, apart=state.apart)

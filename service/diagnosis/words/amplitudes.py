@@ -8,6 +8,7 @@ from typing import Protocol
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Shared
 from estimator.message import joined, say
 from service.diagnosis.words.amplitude_measures import amplitude_measure
 from service.kit.measures import COVERAGE, HARD, THIN, decimals, measured, number
@@ -87,6 +88,8 @@ def part_of(cause: str, k: int) -> str:
 
 def shape_of(finding: Finding) -> str:
     """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ."""
+    if finding.shared is not None:
+        return _shared_shape(finding.cause, finding.shared)
     each = finding.nonlinear_each
     if len(each) < 2 or all(one == each[0] for one in each):
         return _shape(finding.cause, finding.nonlinear)
@@ -98,6 +101,31 @@ def shape_of(finding: Finding) -> str:
             for who, shape in zip(finding.sensors, shapes, strict=False)
             if shape
         ),
+    )
+
+
+def _shared_shape(cause: str, shared: Shared) -> str:
+    """``time constant 690 ± 40 s``: the one shape of all sensors."""
+    known, text = find(cause), []
+    for name, value in shared.shape.items():
+        spread, measure = COVERAGE * shared.shape_sigma.get(name, nan), amplitude_measure(cause, name, value)
+        text.append(measured(value, spread, measure) if isfinite(spread) else _place(cause, name, value))
+    words = known.shape_words if known else ""
+    return joined(" ", filter(None, (words, joined(" and ", text)))) if text else ""
+
+
+def more_of(finding: Finding) -> tuple[str, ...]:
+    """The sensors that follow a shared course below what can be named of one alone, with their sizes ± U."""
+    shared = finding.shared
+    if shared is None or not shared.more:
+        return ()
+    unit = finding.units[:1] * len(shared.more)
+    sized = Amounts(finding.cause, shared.more, shared.more_amplitude, shared.more_sigma, unit)
+    sizes = tuple(amplitudes_of(sized))
+    return (
+        sizes
+        if len(shared.more) > 1
+        else tuple(say("{who}: {shape}", who=shared.more[0], shape=size) for size in sizes)
     )
 
 

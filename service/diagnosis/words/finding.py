@@ -10,7 +10,7 @@ from estimator.diagnosis import Finding
 from estimator.diagnosis.results import OverSessions, ParitySplit
 from estimator.message import say
 from estimator.moments import moment
-from service.diagnosis.words.amplitudes import amplitudes_of, shape_of
+from service.diagnosis.words.amplitudes import amplitudes_of, more_of, shape_of
 from service.diagnosis.words.causes import cause_name, is_level, is_lone, percent, what_is_wrong
 from service.diagnosis.words.rivals import Bar, Choice, choices_of, ranking_of
 from service.kit.measures import HARD, number
@@ -42,6 +42,8 @@ class FindingView:
     advice: str
     amplitudes: tuple[str, ...]
     shape: str
+    more: tuple[str, ...]
+    """Sensors that follow a shared course faintly, each with its size."""
     evidence: str
     choices: tuple[Choice, ...]
     ranking: tuple[Bar, ...]
@@ -82,6 +84,7 @@ def finding_view(
         advice=finding.advice,
         amplitudes=tuple(amplitudes_of(finding)),
         shape=shape_of(finding),
+        more=more_of(finding),
         evidence=evidence(finding.strength, finding.p_value, by_stated_noise=by_stated_noise and not of_noise)
         if together is None
         else evidence_together(finding.strength, together),

@@ -14,7 +14,7 @@ from estimator.session import CALIBRATIONS
 from service.diagnosis.charts import MOST_PANELS, Sides, diagnosis_charts
 from service.diagnosis.gain import GainView, gain_view
 from service.diagnosis.records import Diagnosed, DiagnosisReport, StoredDiagnosis
-from service.diagnosis.sections import PENDING, TONES, CourseView, course_views
+from service.diagnosis.sections import PENDING, TONES, CourseView, SharedView, course_views, shared_views
 from service.diagnosis.words.causes import cause_on
 from service.diagnosis.words.diagnosis import HEADLINES, errors_of, headline, what_to_do
 from service.diagnosis.words.finding import FindingView, evidence, finding_view
@@ -74,6 +74,8 @@ class EvidenceView:
     wrong_errors: tuple[str, ...]
     """Which stated standard errors the readings contradict, a sentence each; empty where the headline says it."""
     findings: tuple[FindingView, ...]
+    shared: tuple[SharedView | None, ...]
+    """The course of every finding in turn, where its sensors share one."""
     structures: tuple[StructureView, ...]
     courses: tuple[CourseView, ...]
     """Of the applied vector."""
@@ -157,6 +159,7 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
     return EvidenceView(
         wrong_errors=errors_of(found) if is_named or found.structures else (),
         findings=_findings(report, found),
+        shared=shared_views(found.findings, after),
         structures=tuple(map(_structure, found.structures)),
         courses=course_views(found.structures, before),
         charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None, noise), named),

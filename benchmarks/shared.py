@@ -1,0 +1,203 @@
+"""``python -m benchmarks.shared --sessions 12 --seed 1`` writes docs/diagnosis/shared.md.
+
+Courses that several sensors share, drawn by code that the estimator does not share: told as one, and nothing else; and
+what must not be told so.
+"""
+
+import argparse
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from time import process_time
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.stats import chi2, ncx2
+
+from benchmarks.study.rates import rate
+from benchmarks.study.report import table
+from estimator import diagnose, read_session
+from tests.blind.courses import BLOCKS, COURSES, Driven, draw_apart, draw_course
+from tests.blind.steps import OTHERS, RAMPS, WALKS, Block, Stepped, draw_others
+
+PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "shared.md"
+STRENGTH = 14.0
+"""Of all sensors together, standard errors."""
+EACH = 12.0
+"""Of every sensor, of what each has to itself."""
+LEVEL = 0.003
+"""Family-wise level of the diagnosis, and that of the oracle's one test."""
+POWER = 0.95
+TIMES = (1.0, 1.3, 1.6)
+"""Strengths in those that the oracle finds with `POWER`."""
+STAND, GYROS, TWELVE, MANY = BLOCKS
+SHARED, APART, SOUND, FAINT = "shared", "apart", "sound", "faint"
+ROOM = "room"
+
+INTRODUCTION = (
+    "Some sensors of a block follow one course, each by a size and sign of its own (log-normal, σ 0.6), all together "
+    f"by {STRENGTH:g} standard errors beside what the calibration absorbs: settling with a time constant of an eighth "
+    "to a half of the session, a step, a ramp, a room that nobody recorded. The physics is written a second time, "
+    "apart from the estimator. Intervals: 95 % (Wilson)."
+)
+
+
+@dataclass(frozen=True)
+class Wish:
+    """One session."""
+
+    kind: str
+    block: Block
+    course: str
+    strength: float
+    seed: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What was said of it."""
+
+    wish: Wish
+    one: bool
+    """Whether one shared course is named, and nothing else."""
+    shared: bool
+    named: bool
+    bystanders: int
+    """Sensors named that do not follow."""
+    away: float | None
+    """The time constant's error in sigmas."""
+    seconds: float
+
+
+def wishes(sessions: int, seed: int) -> Iterator[Wish]:
+    """So many of every kind of session; sound ones four times as many."""
+    for b, block in enumerate(BLOCKS):
+        for c, course in enumerate(COURSES):
+            yield from (Wish(SHARED, block, course, STRENGTH, (seed, 1, b, c, k)) for k in range(sessions))
+    for b, block in enumerate((STAND, TWELVE)):
+        for c, course in enumerate((WALKS, RAMPS, ROOM)):
+            yield from (Wish(APART, block, course, EACH, (seed, 2, b, c, k)) for k in range(2 * sessions))
+        yield from (Wish(SOUND, block, "", 0.0, (seed, 3, b, k)) for k in range(4 * sessions))
+    for t, times in enumerate(TIMES):
+        yield from (Wish(FAINT, MANY, "exponential", times, (seed, 4, t, k)) for k in range(sessions))
+
+
+def drawn(wish: Wish) -> Driven | Stepped:
+    """The session."""
+    rng, m = np.random.default_rng(wish.seed), wish.block.accelerometers + wish.block.gyros
+    if wish.kind == APART and wish.course in OTHERS:
+        return draw_others(wish.block, wish.course, wish.strength, rng)
+    if wish.kind == APART:
+        return draw_apart(wish.block, wish.course, m, wish.strength, rng)
+    if wish.kind == FAINT:
+        return draw_course(wish.block, wish.course, m, wish.strength * oracle(m) * np.sqrt(m), rng, even=True)
+    if wish.kind == SOUND:
+        return draw_course(wish.block, "ramp", 1, 0.0, rng)
+    return draw_course(wish.block, wish.course, int(rng.integers(m // 2, m + 1)), wish.strength, rng)
+
+
+def oracle(m: int) -> float:
+    """Strength of each of m sensors that one χ² test finds which knows the course but for the sizes."""
+    bound = float(chi2.isf(LEVEL, m))
+    whole = brentq(lambda square: ncx2.sf(bound, m, square) - POWER, 1.0, 1e4)
+    return float(np.sqrt(whole / m))
+
+
+def perform(wish: Wish) -> Answer:
+    """Draw and diagnose."""
+    hidden = drawn(wish)
+    session, begun = read_session(hidden.session), process_time()
+    named = diagnose(session).findings
+    seconds = process_time() - begun
+    shared = [f for f in named if f.shared is not None]
+    away = None
+    if shared and isinstance(hidden, Driven) and wish.course == "exponential" and shared[0].cause == "warm-up":
+        shape = shared[0].shared
+        assert shape is not None
+        away = (shape.shape["s"] - hidden.shape) / shape.shape_sigma["s"] if shape.shape_sigma else None
+    bystanders = sum(name not in hidden.sensors for f in shared for name in f.sensors)
+    return Answer(wish, len(named) == len(shared) == 1, bool(shared), bool(named), bystanders, away, seconds)
+
+
+def page(answers: Sequence[Answer], command: str) -> str:
+    """Markdown."""
+    parts = [f"# Courses that sensors share\n\nMade by `{command}`. {INTRODUCTION}", targets(answers), courses(answers)]
+    return "\n\n".join(parts) + "\n"
+
+
+def of(answers: Sequence[Answer], kind: str, course: str = "", block: Block | None = None) -> list[Answer]:
+    """Those of one kind, course and block; of all where none is named."""
+    return [
+        a for a in answers if a.wish.kind == kind and course in ("", a.wish.course) and block in (None, a.wish.block)
+    ]
+
+
+def targets(answers: Sequence[Answer]) -> str:
+    """The table of targets."""
+    shared = of(answers, SHARED)
+    known = [a.away for a in shared if a.away is not None]
+    rows = [
+        ("one shared course: one finding that names it, nothing else", "≥ 95 %", rate([a.one for a in shared])),
+        ("the time constant within U (k = 2)", "93–97 %", rate([abs(z) < 2 for z in known])),
+        ("a sensor named that does not follow, of such sessions", "≤ 5 %", rate([a.bystanders > 0 for a in shared])),
+        ("drifts of each its own: one course claimed", "≤ 1 %", rate([a.shared for a in of(answers, APART)])),
+        ("sound sessions: a name", "≤ 1 %", rate([a.named for a in of(answers, SOUND)])),
+    ]
+    for times in TIMES:
+        found = [a.shared for a in of(answers, FAINT) if a.wish.strength == times]
+        words = f"24 sensors, each {times:g} times what an oracle needs that knows the course ({oracle(24):.2f}): found"
+        rows.append((words, "≥ 95 % at 1.6", rate(found)))
+    rows.append(("time of a diagnosis over that of a sound session", "≤ 3", slower(answers)))
+    return table(("", "target", "measured"), rows)
+
+
+def slower(answers: Sequence[Answer]) -> str:
+    """Processor time of a session with a shared course over that of a sound one, of two blocks."""
+    values = []
+    for block in (STAND, TWELVE):
+        sound, shared = (np.median([a.seconds for a in of(answers, kind, block=block)]) for kind in (SOUND, SHARED))
+        values.append(f"{shared / sound:.1f} ({block.name})")
+    return ", ".join(values)
+
+
+def courses(answers: Sequence[Answer]) -> str:
+    """One finding that names the course, by block and course; what each has to itself, by kind."""
+    rows = [(b.name, *(rate([a.one for a in of(answers, SHARED, c, b)]) for c in COURSES)) for b in BLOCKS]
+    own = [
+        (b.name, *(rate([a.shared for a in of(answers, APART, c, b)]) for c in (WALKS, RAMPS, ROOM)))
+        for b in (STAND, TWELVE)
+    ]
+    return (
+        "## One finding, by course\n\n"
+        + table(("block", *COURSES), rows)
+        + f"\n\n## Each its own, strength {EACH:g} each: one course claimed\n\n"
+        + table(("block", "walks", "ramps from a row of its own", "a room of its own"), own)
+    )
+
+
+def main() -> None:
+    """Run it and write its page."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.shared", description=__doc__)
+    parser.add_argument("--sessions", type=int, default=12)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--out", type=Path, default=PAGE)
+    options = parser.parse_args()
+    work, answers = list(wishes(options.sessions, options.seed)), list[Answer]()
+    with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
+        for answer in pool.map(perform, work):
+            answers.append(answer)
+            print(f"\r{len(answers)}/{len(work)}", end="", file=sys.stderr)
+    text = page(answers, f"python -m benchmarks.shared --sessions {options.sessions} --seed {options.seed}")
+    options.out.write_text(text, encoding="utf-8")
+    print(f"\n{text}")
+
+
+if __name__ == "__main__":
+    main()

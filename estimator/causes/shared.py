@@ -1,0 +1,61 @@
+"""A course that nobody recorded and several sensors share: the temperature of a room, a supply that wanders.
+
+No single sensor can be told to have it, for of one a course without a formula is whatever it reads. Of several it is
+their one course, smooth over the session, with a size each. Its shape is a sum of the leading waves of an integrated
+random walk (of the covariance s²(3t − s)/6, s ≤ t; Rasmussen & Williams 2006, 6.3.1), each as large as the walk has it.
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+import numpy as np
+
+from estimator.arrays import eigh
+from estimator.causes.contract import SensorCause, Setting, column
+from estimator.session import Array
+
+WAVES = 12
+"""Leading waves of a course that are kept: of a random walk they hold 97 %."""
+
+
+class SharedCourse(SensorCause):
+    """Its shape is the sizes of the waves; they are found where sensors share them, and tried on no single one."""
+
+    identifier = "shared-course"
+    scope = "environment"
+    equation = "k·h(r), one smooth h for several sensors"
+    units = ("m/s²",)
+    passing = True
+    alike = True
+    sentence = "The zero of {sensors} follows a course that nothing recorded explains."
+    advice = "Record the temperature and the supply of the block, and repeat the session."
+    shared_sentence = "The zeros of {sensors} follow one course together, which nothing recorded explains."
+    shared_advice = "Something acts on all of them: record the temperature and the supply of the block, and repeat."
+
+    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        yield from ()
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) dimensionless."""
+        return column(walking_rate(setting.rows) @ np.array(nonlinear))
+
+
+def walk(rows: int) -> Array:
+    """(R, w) dimensionless: waves of a random walk over the rows, of mean square one together."""
+    t = np.arange(1, rows + 1) / rows
+    return leading(np.minimum.outer(t, t))
+
+
+@lru_cache(maxsize=8)
+def walking_rate(rows: int) -> Array:
+    """(R, w) dimensionless: the same of a zero whose rate walks."""
+    t = np.arange(1, rows + 1) / rows
+    first, last = np.minimum.outer(t, t), np.maximum.outer(t, t)
+    return leading(first**2 * (last / 2 - first / 6))
+
+
+def leading(covariance: Array) -> Array:
+    """(R, w) dimensionless: the strongest waves of a covariance (R, R) about its mean."""
+    about = covariance - covariance.mean(axis=0) - covariance.mean(axis=1)[:, None] + covariance.mean()
+    size, wave = eigh(about * len(about) / np.trace(about))
+    return np.asarray(wave[:, -WAVES:] * np.sqrt(np.maximum(size[-WAVES:], 0.0)))

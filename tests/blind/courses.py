@@ -1,0 +1,142 @@
+"""One course that several sensors of a block follow, each by a size of its own; and courses that each has to itself."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tests.blind.steps import ORIENTATIONS, Block, directions, session_of, steps_file, strength_left
+from tests.blind.world import Array, Session
+
+BLOCKS = (
+    Block("stand, 6 accelerometers", accelerometers=6),
+    Block("stand, 6 gyros", gyros=6),
+    Block("orientations, 12 accelerometers", accelerometers=12, stand=False),
+    Block("orientations, 24 accelerometers", accelerometers=24, stand=False),
+)
+SPREAD = 0.6
+"""Of the ln of the sizes: a sensor in six shows less than half of what is usual, one in six almost twice as much."""
+SHOWN = 0.4
+"""Share of a step that the calibration must leave: one between the runs of a stand is taken for a turn of the axes."""
+SAFE = 4
+"""Rows before and after a step at least."""
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """A session file and what is true of it."""
+
+    session: dict[str, Any]
+    sensors: tuple[str, ...]
+    """That follow."""
+    strength: tuple[float, ...]
+    """Of every one of them, standard errors."""
+    size: tuple[float, ...]
+    """Of every one of them, m/s² or rad/s per unit of the course."""
+    shape: float
+    """Time constant, s, or the first row after a step, counted from 1; 0 where the course has neither."""
+
+
+def settling(time: Array, rng: np.random.Generator) -> tuple[Array, float]:
+    """(R,) exp(−t/τ), τ between an eighth and a half of the session."""
+    tau = float(np.ptp(time) * np.exp(rng.uniform(np.log(0.12), np.log(0.5))))
+    return np.exp(-time / tau), tau
+
+
+def stepping(time: Array, rng: np.random.Generator) -> tuple[Array, float]:
+    """(R,) one from some row on."""
+    row = int(rng.integers(SAFE, len(time) - SAFE))
+    return 1.0 * (np.arange(len(time)) >= row), row + 1.0
+
+
+def drifting(time: Array, rng: np.random.Generator) -> tuple[Array, float]:
+    """(R,) time, the whole session being one."""
+    return time / np.ptp(time), 0.0
+
+
+def roaming(time: Array, rng: np.random.Generator) -> tuple[Array, float]:
+    """(R,) the temperature of a room that nobody recorded: heating and sun, waves of half a session to two."""
+    turns = 2 * np.pi * time[:, None] / (np.ptp(time) * rng.uniform(0.5, 2.0, 3)) + rng.uniform(0, 2 * np.pi, 3)
+    return np.sin(turns) @ rng.uniform(0.4, 1.0, 3), 0.0
+
+
+COURSES: dict[str, Callable[[Array, np.random.Generator], tuple[Array, float]]] = {
+    "exponential": settling,
+    "step": stepping,
+    "ramp": drifting,
+    "room": roaming,
+}
+
+
+def draw_course(
+    block: Block, course: str, count: int, together: float, rng: np.random.Generator, *, even: bool = False
+) -> Driven:
+    """So many sensors follow one course, all ``together`` by so many standard errors; ``even``: each by as many."""
+    world, up, time = _world(block, rng)
+    m = world.unit.size
+    shape, value = COURSES[course](time, rng)
+    sensors = np.sort(rng.choice(m, count, replace=False))
+    if course == "step" and _share_left(block, world, up, sensors, shape) < SHOWN:
+        return draw_course(block, course, count, together, rng, even=even)
+    each = np.ones(count) if even else np.exp(SPREAD * rng.standard_normal(count))
+    strengths = together * each / np.linalg.norm(each)
+    seen = np.array([float(strength_left(block, world, up, int(i), shape[:, None])[0]) for i in sensors])
+    size = rng.choice([-1.0, 1.0], count) * strengths / seen
+    added = np.zeros((len(time), m))
+    added[:, sensors] = shape[:, None] * size
+    names = tuple(world.unit.names[i] for i in sensors)
+    document = _document(block, world, up, time, added, rng)
+    return Driven(document, names, tuple(strengths.tolist()), tuple(size.tolist()), value)
+
+
+def draw_apart(block: Block, course: str, count: int, each: float, rng: np.random.Generator) -> Driven:
+    """So many sensors, ``each`` by so many standard errors on a course drawn for it alone."""
+    world, up, time = _world(block, rng)
+    m = world.unit.size
+    sensors = np.sort(rng.choice(m, count, replace=False))
+    added, size = np.zeros((len(time), m)), []
+    for i in sensors:
+        shape, _ = COURSES[course](time, rng)
+        size.append(rng.choice([-1.0, 1.0]) * each / float(strength_left(block, world, up, int(i), shape[:, None])[0]))
+        added[:, i] = size[-1] * shape
+    names = tuple(world.unit.names[i] for i in sensors)
+    return Driven(_document(block, world, up, time, added, rng), names, (each,) * count, tuple(map(float, size)), 0.0)
+
+
+def draw_settling_at(block: Block, shares: Array, each: float, rng: np.random.Generator) -> Driven:
+    """Sensors that settle with time constants of so many ``shares`` (k,) of the session, one apiece."""
+    world, up, time = _world(block, rng)
+    m = world.unit.size
+    sensors = np.sort(rng.choice(m, len(shares), replace=False))
+    added = np.zeros((len(time), m))
+    for i, share in zip(sensors, shares, strict=True):
+        shape = np.exp(-time / (share * np.ptp(time)))
+        seen = float(strength_left(block, world, up, int(i), shape[:, None])[0])
+        added[:, i] = rng.choice([-1.0, 1.0]) * each / seen * shape
+    names = tuple(world.unit.names[i] for i in sensors)
+    return Driven(_document(block, world, up, time, added, rng), names, (each,) * len(shares), (), 0.0)
+
+
+def _share_left(block: Block, world: Session, up: Array, sensors: Array, shape: Array) -> float:
+    """Least share, over some sensors, of a step (R,) that the calibration leaves."""
+    error = np.hypot(world.noise.reading, world.noise.repeatability)
+    alone = np.linalg.norm(shape - shape.mean()) / error
+    return min(float(strength_left(block, world, up, int(i), shape[:, None])[0] / alone[i]) for i in sensors)
+
+
+def _world(block: Block, rng: np.random.Generator) -> tuple[Session, Array, Array]:
+    """The session, directions of up in orientations, and (R,) time, s, from 0."""
+    world, up = session_of(block, rng), directions(rng)
+    world = replace(world, schedule=replace(world.schedule, thermometer=False))
+    if block.stand:
+        return world, up, world.schedule.time - world.schedule.time[0]
+    return world, up, np.round(np.cumsum(rng.uniform(60, 120, ORIENTATIONS)), 1)
+
+
+def _document(
+    block: Block, world: Session, up: Array, time: Array, added: Array, rng: np.random.Generator
+) -> dict[str, Any]:
+    document = steps_file(block, world, up, added, rng)
+    document["table"] |= {"time_s": time.tolist()}
+    return document
