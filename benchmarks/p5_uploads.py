@@ -33,7 +33,7 @@ from benchmarks.figures import Figure
 from benchmarks.kills.server import Service, free_port
 from service.settings import Settings
 from service.storage.schema import upgrade
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 SECONDS = 6.0
 """That each of the two is driven at a time."""

@@ -13,7 +13,7 @@ from benchmarks.readiness import G
 from benchmarks.recordings.sets import folder, logs
 from estimator.readiness import Allowed, Question, readiness
 from estimator.session import ACCELEROMETER, ARBITRARY_ORIENTATIONS, GYROSCOPE, Array, CalibrationSession, Sensor
-from service.planning.words.readiness import headline, reasons
+from service.planning.words import readiness_headline, reasons
 
 RAMP = "temperature-ramps/icm42652-cold-ramp/Sample_data.csv"
 RAMP_RATE = 500.0
@@ -70,7 +70,7 @@ def main() -> None:
     for name, session in records():
         answer = readiness(session, QUESTION, np.random.default_rng(1))
         why = reasons(answer, session.sensors[0].kind)
-        print(f"| {name} | {headline(answer)} | {why[0] if why else ''} |")
+        print(f"| {name} | {readiness_headline(answer)} | {why[0] if why else ''} |")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from http.client import HTTPConnection
 
 from benchmarks.figures import Figure
 from benchmarks.p5_uploads import PEER, Client, bare, delays, services
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 CLIENTS = 8
 SECONDS = 15.0

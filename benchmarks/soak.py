@@ -14,7 +14,7 @@ from benchmarks.figures import Figure
 from benchmarks.kills.server import Service, free_port
 from service.settings import Settings
 from tests.databases import sqlite_databases
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 LOOKS = 6
 """Times that it is looked, evenly over the uploads."""

@@ -29,7 +29,7 @@ from service.storage import Storage
 from service.storage.schema import upgrade
 from service.types.store import UnitTypes
 from service.uploads.receive import upload
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 TIMES, UNITS = 60, 12
 START = datetime(2020, 1, 1, tzinfo=UTC)

@@ -8,20 +8,19 @@ from threading import Event, Thread
 from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
-from service import pages
+from service import all_api, all_pages
 from service.flags.messages import deliver_until
 from service.kit import limits
 from service.kit.bell import Bell
 from service.kit.metrics import Metrics
 from service.opening import open_storage
-from service.pages import api
 from service.papers.sealing import Seal, seal_of
-from service.people.gate import Gate
+from service.people.admission import Gate
 from service.people.provider import provider_of
 from service.settings import VERSION, Settings
 from service.web import guard
 from service.web.application import Application
-from service.web.heads import HeadAsGet
+from service.web.headers import HeadAsGet
 from service.web.measured import Measured
 from service.work.job_desk import JobDesk
 from service.work.loop import Worker, take_in_waiting, work_beside
@@ -58,9 +57,9 @@ def create_app(
         lifespan=_at_work(application),
     )
     app.state.application = application
-    api.mount(app)
+    all_api.mount(app)
     guard(app, settings)
-    pages.mount(app)
+    all_pages.mount(app)
     app.add_middleware(HeadAsGet)
     app.add_middleware(Measured, metrics=application.metrics)
     return app

@@ -7,7 +7,7 @@ from service.settings import Settings
 from service.storage import Storage
 from service.storage.database import Database
 from service.storage.files import Files, ignore
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.storage.waits import Waits, waits_of
 
 

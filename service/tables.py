@@ -38,7 +38,7 @@ from service.people import tables as people
 from service.queue import tables as queue
 from service.sessions import tables as sessions
 from service.stands import tables as stands
-from service.storage import audit_table as audit
+from service.storage import audit
 from service.storage.tables import Base
 from service.types import tables as types
 from service.units import tables as units

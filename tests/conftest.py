@@ -15,7 +15,7 @@ from hypothesis import settings as hypothesis_settings
 
 from service.app import create_app
 from service.kit.lock_order import WATCHED
-from service.people import passwords
+from service.people import secret as passwords
 from service.settings import Settings
 from service.storage import Storage
 from service.work.readers import GroupReader, Reader

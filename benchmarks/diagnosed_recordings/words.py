@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Diagnosis, Gain, Score
-from service.diagnosis.words.amplitude_measures import amplitude_measure
+from service.diagnosis.words.amplitudes import amplitude_measure
 from service.kit.measures import measured, number
 
 NOTHING = "Nothing wrong found."

@@ -16,7 +16,7 @@ import numpy as np
 from sqlalchemy import Connection, inspect, text
 
 from service.records.diagnose import diagnose
-from service.records.refresh_outlooks import refresh_beside
+from service.records.follow import refresh_beside
 from service.storage import Storage
 from service.storage.engine import open_engine
 from service.storage.waits import PATIENT

@@ -19,13 +19,12 @@ from service.fleet.changes import summarise_all
 from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.opening import open_database
-from service.outlook.populations_store import Populations
-from service.outlook.store import Outlooks
+from service.outlook.store import Outlooks, Populations
 from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
 from service.stands.store import Stands
 from service.storage import Files, Storage
-from service.storage.store import Store
+from service.storage.queries import Store
 from tests.databases import postgres_databases
 
 PAGE = RESULTS / "how-to" / "plans.md"

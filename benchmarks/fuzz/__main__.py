@@ -26,9 +26,9 @@ from estimator.errors import SessionError
 from estimator.reading import read_session
 from service.ingest import apart_session
 from service.ingest.formats import XLSX, is_binary
-from service.ingest.workbook import check_workbook
+from service.ingest.xlsx import check_workbook
 
-GUIDED = ("estimator.reading", "service.ingest.workbook", "service.ingest.key_values")
+GUIDED = ("estimator.reading", "service.ingest.xlsx", "service.ingest.metadata")
 """Packages whose branches guide the mutations."""
 APART_EVERY = 50
 """Files of which one is also read by the process apart: a fork takes a hundred times as long."""

@@ -12,7 +12,7 @@ from time import monotonic, sleep
 
 import httpx
 
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.service.storage.intact import SENSORS
 
 CLIENTS = 2

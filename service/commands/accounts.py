@@ -22,7 +22,7 @@ from service.people.store import Accounts, Tokens
 from service.settings import Settings
 from service.storage import Files, Storage
 from service.storage.audit import Audit, AuditLine
-from service.storage.store import Store
+from service.storage.queries import Store
 
 user = typer.Typer(name="user", add_completion=False, no_args_is_help=True, help="Make and change accounts.")
 token = typer.Typer(name="token", add_completion=False, no_args_is_help=True, help="Make and revoke tokens.")

@@ -19,10 +19,17 @@ from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
 from service.commands.console import AsJson, Files, for_each, print_json, screen
 from service.commands.speech import said
 from service.ingest import read_file
-from service.kit.coverage import coverage_in_words
-from service.kit.measures import COVERAGE, UNKNOWN, deviation_measure, in_measure, measured, number
-from service.kit.names import method_name
-from service.sessions.words.fit import fit_in_words
+from service.kit.measures import (
+    COVERAGE,
+    UNKNOWN,
+    coverage_in_words,
+    deviation_measure,
+    in_measure,
+    measured,
+    method_name,
+    number,
+)
+from service.sessions.words.readings import fit_in_words
 
 UNSEEN = "not observable"
 """In the place of a value that the session does not show."""

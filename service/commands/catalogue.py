@@ -1,7 +1,7 @@
 """Every command of `imu-health`: where it is, and what the list of commands says of it.
 
-The list is shown, and a name completed, without importing a single command; `tests/service/cli/test_start_up.py` holds
-what stands here equal to what a command says of itself.
+The list is shown, and a name completed, without importing a single command;
+`tests/service/commands/test_start_up.py` holds what stands here equal to what a command says of itself.
 """
 
 from dataclasses import dataclass

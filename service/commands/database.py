@@ -17,8 +17,7 @@ from service.settings import Settings
 from service.storage import Files
 from service.storage.audit import Audit
 from service.storage.backup import Restored, restore, verified, write_backup
-from service.storage.backup.doors import Doors
-from service.storage.backup.manifest import Manifest
+from service.storage.backup.manifest import Doors, Manifest
 from service.storage.losses import Loss, losses
 from service.storage.schema import downgrade, head_revision, upgrade
 

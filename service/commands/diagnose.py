@@ -20,12 +20,10 @@ from estimator.session import DIAGNOSED, CalibrationSession
 from estimator.wording import counted
 from service.commands.console import AsJson, Files, for_each, print_json, screen, usable
 from service.commands.speech import said
-from service.diagnosis.document import inapplicable_to_dict
 from service.diagnosis.records import state_of
-from service.diagnosis.words.diagnosis import NOT_APPLICABLE, errors_of, nothing_of, what_to_do
-from service.diagnosis.words.finding import FindingView, finding_view, standard_errors
-from service.diagnosis.words.limits import blind_causes
-from service.diagnosis.words.structures import told
+from service.diagnosis.store import inapplicable_to_dict
+from service.diagnosis.words.diagnosis import NOT_APPLICABLE, blind_causes, errors_of, nothing_of, what_to_do
+from service.diagnosis.words.findings import FindingView, finding_view, standard_errors, told
 from service.ingest import read_file
 from service.kit.measures import number
 from service.sessions.records import DiagnosisState

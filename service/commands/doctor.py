@@ -30,8 +30,7 @@ from service.settings import PREFIX, VERSION, Settings, retired
 from service.storage import Database
 from service.storage.audit import Audit
 from service.storage.engine import shown_url
-from service.storage.space import space_at
-from service.storage.writable import require_writable
+from service.storage.folders import require_writable, space_at
 from service.web.hosts import hosts_of
 
 ELSEWHERE = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")

@@ -13,7 +13,7 @@ from estimator.parity import ParityAccumulator, ParityResult
 from estimator.parity.results import Sight
 from service.commands.console import AsJson, print_json, screen, usable
 from service.ingest.stream import open_recording, session_in
-from service.judging.in_service_words import found_in_words
+from service.judging.words import found_in_words
 from service.kit.measures import COVERAGE, in_words
 
 PARAMETERS = ("bias", "scale", "axis")

@@ -24,13 +24,20 @@ from service.commands.console import AsJson, print_json, screen, usable
 from service.commands.speech import FAILED, spoken
 from service.ingest import read_file
 from service.kit.measures import number
-from service.planning.question import PlanQuestion
-from service.planning.ready import ReadyQuestion
+from service.planning.question import PlanQuestion, ReadyQuestion
 from service.planning.rules import judged_by_defaults
-from service.planning.words.missing import missing_in_words
-from service.planning.words.plan import UNSEEN, blind, headline, seen, sigma_in_words, tolerance_in_words, unobserved
-from service.planning.words.readiness import headline as readiness_headline
-from service.planning.words.readiness import reasons
+from service.planning.words import (
+    UNSEEN,
+    blind,
+    headline,
+    missing_in_words,
+    readiness_headline,
+    reasons,
+    seen,
+    sigma_in_words,
+    tolerance_in_words,
+    unobserved,
+)
 
 Question = TypeVar("Question", bound=BaseModel)
 PARAMETERS = ("scale", "bias", "quadratic", "axis")

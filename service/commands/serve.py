@@ -16,8 +16,8 @@ from service.people.changes import make_link
 from service.people.store import Accounts
 from service.settings import Settings
 from service.storage import Files, Storage
+from service.storage.folders import require_writable
 from service.storage.schema import upgrade
-from service.storage.writable import require_writable
 from service.web.hosts import hosts_of
 from service.web.server import Server, address_of
 

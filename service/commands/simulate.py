@@ -42,8 +42,7 @@ from service.commands.hiding import (
     warmed,
     write_answer,
 )
-from service.demo.blocks import MICRO_G, norms_of, schedule_of
-from service.demo.changes import ELEMENT, MICRO, Change, step_of
+from service.demo.blocks import ELEMENT, MICRO, MICRO_G, Change, norms_of, schedule_of, step_of
 from service.demo.other_programmes import RATE_NOISE, alignment, orientations, rate_table, recording, turntable_truth
 
 USUAL_NOISE = {ACCELEROMETER: 2.5, GYROSCOPE: 0.3}

@@ -1,13 +1,18 @@
 """The two kinds of block that are simulated: six accelerometers, or six pulse gyros, on a cone."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from math import pi
 
 import numpy as np
 
 from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY, gravity
+from estimator.causes import Signature, cause
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.hiding import with_input
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession, Sensor, Site, Stand, StandErrors
 from estimator.simulate import cone, stand_schedule
+from service.types.records import Tolerances, UnitType
 
 CONE_HALF_ANGLE = float(np.arccos(1 / np.sqrt(3)))
 """54.7°: three of the axes are orthogonal."""
@@ -74,3 +79,80 @@ def norms_of(sensors: tuple[Sensor, ...]) -> Array:
 def norms(kind: str, sensors: int) -> Array:
     """(m,) length of the applied vector, m/s² or rad/s."""
     return np.full(sensors, gravity(SITE) if kind == ACCELEROMETER else EARTH_RATE)
+
+
+SENSORS = 6
+"""On every cone, as in the published block."""
+TYPE_NAME = {ACCELEROMETER: "RA-6", GYROSCOPE: "RG-6"}
+"""By kind of sensor."""
+TOLERANCES = {
+    ACCELEROMETER: Tolerances(
+        scale=100e-6, bias=50e-6 * STANDARD_GRAVITY, quadratic=40e-6 / STANDARD_GRAVITY, axis=20 * ARCSEC
+    ),
+    GYROSCOPE: Tolerances(scale=3e-3, bias=0.03 * pi / 180 / 3600, quadratic=None, axis=600 * ARCSEC),
+}
+"""100 ppm, 50 µg, 40 µg/g², 20″; 3000 ppm, 0.03 °/h, not judged, 600″."""
+
+
+def unit_type(kind: str) -> UnitType:
+    """The type of every unit of this kind."""
+    sensors = sensors_of(kind, SENSORS)
+    return UnitType(
+        name=TYPE_NAME[kind],
+        block=kind,
+        sensors=tuple(sensor.name for sensor in sensors),
+        nominal_axes=tuple((float(x), float(y), float(z)) for x, y, z in (s.nominal_axis for s in sensors)),
+        nominal_scales=tuple(sensor.nominal_scale for sensor in sensors),
+        tolerances=TOLERANCES[kind],
+        gyro_tolerances=None,
+        revision=1,
+    )
+
+
+ELEMENT = {"scale": 0, "bias": 1, "quadratic": 2, "axis": 3}
+"""Place in the step of five; an axis turns along its first tangent."""
+MICRO = 1e-6
+"""ppm, µg and µg/g² in parts of one."""
+DEGREE_PER_HOUR = np.pi / 180 / 3600 / EARTH_RATE
+"""One °/h as a fraction of the Earth's rate."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """How much one parameter of one sensor moves: ppm, µg (gyro: °/h), µg/g², arcsec."""
+
+    sensor: int
+    """Counted from 0."""
+    parameter: str
+    amount: float
+
+
+def step_of(changes: tuple[Change, ...], sensors: int, kind: str) -> Array:
+    """(m, 5) the changes added up, dimensionless."""
+    bias = MICRO if kind == ACCELEROMETER else DEGREE_PER_HOUR
+    factor = {"scale": MICRO, "bias": bias, "quadratic": MICRO, "axis": ARCSEC}
+    step = np.zeros((sensors, 5))
+    for change in changes:
+        step[change.sensor, ELEMENT[change.parameter]] += change.amount * factor[change.parameter]
+    return step
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """One effect in a member's latest session."""
+
+    cause: str
+    amplitude: tuple[float, ...]
+    """SI, as the catalogue counts it."""
+    sensor: int | None = None
+    """Counted from 0; None for an effect of the stand."""
+
+
+def with_effect(session: CalibrationSession, hidden: Hidden) -> CalibrationSession:
+    """The session with the effect in its readings."""
+    setting, known = baseline_of(session).setting, cause(hidden.cause)
+    assert isinstance(known, Signature)
+    place = () if hidden.sensor is None else (hidden.sensor,)
+    shape = next(shape for shape in known.shapes(setting) if shape.sensors == place)
+    added = shape.columns @ np.array(hidden.amplitude)
+    return with_input(session, setting, added)

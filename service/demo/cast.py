@@ -4,8 +4,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
-from service.demo.changes import Change
-from service.demo.hidden import Hidden
+from service.demo.blocks import Change, Hidden
 from service.flags.records import FlagState
 
 START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)

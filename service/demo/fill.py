@@ -4,9 +4,9 @@ from collections.abc import Callable
 from datetime import timedelta
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.demo.blocks import unit_type
 from service.demo.cast import CAST, START, Handled, Intervention, Member, Remark
 from service.demo.history import files_of
-from service.demo.types import unit_type
 from service.flags.changes import acknowledge_flag, resolve_flag
 from service.flags.records import FlagState, Matter
 from service.flags.store import Flags

@@ -22,13 +22,22 @@ from estimator.session import (
 )
 from estimator.simulate import scattered, simulate
 from estimator.writing import session_document
-from service.demo.blocks import norms, schedule_of, sensors_of
+from service.demo.blocks import (
+    DEGREE_PER_HOUR,
+    ELEMENT,
+    MICRO,
+    SENSORS,
+    TYPE_NAME,
+    Change,
+    norms,
+    schedule_of,
+    sensors_of,
+    step_of,
+    with_effect,
+)
 from service.demo.cast import CAST, CUBIC, ECCENTRIC_STAND, ECCENTRICITY, END, START, WAVE, WAVY_STAND, YEARS, Member
-from service.demo.changes import DEGREE_PER_HOUR, ELEMENT, MICRO, Change, step_of
-from service.demo.hidden import with_effect
 from service.demo.other_programmes import alignment, recording, turntable_truth
-from service.demo.types import SENSORS, TYPE_NAME
-from service.kit.names import YEAR
+from service.kit.measures import YEAR
 
 SEED = 20261112
 """Fixed, so that the demonstration is always the same."""

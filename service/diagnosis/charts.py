@@ -12,36 +12,35 @@ from estimator.diagnosis.results import Course
 from estimator.message import say
 from estimator.results import Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER
-from service.diagnosis.words.structures import SIZE, component_in_words
+from service.diagnosis.words.findings import SIZE, component_in_words
 from service.kit.measures import THIN, Measure, decimals, deviation_measure, number
 from service.sessions.charts import (
+    BETA,
+    BETA_RANGE,
     DATA_FORM,
+    HEIGHT,
     HIGH,
     LEFT,
     LOW,
     RIGHT,
-    UNIT,
-    ChartSet,
-    Panel,
-    filled,
-    padded,
-    specification,
-)
-from service.sessions.charts.across import (
-    BETA,
-    BETA_RANGE,
-    HEIGHT,
     RUNS,
     SHAPES,
+    UNIT,
     Across,
+    ChartSet,
+    Noise,
+    Panel,
     by_angle,
+    edges,
+    filled,
     in_order,
     largest_edge,
+    padded,
     scatter_in_words,
+    specification,
     ticks,
     zero_line,
 )
-from service.sessions.charts.noise import Noise, edges
 
 MOST_PANELS = 9
 """Sensors that are drawn one way of looking, three rows of three; the page says how many are left out."""

@@ -11,12 +11,12 @@ from estimator.message import say
 from estimator.results import Calibration, Residuals
 from service.diagnosis.charts import course_charts, measure_of
 from service.diagnosis.shared_charts import shared_chart
-from service.diagnosis.words.structures import course_in_words
-from service.kit.failure_words import session_failed
+from service.diagnosis.words.findings import course_in_words
+from service.kit.failure import session_failed
 from service.kit.measures import COVERAGE, deviation_measure
 from service.sessions.charts import ChartSet
+from service.sessions.lines import ResidualTable, rows_of
 from service.sessions.records import DiagnosisState, DiagnosisSummary
-from service.sessions.residual_table import ResidualTable, rows_of
 
 PENDING = "Still being examined"
 TONES = {

@@ -9,8 +9,7 @@ from estimator.diagnosis.results import Shared
 from estimator.message import say
 from estimator.results import Residuals
 from service.kit.measures import COVERAGE, THIN, decimals, deviation_measure, number
-from service.sessions.charts import DATA_FORM, ChartSet, Panel, padded, specification
-from service.sessions.charts.across import HEIGHT, Across, in_order, ticks
+from service.sessions.charts import DATA_FORM, HEIGHT, Across, ChartSet, Panel, in_order, padded, specification, ticks
 
 
 def shared_chart(shared: Shared, kind: str, residuals: Residuals, name: str) -> ChartSet:

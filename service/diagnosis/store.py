@@ -1,19 +1,33 @@
 """Diagnoses as they were made, and those still to be made."""
 
+import json
 import zlib
 from collections.abc import Sequence
+from typing import Any
 
 from sqlalchemy import delete, select, update
 
-from service.diagnosis.document import read_diagnosis
-from service.diagnosis.records import StoredDiagnosis
+from service.diagnosis.records import Diagnosed, StoredDiagnosis
 from service.diagnosis.tables import DiagnosisRow
+from service.diagnosis.words.diagnosis import NOT_APPLICABLE
 from service.sessions.decision import Verdict
-from service.sessions.doubt import Reservation
+from service.sessions.doubt import Reservation, reservations_from_list, reservations_to_list
 from service.sessions.records import DiagnosisState, DiagnosisSummary
-from service.sessions.reservation_document import reservations_from_list, reservations_to_list
 from service.sessions.tables import SessionRow
 from service.storage.queries import Queries
+
+
+def inapplicable_to_dict(unit: str) -> dict[str, Any]:
+    """imu-diagnosis/1 of a session of a programme in which no causes are looked for."""
+    empty: dict[str, Any] = {"findings": [], "unexplained": False, "structures": [], "limits": [], "noise": []}
+    unmade = dict.fromkeys(("gain", "calibration", "residuals_before"))
+    return {"format": "imu-diagnosis/1", "unit": unit, **empty, **unmade, "notes": [NOT_APPLICABLE]}
+
+
+def read_diagnosis(text: str) -> Diagnosed | None:
+    """What was written, null as NaN; None of a programme in which no causes are looked for."""
+    document = json.loads(text)
+    return None if document["gain"] is None else Diagnosed.from_dict(document)
 
 
 class Diagnoses(Queries):

@@ -6,13 +6,13 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.flags.assigned import assignee_meant
 from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, resolve_flag
 from service.flags.records import Flag, FlagState
 from service.flags.store import FlagQuery, Flags
+from service.flags.view import assignee_meant
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Units
 from service.web.dependencies import Now, Reading
 from service.web.fields import LongText, Name, Number, Paged, Reason, Text, Window, WindowOf

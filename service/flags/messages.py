@@ -17,8 +17,8 @@ from threading import Event
 
 import httpx
 
+from service.flags.changes import fault_of
 from service.flags.records import DeliveryState, Outgoing
-from service.flags.webhooks import fault_of
 from service.flags.webhooks_store import Webhooks
 from service.kit.guard import Guard
 from service.kit.metrics import Metrics

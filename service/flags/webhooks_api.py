@@ -5,9 +5,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from service.flags.changes import register_webhook as register
+from service.flags.changes import remove_webhook
 from service.flags.records import Delivery, Webhook
-from service.flags.webhooks import register_webhook as register
-from service.flags.webhooks import remove_webhook
 from service.flags.webhooks_store import Webhooks
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf

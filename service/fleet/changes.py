@@ -4,15 +4,14 @@ from datetime import datetime
 
 from service.groups.records import Group, Level
 from service.groups.store import Groups
-from service.outlook.populations_store import Populations
 from service.outlook.rules.populations import populations
-from service.outlook.store import Outlooks
+from service.outlook.store import Outlooks, Populations
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.stands.health import stand_health
 from service.stands.store import Stands
 from service.storage import Storage
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.types.store import UnitTypes
 
 

@@ -13,7 +13,7 @@ from service.outlook.records import UnitOutlook
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
 from service.types.records import UnitType
-from service.units.customer import NOBODY, Customer
+from service.units.records import NOBODY, Customer
 
 
 @answer

@@ -33,9 +33,8 @@ from service.outlook.tables import OutlookRow
 from service.queue.records import WorkKind
 from service.queue.tables import WorkRow
 from service.sessions.decision import Verdict
-from service.sessions.doubt import Reservations
+from service.sessions.doubt import Reservations, reservations_from_list
 from service.sessions.records import DiagnosisState, StoredSession
-from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.store import is_waiting, session_record, session_rows
@@ -45,7 +44,7 @@ from service.storage.columns import RESOLVED
 from service.storage.queries import Queries
 from service.types.store import unit_type_of
 from service.types.tables import ToleranceRow, UnitTypeRow
-from service.units.customer import Customer
+from service.units.records import Customer
 from service.units.tables import ServiceRow, UnitRow
 
 Other = aliased(SessionRow)

@@ -9,15 +9,23 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, TypeVarTuple
 
-from sqlalchemy import ColumnElement, Select, and_, false, or_, select
+from sqlalchemy import ColumnElement, Select, String, Subquery, and_, case, cast, false, func, literal, or_, select
 
 from service.diagnosis.tables import DiagnosisRow
-from service.fleet.records import FleetQuery, Order
+from service.fleet.records import Announced, FleetQuery, Order
 from service.fleet.tables import ConditionRow
+from service.groups.records import FoundTogether, Group, Level
+from service.groups.tables import GroupDiagnosisRow
 from service.outlook.tables import OutlookRow
+from service.queue.records import WorkKind
+from service.queue.tables import WorkRow
 from service.sessions.decision import Verdict
+from service.sessions.states import Questioned, RecordState
 from service.sessions.tables import SessionRow
-from service.stands.tables import StandRow
+from service.stands.records import StandCondition
+from service.stands.tables import StandConditionRow, StandRow
+from service.storage.json_text import STORED
+from service.storage.queries import Queries, lists
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
@@ -130,3 +138,65 @@ def beyond(wanted: FleetQuery, place: Sequence[Any]) -> ColumnElement[bool]:
         found.append(and_(*alike, key.is_after(value)))
         alike.append(key.is_same(value))
     return or_(*found)
+
+
+WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
+"""What concerns most units first."""
+
+
+class Announcements(Queries):
+    """Stands that shifted, sessions that wait for an engineer, what sessions show together."""
+
+    def all(self, questioned: int, found: int) -> Announced:
+        """At most so many of the second and of the third."""
+        of = lists("stands", "questioned", "found")
+        shifts, waiting, together = _shifts(), _questioned(questioned), _found(found)
+        query = (
+            select(of.c.list, shifts.c.document, waiting, together)
+            .outerjoin_from(of, shifts, of.c.list == "stands")
+            .outerjoin(waiting, of.c.list == "questioned")
+            .outerjoin(together, of.c.list == "found")
+            .order_by(shifts.c.name, waiting.c.uploaded_at.desc(), waiting.c.id, together.c.place, together.c.group_id)
+        )
+        rows = self._session.execute(query).mappings().all()
+        own = {name: [row for row in rows if row["list"] == name] for name in ("stands", "questioned", "found")}
+        groups = [row for row in own["found"] if row["level"] is not None]
+        return Announced(
+            stands=tuple(
+                STORED.read(StandCondition, r["document"]) for r in own["stands"] if r["document"] is not None
+            ),
+            questioned=tuple(Questioned(r["id"], r["serial"], r["started_at"]) for r in own["questioned"] if r["id"]),
+            found=tuple(
+                FoundTogether(Group(Level(r["level"]), r["group_id"], r["group_name"]), r["own"]) for r in groups
+            ),
+            groups=groups[0]["groups"] if groups else 0,
+        )
+
+
+def _shifts() -> Subquery:
+    query = select(StandRow.name, StandConditionRow.document).join(StandRow, StandRow.id == StandConditionRow.stand_id)
+    return query.where(StandConditionRow.shifts > 0).subquery("shifts")
+
+
+def _questioned(most: int) -> Subquery:
+    row = SessionRow
+    query = select(row.id, UnitRow.serial, row.started_at, row.uploaded_at).join(UnitRow)
+    latest = query.where(row.state == RecordState.QUESTIONED).order_by(row.uploaded_at.desc(), row.id)
+    return latest.limit(most).subquery("questioned")
+
+
+def _found(most: int) -> Subquery:
+    """Groups whose answer is being made again are left out."""
+    row = GroupDiagnosisRow
+    place_of = row.level + literal(" ") + cast(row.group_id, String)
+    again = select(WorkRow.id).where(WorkRow.kind == WorkKind.GROUP, WorkRow.key == place_of).exists()
+    place = case({level.value: place for place, level in enumerate(WIDEST)}, value=row.level).label("place")
+    name = func.coalesce(UnitRow.serial, UnitTypeRow.name, StandRow.name).label("group_name")
+    query = (
+        select(row.level, row.group_id, name, row.own, place, func.count().over().label("groups"))
+        .outerjoin(UnitRow, (row.level == Level.UNIT.value) & (UnitRow.id == row.group_id))
+        .outerjoin(UnitTypeRow, (row.level == Level.TYPE.value) & (UnitTypeRow.id == row.group_id))
+        .outerjoin(StandRow, (row.level == Level.STAND.value) & (StandRow.id == row.group_id))
+        .where(row.own != "", ~again)
+    )
+    return query.order_by(place, row.group_id).limit(most).subquery("found")

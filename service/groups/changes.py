@@ -9,11 +9,9 @@ from estimator.groups import GroupFinding, SessionStatistics, statistics_of
 from estimator.groups.fixed import EMPIRICAL
 from estimator.moments import written
 from estimator.session import CALIBRATIONS, CalibrationSession
-from service.groups.document import read_group
 from service.groups.records import Group, Level
-from service.groups.store import Groups, Statistics
-from service.groups.words.group import own_of_group
-from service.groups.words.group_finding import holds
+from service.groups.store import Groups, Statistics, read_group
+from service.groups.words import holds, own_of_group
 from service.ingest import read_upload
 from service.models.records import SCOPES, Scope
 from service.models.rules import in_force
@@ -25,7 +23,7 @@ from service.sessions.store import Sessions
 from service.settings import VERSION
 from service.storage import Storage
 from service.storage.files import LOST
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Services, Units
 
 LEVELS = {scope: Level(level) for level, scope in SCOPES.items()}

@@ -17,11 +17,10 @@ from estimator.groups.layout import EVERY
 from estimator.groups.pictures import ANGLES
 from estimator.message import joined, say
 from estimator.moments import moment
-from service.diagnosis.words.amplitude_measures import amplitude_measure
-from service.diagnosis.words.amplitudes import part_of
-from service.kit.measures import ARCSEC, COVERAGE, Measure, deviation_measure, measured, number
-from service.kit.names import day_of
+from service.diagnosis.words.amplitudes import amplitude_measure, part_of
+from service.kit.measures import ARCSEC, COVERAGE, Measure, day_of, deviation_measure, measured, number
 from service.sessions.charts import (
+    BETA,
     DATA_FORM,
     HIGH,
     LEFT,
@@ -33,8 +32,9 @@ from service.sessions.charts import (
     filled,
     padded,
     specification,
+    ticks,
+    zero_line,
 )
-from service.sessions.charts.across import BETA, ticks, zero_line
 
 HEIGHT = 150
 """Pixels."""

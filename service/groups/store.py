@@ -24,25 +24,45 @@ from sqlalchemy import (
 )
 from sqlalchemy.orm import aliased
 
-from estimator.groups import SessionStatistics
+from estimator.groups import GroupDiagnosis, SessionStatistics
 from estimator.groups.statistics import FORMAT
 from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.groups.records import Group, GroupAnswer, Level, Member, Members
+from service.groups.records import Group, GroupAnswer, GroupShown, Level, Member, Members
 from service.groups.tables import GroupDiagnosisRow, SessionStatisticsRow
+from service.groups.words import NO_SESSION
 from service.queue.records import WorkKind
 from service.queue.tables import WorkRow
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
-from service.storage.documents import STORED
-from service.storage.json_text import json_text
+from service.storage.json_text import STORED, json_text
 from service.storage.queries import Queries
+from service.types.store import tells_of_stand, tells_of_type
 from service.types.tables import UnitTypeRow
-from service.types.telling_store import tells_of_stand, tells_of_type
 from service.units.tables import UnitRow
+
+
+def group_document(group: Group, found: GroupDiagnosis | None, members: Members) -> str:
+    """What was found, with what the pool leaves out; None of a group without a session to pool."""
+    document = found or _empty(group)
+    left = [{"session": m.session, "reason": m.why} for m in members.without]
+    return json_text(STORED.written(document) | STORED.written({"left_out": members.left_out, "not_pooled": left}))
+
+
+def read_group(text: str) -> GroupShown:
+    """What `group_document` wrote."""
+    return GroupShown.from_dict(json.loads(text))
+
+
+def _empty(group: Group) -> GroupDiagnosis:
+    return GroupDiagnosis(
+        group.level.value, group.name, 0, None, None,
+        findings=(), terms=(), structures=(), limits=(), gain=None, e_value=1.0, notes=(NO_SESSION,),
+    )  # fmt: skip
+
 
 MOST = 60
 """Sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it is

@@ -13,11 +13,13 @@ import struct
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import asdict, replace
 from pathlib import Path
 from threading import Condition, Lock, local
+from time import monotonic
 from typing import Any
 
 from estimator.codec import KEPT
@@ -25,10 +27,75 @@ from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from estimator.message import say
 from service.errors import BusyError
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
-from service.ingest.scanned import Heard, listener
-from service.ingest.sender import SENDER
 from service.kit import limits
 from service.kit.limits import Limits, refusal
+
+SENDER: ContextVar[str] = ContextVar("sender", default="")
+"""Of the request at hand; empty beside the requests, where files wait in a queue of their own."""
+
+PAUSE = 1.0
+"""Seconds between two words of it: a page looks again every two."""
+
+Heard = Callable[[int, int], None]
+"""Is told how many bytes were read of the file, after how many times through all of it; ends the reading by raising."""
+
+_listener: ContextVar[Heard | None] = ContextVar("listener", default=None)
+
+
+@contextmanager
+def heard_by(listener: Heard) -> Iterator[None]:
+    """Around the reading of a file: who hears how far it is."""
+    token = _listener.set(listener)
+    try:
+        yield
+    finally:
+        _listener.reset(token)
+
+
+def listener() -> Heard | None:
+    """Who hears it."""
+    return _listener.get()
+
+
+class Teller:
+    """Of the process that reads; parts may be read in a thread of their own."""
+
+    def __init__(self, tell: Heard | None = None) -> None:
+        self._tell, self._lock = tell, Lock()
+        self._times, self._last = 0, 0.0
+
+    def at(self, done: int, total: int) -> None:
+        """So many bytes of all are read this time."""
+        if self._tell is None:
+            return
+        with self._lock:
+            now = monotonic()
+            if self._tell is not None and now - self._last >= PAUSE:
+                self._last = now
+                self._tell(done, self._times)
+            self._times += done >= total
+
+    def silence(self) -> None:
+        """The answer follows: nothing is told any more."""
+        with self._lock:
+            self._tell = None
+
+
+class _InForce:
+    """The one of this process."""
+
+    teller = Teller()
+
+
+def teller() -> Teller:
+    """Of this process."""
+    return _InForce.teller
+
+
+def use(teller: Teller) -> None:
+    """Sets it for this process."""
+    _InForce.teller = teller
+
 
 SERVER = "service.ingest.fork_server"
 ROOT = str(Path(__file__).parents[2])

@@ -17,7 +17,8 @@ from typing import Any
 
 from estimator.codec import KEPT
 from estimator.errors import ScheduleError, SessionError
-from service.ingest import jobs, scanned
+from service.ingest import apart as scanned
+from service.ingest import jobs
 from service.ingest.apart import END, READY, SCANNED, SIZE, WAITING
 from service.ingest.exchange import Packed, pack, plain_bytes
 from service.kit import limits

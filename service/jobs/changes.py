@@ -7,9 +7,8 @@ from datetime import datetime
 from estimator.errors import Problem
 from estimator.message import say
 from service.errors import BusyError, ConflictError, ForbiddenError, RefusedError
-from service.jobs.failures_store import Failures
 from service.jobs.records import Job, JobKind, NewJob
-from service.jobs.store import Jobs
+from service.jobs.store import Failures, Jobs
 from service.kit.person import Person, Role
 from service.models.records import ModelRevision
 from service.models.store import Recomputations
@@ -18,7 +17,7 @@ from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import Files
 from service.storage.made import drop_made, read_made
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.storage.waiting import drop_waiting
 
 MOST_OPEN = 100

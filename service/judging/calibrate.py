@@ -10,13 +10,14 @@ from estimator.groups.fixed import calibrate_with
 from estimator.parity import ParityResult, parity_check
 from estimator.parity.as_calibration import parity_calibration
 from estimator.programmes import calibrate as calibrate_baseline
-from estimator.results import Calibration
+from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, CalibrationSession
 from service.ingest.checked import Checked
 from service.judging.reference import calibration_to_compare_with
 from service.kit.lock_order import outside_writing
 from service.models.records import Model
-from service.storage.store import Store
+from service.sessions.records import ALL_PARAMETERS, ParameterValue
+from service.storage.queries import Store
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,3 +75,21 @@ def _under(model: Model, session: CalibrationSession) -> Calibration:
     if (model.causes or model.fixed) and session.programme in CALIBRATIONS:
         return calibrate_with(session, model.fixed, model.causes)
     return calibrate_baseline(session)
+
+
+def parameter_values(calibration: Calibration) -> tuple[ParameterValue, ...]:
+    """Every parameter that the session speaks of; what was not observed has neither value nor uncertainty."""
+    return tuple(
+        _value(index, sensor, parameter)
+        for index, sensor in enumerate(calibration.sensors)
+        for parameter in ALL_PARAMETERS
+        if parameter in sensor.observable
+    )
+
+
+def _value(index: int, sensor: SensorCalibration, parameter: str) -> ParameterValue:
+    if parameter == "axis":
+        axis = None if sensor.axis is None else (float(sensor.axis[0]), float(sensor.axis[1]), float(sensor.axis[2]))
+        return ParameterValue(sensor.name, index, sensor.kind, parameter, None, sensor.axis_sigma, axis)
+    estimate: Estimate = getattr(sensor, parameter)
+    return ParameterValue(sensor.name, index, sensor.kind, parameter, estimate.value, estimate.sigma, None)

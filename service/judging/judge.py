@@ -1,6 +1,7 @@
 """Step: a calibrated session → a decision on every parameter, and on the session by the worst of them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import dist
 
 from estimator.health import Judgement
 from estimator.health import judge as judge_parameters
@@ -11,11 +12,12 @@ from estimator.health.rule import RULE
 from estimator.message import say
 from estimator.results import Calibration
 from service.judging.calibrate import Comparison
-from service.judging.in_service_words import reason as recording_in_words
-from service.judging.words import first_in_words, reason
+from service.judging.words import first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
+from service.models.records import MovedParameter, MovedVerdict
 from service.sessions.decision import Decision, Judged, Opening, Verdict
-from service.sessions.words.advice import too_few
+from service.sessions.records import ParameterValue, StoredSession
+from service.sessions.words.conditions import too_few
 from service.types.records import UnitType
 from service.types.rules import tolerances_of
 
@@ -68,3 +70,45 @@ def _decisions(judgements: Iterable[Judgement], rule: str, unit_type: UnitType) 
     """Judgements with the rule and the revision of the tolerances that they rest on."""
     basis = say("{rule} ({name} rev {revision})", rule=rule, name=unit_type.name, revision=unit_type.revision)
     return tuple(Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), rule=basis) for own in judgements)
+
+
+def moved_verdicts(before: Mapping[str, StoredSession], after: Sequence[StoredSession]) -> Iterator[MovedVerdict]:
+    """Accepted sessions with another verdict than before, in their order."""
+    for now in after:
+        was = before.get(now.id)
+        if was is not None and was.state is now.state and was.verdict is not now.verdict:
+            yield MovedVerdict(now.id, now.started_at, was.verdict, now.verdict)
+
+
+def moved_parameters(
+    session: str, before: Sequence[ParameterValue], after: Sequence[ParameterValue]
+) -> Iterator[MovedParameter]:
+    """Every parameter that both calibrations of a session give, and by how much it moved."""
+    known = {(value.sensor, value.parameter): value for value in before}
+    for now in after:
+        was = known.get((now.sensor, now.parameter))
+        change = None if was is None else _change(was, now)
+        if change is not None and was is not None and was.u:
+            yield MovedParameter(session, now.sensor, now.kind, now.parameter, change, _uncertainty(was))
+
+
+def furthest(moved: Sequence[MovedParameter]) -> MovedParameter | None:
+    """The one that moved most, in its own uncertainty; None where nothing did."""
+    found = max(moved, key=lambda one: abs(one.change) / one.u, default=None)
+    return found if found is not None and found.change else None
+
+
+def _change(was: ParameterValue, now: ParameterValue) -> float | None:
+    """Relative of a scale factor; of an axis the angle between its directions, rad."""
+    if was.axis is not None and now.axis is not None:
+        return dist(was.axis, now.axis)
+    if was.value is None or now.value is None:
+        return None
+    change = now.value - was.value
+    return change / was.value if was.parameter == "scale" else change
+
+
+def _uncertainty(was: ParameterValue) -> float:
+    """In the unit of its change."""
+    assert was.u is not None
+    return was.u / abs(was.value) if was.parameter == "scale" and was.value else was.u

@@ -4,16 +4,9 @@ from collections.abc import Iterator
 
 from estimator.message import capitalised, joined, say
 from estimator.parity import ParityResult
-from service.judging.in_service_words import (
-    CHANGED,
-    MOST_CANDIDATES,
-    SAME,
-    TOO_MUCH_MOTION,
-    clipped_in_words,
-    stillness,
-)
+from service.judging.words import CHANGED, MOST_CANDIDATES, SAME, TOO_MUCH_MOTION, clipped_in_words, stillness
 from service.kit.measures import number
-from service.sessions.words.fit import FitWords
+from service.sessions.words.readings import FitWords
 
 COMMON = (
     "a bias common to all that some acceleration explains, all axes turned together, all scales by one factor, "

@@ -18,12 +18,11 @@ from estimator.results import Calibration, SensorCalibration
 from estimator.session import CALIBRATIONS, Array, CalibrationSession, Sensor
 from service.ingest.checked import Checked
 from service.judging.beside_type import MOST, beside_type, type_of_references
-from service.judging.known_unit import KnownUnit
-from service.judging.moments import of_date, of_moment
-from service.judging.same_unit import of_unit
+from service.judging.origin import of_date, of_moment, of_unit
+from service.judging.reference import KnownUnit
 from service.sessions.doubt import Correction, Doubt, Remedy
 from service.sessions.history_store import History
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.types.records import UnitType
 from service.types.rules import tolerances_of
 from service.types.store import UnitTypes

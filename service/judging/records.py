@@ -3,10 +3,17 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
 from service.flags.records import Concern
+from service.fleet.condition import UnitSummary
+from service.judging.words import AGAIN, verdict_in_words
 from service.sessions.decision import Judged
-from service.sessions.records import UNWEIGHED
+from service.sessions.doubt import DoubtKind as Doubt
+from service.sessions.doubt import Reservation
+from service.sessions.records import UNWEIGHED, Receipt, StoredSession
+from service.sessions.states import RecordState
+from service.sessions.words.conditions import LOOKING, QUESTIONED, condition_of
 
 
 @dataclass(frozen=True)
@@ -73,3 +80,27 @@ class Decided:
     told: Told | None
     is_first: bool = False
     """Whether nothing was decided of it under this revision before."""
+
+
+STILL_LOOKING = Reservation(Doubt.PENDING, LOOKING, AGAIN)
+"""Of a verdict whose session is not diagnosed yet."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SaidVerdict:
+    """A verdict that is said with its reservations."""
+
+    reservations: tuple[Reservation, ...]
+    """What speaks against taking the verdict as it stands; one of kind `pending` while causes are still being looked
+    for. Empty where the verdict is plain."""
+    said: str
+    """The verdict in words, in one breath with its reservations."""
+
+
+def said(record: StoredSession | Receipt | UnitSummary) -> dict[str, Any]:
+    """The fields of a record with a verdict, and how that is said; a questioned session tells nothing."""
+    known = record.reservations
+    words = verdict_in_words(condition_of(record.verdict, is_reference=record.is_reference), known)
+    if not isinstance(record, UnitSummary) and record.state is RecordState.QUESTIONED:
+        words = QUESTIONED.word
+    return {**vars(record), "reservations": (STILL_LOOKING,) if known is None else known, "said": words}

@@ -5,18 +5,94 @@ service is after it. Its reference is the first session that was kept as one. Ca
 alignments and rate tables one each; a recording in service never becomes one and is compared with the calibrations'.
 """
 
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
 
 from estimator.errors import Problem, ScheduleError
 from estimator.message import say
-from estimator.results import Calibration
+from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
 from service.ingest.checked import Checked
+from service.judging.records import Counted, UnitRecords
+from service.judging.store import Derivations
 from service.sessions.calibrations_store import Calibrations
+from service.sessions.records import PARAMETERS
 from service.sessions.store import Sessions
-from service.storage.store import Store
-from service.units.store import Services, Units
+from service.sessions.words.conditions import too_few
+from service.storage.queries import Store
+from service.units.store import Services, Units, epoch
+
+NOTHING_READ: Mapping[tuple[str, int], Calibration] = {}
+
+
+@dataclass(frozen=True)
+class KnownUnit:
+    """A unit's records, and the calibrations of its sessions that were asked for."""
+
+    store: Store
+    unit: int
+    records: UnitRecords
+    made: dict[str, Calibration] = field(default_factory=dict)
+    """Calibrations that this transaction stores: nothing was decided of them before."""
+    read: dict[str, Calibration] = field(default_factory=dict)
+    """Calibrations in force that it has read."""
+    files: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    """Of sessions that are not stored yet."""
+
+    def calibration(self, id: str) -> Calibration:
+        """The one in force of a session."""
+        if id in self.made:
+            return self.made[id]
+        if id not in self.read:
+            self.read[id] = Calibrations(self.store).get(id)
+        return self.read[id]
+
+    def file(self, id: str) -> tuple[str, str]:
+        """The hash and the name of a session's file."""
+        if id in self.files:
+            return self.files[id]
+        session = Sessions(self.store).get(id)
+        return session.sha256, session.filename
+
+    def read_all(self, ids: Collection[str]) -> None:
+        """Reads those of several sessions at once."""
+        unread = {*ids} - self.made.keys() - self.read.keys()
+        if len(unread) > 1:
+            self.read.update(Calibrations(self.store).in_force(unread))
+
+    def is_blind(self, one: Counted) -> bool:
+        """Whether a session gives no uncertainty; a reference gave one when it was taken for it."""
+        return not one.is_reference and bool(too_few(self.calibration(one.id)))
+
+    def reference(self, block: str, programme: str, at: datetime) -> str | None:
+        """The session that one of a block, programme and time is judged against."""
+        since, until = epoch(self.records.breaks, at)
+        return next(
+            (
+                one.id
+                for one in self.records.counted
+                if one.is_reference
+                and (one.block, one.programme in alike(programme)) == (block, True)
+                and (since is None or one.at >= since)
+                and (until is None or one.at < until)
+            ),
+            None,
+        )
+
+
+def known_unit(
+    store: Store,
+    unit: int,
+    made: dict[str, Calibration] | None = None,
+    references: Mapping[tuple[str, int], Calibration] = NOTHING_READ,
+) -> KnownUnit:
+    """A unit as its rows are now, with calibrations that were stored just before, and with those of references that
+    were read already, by session and revision."""
+    records = Derivations(store).records(unit)
+    current = {(one.id, one.revision) for one in records.counted}
+    read = {id: found for (id, revision), found in references.items() if (id, revision) in current}
+    return KnownUnit(store, unit, records, made or {}, read)
 
 
 @dataclass(frozen=True)
@@ -62,3 +138,31 @@ def _uncalibrated(unit: str, since: datetime | None) -> ScheduleError:
         service=service,
     )
     return ScheduleError([Problem("unit", message)])
+
+
+def left_uncertain(
+    calibration: Calibration, tolerances: Mapping[tuple[str, str], float], coverage_factor: float
+) -> Iterator[str]:
+    """``A1 scale``: every parameter that has a tolerance and is not known to it."""
+    for sensor in calibration.sensors:
+        for parameter in PARAMETERS:
+            tolerance = tolerances.get((sensor.kind, parameter))
+            if tolerance is None or parameter not in sensor.observable:
+                continue
+            expanded = _expanded(sensor, parameter, coverage_factor)
+            if expanded is None or expanded > tolerance:
+                yield say("{name} {parameter}", name=sensor.name, parameter=parameter)
+
+
+def _expanded(sensor: SensorCalibration, parameter: str, k: float) -> float | None:
+    """U, SI; of a scale factor relative. None where it is not known."""
+    if not sensor.observable[parameter]:
+        return None
+    if parameter == "axis":
+        sigma: float | None = sensor.axis_sigma
+    else:
+        estimate: Estimate = getattr(sensor, parameter)
+        sigma = estimate.sigma
+        if parameter == "scale" and sigma is not None and estimate.value:
+            sigma /= abs(estimate.value)
+    return None if sigma is None else sensor.factor(parameter, k) * sigma

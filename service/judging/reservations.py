@@ -8,11 +8,21 @@ it is plain.
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from estimator.causes import find
 from estimator.diagnosis import Finding
+from estimator.diagnosis.explanation.accepted import calibrate_extended
+from estimator.diagnosis.explanation.temperature import LEAST_DIFFERENCE, OF_TEMPERATURE
 from estimator.diagnosis.results import NoiseScale, Structure
+from estimator.health.detection import LEVEL, Warmth, warmed
+from estimator.health.fits import Readings
+from estimator.health.prognosis import Track
+from estimator.results import Calibration, Residuals
+from estimator.session import CALIBRATIONS, CalibrationSession
+from service.diagnosis.words.causes import UNKNOWN_CAUSE
 from service.judging.cause_sizes import Size, Yardstick, size_of_cause, size_of_structure
-from service.judging.standing import Otherwise, acts_within, is_of_record
-from service.judging.temperatures import Covered
+from service.judging.judge import judge
 from service.judging.words import (
     ADD,
     CORRECT,
@@ -33,10 +43,167 @@ from service.judging.words import (
     worth_in,
 )
 from service.kit.measures import COVERAGE
+from service.outlook.rules.histories import TrackKey, histories
+from service.outlook.store import ChangeRow, ReferenceRow
 from service.sessions.decision import Verdict
 from service.sessions.doubt import DoubtKind as Doubt
 from service.sessions.doubt import Reservation
-from service.sessions.words.noise_claims import wrong_errors
+from service.sessions.records import StoredSession
+from service.sessions.words.noise import wrong_errors
+from service.types.records import UnitType
+
+WITHIN = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
+"""Verdicts by which temperature did not do much."""
+
+
+@dataclass(frozen=True, eq=False)
+class Covered:
+    """What is known of a unit and temperature."""
+
+    lowest: float
+    highest: float
+    reference: float
+    """°C of the session that others are judged against, its mean."""
+    now: float
+    """Of the session."""
+    changes: tuple[ChangeRow, ...] = ()
+    """Of earlier sessions, where the session lies outside."""
+    references: tuple[ReferenceRow, ...] = ()
+
+    @property
+    def outside(self) -> float:
+        """°C by which the session lies outside; below zero where colder."""
+        return self.now - float(np.clip(self.now, self.lowest, self.highest))
+
+    @property
+    def is_far(self) -> bool:
+        """Whether it was measured at another temperature."""
+        return abs(self.outside) > LEAST_DIFFERENCE
+
+
+def covered_by(session: StoredSession, reference: Residuals, earlier: Iterable[StoredSession]) -> Covered | None:
+    """The temperatures that a reference and earlier sessions cover; None where nothing says them."""
+    if session.temperature is None or reference.temperature is None:
+        return None
+    own = np.asarray(reference.temperature)
+    passed = [s.temperature for s in earlier if s.temperature is not None and s.verdict in WITHIN]
+    every = np.array([*own, *passed])
+    return Covered(float(every.min()), float(every.max()), float(own.mean()), session.temperature)
+
+
+def worth_of(covered: Covered) -> tuple[Size, ...] | None:
+    """What the step in temperature is worth in every parameter, by the earlier sessions; None where they do not tell.
+
+    It goes on in a straight line beyond the temperatures that they span.
+    """
+    known = histories(covered.changes, covered.references)
+    laws = [_law(track) for track in known.tracks]
+    if not laws or any(law is None for law in laws):
+        return None
+    step = abs(covered.now - covered.reference)
+    each = zip(known.keys, known.tracks, laws, strict=True)
+    return tuple(_size(key, track.tolerance, law, step) for key, track, law in each if law is not None)
+
+
+def _law(track: Track) -> Warmth | None:
+    if track.temperature is None or track.dof is None:
+        return None
+    n, allowed = len(track.time), track.tolerance
+    changes = Readings(track.time, track.change / allowed, track.sigma / allowed, np.ones((n, 1)), np.ones(1))
+    return warmed(changes, 0.0, track.dof, track.temperature, LEVEL).warmth
+
+
+def _size(key: TrackKey, tolerance: float, law: Warmth, step: float) -> Size:
+    value, sigma = float(np.linalg.norm(law.coefficient)), float(law.sigma.max())
+    return Size((key.sensor,), key.kind, key.parameter, value * step * tolerance, sigma * step * tolerance, tolerance)
+
+
+MOST_ALTERNATIVES = 3
+"""Of the strongest finding, the likeliest ones, that a verdict is taken under: each costs another calibration."""
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """What a session is judged against, whatever the model."""
+
+    reference: Calibration
+    unit_type: UnitType
+    coverage_factor: float
+
+    def verdict_of(self, calibration: Calibration) -> Verdict:
+        """By the same rule as an upload."""
+        return judge(calibration, self.reference, self.unit_type, self.coverage_factor).verdict
+
+
+@dataclass(frozen=True)
+class Otherwise:
+    """The verdict under another model than the one in force."""
+
+    causes: tuple[str, ...]
+    """That are in that model, identifiers; empty for the baseline."""
+    sensors: tuple[str, ...]
+    """That its first cause acts on."""
+    verdict: Verdict
+    named: bool = False
+    """Whether it is the model with the causes that the diagnosis names."""
+
+
+def verdicts_under_alternatives(
+    session: CalibrationSession, findings: tuple[Finding, ...], basis: Basis
+) -> Iterator[Otherwise]:
+    """Under each of the likeliest alternatives of the strongest finding, in its place beside the other names.
+
+    None where the record is wrong: the session is to be uploaded again. None of an alignment: it takes off what is
+    looked for in it. None of what only several sessions show together: this one cannot fit it.
+    """
+    findings = tuple(f for f in findings if f.over_sessions is None)
+    if (
+        session.programme not in CALIBRATIONS
+        or not findings
+        or any(is_of_record(finding.cause) for finding in findings)
+    ):
+        return
+    first = findings[0]
+    others = tuple((f.cause, _once(f.sensors)) for f in findings[1:] if acts_within(f.cause))
+    for name in _of_the_session(first)[:MOST_ALTERNATIVES]:
+        if name == UNKNOWN_CAUSE or acts_within(name):
+            own = () if name == UNKNOWN_CAUSE else ((name, _sensors(name, first)),)
+            causes = (*own, *others)
+            verdict = basis.verdict_of(calibrate_extended(session, causes))
+            yield Otherwise(tuple(cause for cause, _ in causes), own[0][1] if own else (), verdict)
+
+
+def _of_the_session(first: Finding) -> tuple[str, ...]:
+    """Alternatives that a model of the session can hold: what temperature did between sessions it cannot show."""
+    known = find(first.cause)
+    between = known is not None and known.between
+    return tuple(name for name in first.alternatives if not (between and name in OF_TEMPERATURE))
+
+
+def is_of_record(name: str) -> bool:
+    """Whether a cause says that the file is wrong: then no model makes the session right. Of what only gyros have it is
+    the latitude, which the file states."""
+    known = find(name)
+    return known is not None and (known.scope == "record" or (known.scope == "gyro" and known.between))
+
+
+def acts_within(name: str) -> bool:
+    """Whether a cause acts within the session, and is not in its model anyway: no change since earlier ones, which the
+    tolerances judge."""
+    known = find(name)
+    return known is not None and not known.between and not known.always_modelled
+
+
+def _sensors(name: str, first: Finding) -> tuple[str, ...]:
+    """A cause of the stand or fixture acts on no sensor in particular."""
+    known = find(name)
+    return _once(first.sensors) if known is not None and known.is_of_sensor else ()
+
+
+def _once(sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """A sensor that jumped twice is one sensor."""
+    return tuple(dict.fromkeys(sensors))
+
 
 WORTH_SAYING = 1 / 3
 """Part of a tolerance from which on an effect is told: what a measurement may leave uncertain of it at most, too."""

@@ -36,7 +36,7 @@ from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.store import NOT_JUDGED, is_waiting, worst_columns
 from service.sessions.tables import CalibrationRow, CommonMotionRow, DecisionRow, ReferenceChoiceRow, SessionRow
-from service.storage.documents import STORED
+from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.units.tables import ServiceRow, UnitRow
 

@@ -3,7 +3,16 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from estimator.message import say, without_stop
 from service.kit.answer import answer
+
+AT_FAULT = "the program failed at it: see the log"
+"""In place of Python's words."""
+
+
+def too_long(seconds: float) -> str:
+    """Of what was ended because it was not done in time."""
+    return say("it was not done within {seconds} s, the longest that it may take", seconds=f"{seconds:g}")
 
 
 class FailedKind(StrEnum):
@@ -38,3 +47,44 @@ class Failed:
     """Session, unit, group, job or address."""
     why: str
     """Why it failed, in short; the log says more."""
+
+
+UNIT = (
+    "Its dates and verdicts could not be worked out with its latest records: {why}. The administrator must act: see "
+    "Failed work on the page Jobs, and the log."
+)
+SESSION = "Its diagnosis failed: {why}. The administrator must act: see Failed work on the page Jobs, and the log."
+GROUP = (
+    "What these sessions show together could not be worked out: {why}. The administrator must act: see Failed work on "
+    "the page Jobs, and the log."
+)
+NAMES = {
+    FailedKind.DIAGNOSIS: "Diagnosis of a session",
+    FailedKind.OUTLOOK: "Dates of a unit",
+    FailedKind.DERIVATION: "Verdicts of a unit after a change of its records",
+    FailedKind.GROUP: "What sessions show together",
+    FailedKind.SUMMARY: "Summary of a type or of the stands",
+    FailedKind.RECOMPUTATION: "Sessions of a unit under another model",
+    FailedKind.JOB: "Job",
+    FailedKind.MESSAGE: "Message to another program",
+}
+
+
+def with_last_try(text: str, why: str) -> str:
+    """What was given up, and how its last try ended where that is known."""
+    return say("{text} The last try: {why}.", text=text, why=without_stop(why)) if why else text
+
+
+def unit_failed(reason: str) -> str:
+    """Of a unit."""
+    return say(UNIT, why=without_stop(reason))
+
+
+def session_failed(reason: str) -> str:
+    """Of a session."""
+    return say(SESSION, why=without_stop(reason))
+
+
+def group_failed(reason: str) -> str:
+    """Of a unit, a unit type or a stand."""
+    return say(GROUP, why=without_stop(reason))

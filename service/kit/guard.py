@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from estimator.errors import SessionError
 from service.errors import ServiceError
-from service.kit.failed import AT_FAULT
+from service.kit.failure import AT_FAULT
 from service.kit.log import log
 from service.kit.metrics import Metrics
 

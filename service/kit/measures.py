@@ -2,10 +2,14 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from datetime import date, datetime, timedelta
 from math import floor, isfinite, log10, pi
 
 from estimator.applied_vector import STANDARD_GRAVITY
-from estimator.message import say
+from estimator.coverage import coverage_factor
+from estimator.message import joined, say
+from estimator.parity.results import SEVERAL
+from estimator.results import Calibration, SensorCalibration
 from estimator.session import ACCELEROMETER, GYROSCOPE
 
 DEGREE = pi / 180
@@ -164,3 +168,84 @@ def in_words(kind: str, parameter: str, si: float, *, signed: bool = False) -> s
     digits = 0 if shown == 0 else max(0, 1 - floor(log10(abs(shown))))
     sign = "+" if signed and shown > 0 else ""
     return f"{sign}{shown:,.{digits}f} ".replace("-", "−") + measure.label
+
+
+def coverage_in_words(calibration: Calibration, k: float) -> str:
+    """``k = 2``, or the range that Student's t makes of it where the noise was estimated from few readings."""
+    dofs = _degrees_of_freedom(calibration)
+    if not dofs:
+        return f"k = {number(k)}"
+    most, least = (coverage_factor(k, dof) for dof in (min(dofs), max(dofs)))
+    told = _range(min(dofs), max(dofs), 0)
+    degrees = "one effective degree" if told == "1" else say("{told} effective degrees", told=told)
+    return say(
+        "k = {least}, by Student's t: the readings tell their noise to {degrees} of freedom",
+        least=_range(least, most, 2),
+        degrees=degrees,
+    )
+
+
+def noise_is_estimated(calibration: Calibration) -> bool:
+    """Whether any uncertainty rests on noise that the readings themselves tell."""
+    return bool(_degrees_of_freedom(calibration))
+
+
+def _degrees_of_freedom(calibration: Calibration) -> list[float]:
+    every = (dof for sensor in calibration.sensors for dof in (sensor.axis_dof, *_of_numbers(sensor)))
+    return [dof for dof in every if dof is not None]
+
+
+def _of_numbers(sensor: SensorCalibration) -> tuple[float | None, ...]:
+    """Degrees of freedom of the parameters that are numbers."""
+    return tuple(e.dof for e in (sensor.scale, sensor.bias, sensor.quadratic, sensor.misalignment) if e is not None)
+
+
+def _range(low: float, high: float, digits: int) -> str:
+    """``2.1 to 2.9``, or one number where both read the same."""
+    first, last = number(low, digits), number(high, digits)
+    return first if first == last else say("{first} to {last}", first=first, last=last)
+
+
+YEAR = timedelta(days=365.25)
+"""The Julian year, as rates a year are counted."""
+PARAMETER_NAMES = {
+    "scale": "scale factor",
+    "bias": "bias",
+    "quadratic": "quadratic term",
+    "axis": "input axis",
+    "misalignment": "misalignment",
+    SEVERAL: "bias, scale factor and axis together",
+}
+"""What each parameter is called in sentences."""
+FULLER = {"misalignment": "misalignment to the turn axis"}
+"""Where a heading, which stands alone, must say more than a sentence."""
+
+
+def heading(parameter: str) -> str:
+    """``Scale factor``: a parameter's name at the head of a column, a chart or a section."""
+    return FULLER.get(parameter, PARAMETER_NAMES[parameter]).capitalize()
+
+
+def spaced(identifier: str) -> str:
+    """``as found`` of ``as-found``."""
+    return identifier.replace("-", " ")
+
+
+def method_name(method: str) -> str:
+    """``turntable, analytic`` of ``turntable/analytic``."""
+    return joined(", ", map(spaced, method.split("/")))
+
+
+def day_of(at: date) -> str:
+    """``7 Mar 2026``."""
+    return say("{day} {month} {year}", day=at.day, month=f"{at:%b}", year=at.year)
+
+
+def minute_of(at: datetime) -> str:
+    """``7 Mar 2026, 09:30 UTC``."""
+    return say("{day}, {time} UTC", day=day_of(at), time=f"{at:%H:%M}")
+
+
+def month_of(at: date) -> str:
+    """``Mar 2026``."""
+    return say("{month} {year}", month=f"{at:%b}", year=at.year)

@@ -8,8 +8,10 @@ shows empty boxes, never says less than the record, and is the same on every mac
 import re
 from dataclasses import asdict
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeAlias
 from unicodedata import category
+
+from lxml.etree import _Element, tostring
 
 from estimator.message import changed
 
@@ -60,3 +62,21 @@ def _printable(value: Any) -> Any:
             return [_printable(inner) for inner in value]
         case _:
             return value
+
+
+Element: TypeAlias = _Element
+"""A part of a tree."""
+ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 (section 2.2, Char) cannot hold."""
+
+
+def document(root: Element) -> bytes:
+    """The file: the same tree gives the same bytes."""
+    written: bytes = tostring(root, encoding="utf-8", xml_declaration=True, pretty_print=True)
+    return written
+
+
+def sealed_document(root: Element) -> bytes:
+    """The file of a tree that is signed as it stands: not a space is added."""
+    written: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
+    return written

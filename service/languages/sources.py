@@ -13,14 +13,13 @@ from service.languages.template import Template
 from service.languages.templates import literals
 
 ROOT = Path(__file__).parents[2]
-TEMPLATES = "service/web/templates"
+TEMPLATES = "service/*/templates/*.html"
 PAPERS = "service/papers/templates"
 SAID = re.compile(
-    r"service/(kit/(names|coverage|failure_words)"
-    r"|web/(layout|forms|in_language|list_view|problem_pages|render|spoken)|(pages|papers|planning)/"
-    r"|.*/(records|words|charts|pages|sections|decision|doubt|states|condition|paper_records|populations|customer)\b"
-    r"|.*_pages\.py|.*/(view|gain|lines|residual_table|conditions|template|template_wording|preview|pattern|layout/)"
-    r"|outlook/reading|flags/assigned|ingest/session_keys|sessions/records|diagnosis/records)"
+    r"service/(kit/(measures|failure)|web/(in_language|list_view|problem_pages|render)|(pages|papers|planning)/"
+    r"|.*/(records|words|charts|pages|sections|decision|doubt|states|condition|populations)\b"
+    r"|.*_pages\.py|.*/(view|gain|lines|conditions|template|preview|pattern|layout/)"
+    r"|outlook/reading|ingest/session_keys)"
 )
 """Where a single word with a capital letter is said to people too."""
 SETTINGS = "service/settings.py"
@@ -32,11 +31,10 @@ SILENT = (
     "service/client",
     "service/commands",
     "service/demo",
-    "service/pages/feeds.py",
+    "service/outlook/api.py",
     "service/flags/messages.py",
     "service/ingest/convert",
     "service/ingest/fork_server.py",
-    "service/ingest/layout/units.py",
     "service/ingest/layout/vocabulary.py",
     "service/kit/bell.py",
     "service/kit/log.py",
@@ -44,7 +42,7 @@ SILENT = (
     "service/kit/printable.py",
     "service/languages",
     "service/pages/fleet/api.py",
-    "service/pages/session/schemas.py",
+    "service/sessions/schemas.py",
     "service/pages/unit/schemas.py",
     "service/papers/correction.py",
     "service/papers/dcc",
@@ -60,11 +58,10 @@ SILENT = (
     "service/storage/engine.py",
     "service/queue/tables.py",
     "service/storage/schema.py",
-    "service/pages/records/event_schemas.py",
+    "service/records/event_schemas.py",
     "service/web/fields.py",
     "service/web/headers.py",
-    "service/kit/metrics.py",
-    "service/pages/openapi.py",
+    "service/all_api.py",
     "service/web/problem_document.py",
     "service/web/server.py",
     "service/work/helper.py",
@@ -96,7 +93,7 @@ def _all() -> Iterator[Entry]:
         for text in _names_of(cause)
     )
     yield from (Entry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
-    for path in sorted((ROOT / TEMPLATES).glob("*.html")):
+    for path in sorted(ROOT.glob(TEMPLATES)):
         template = Template(path.read_text("utf-8"), path.name)
         yield from (found.message for found in template.messages())
         yield from (Entry(text, place=path.name) for text in literals(template))

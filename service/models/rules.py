@@ -10,7 +10,7 @@ from estimator.results import SensorCalibration
 from service.ingest.checked import Checked
 from service.models.records import Evidence, Model, ModelRevision, Pooled, Scope
 from service.models.store import Models
-from service.storage.store import Store
+from service.storage.queries import Store
 
 EVER = datetime.min.replace(tzinfo=UTC)
 NARROWEST = (Scope.UNIT, Scope.UNIT_TYPE, Scope.STAND)

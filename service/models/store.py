@@ -9,8 +9,8 @@ from sqlalchemy import ColumnElement, String, and_, bindparam, cast, func, or_, 
 from estimator.message import say
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
-from service.models.evidence_document import evidence_from_dict, evidence_to_dict
 from service.models.records import (
+    Evidence,
     ModelRevision,
     MovedParameter,
     MovedVerdict,
@@ -28,9 +28,21 @@ from service.queue.tables import WorkRow
 from service.sessions.decision import Verdict
 from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
+from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
+
+
+def evidence_to_dict(evidence: Evidence | None) -> dict[str, Any]:
+    """What a model revision rests on; empty of one that withdraws another."""
+    return {} if evidence is None else STORED.written(evidence)
+
+
+def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
+    """What `evidence_to_dict` wrote."""
+    return STORED.read(Evidence, entry) if entry else None
+
 
 OWNER = or_(
     and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == UnitRow.serial),

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from estimator.message import say, without_stop
-from service.kit.measures import COVERAGE, HARD, THIN, Measure, decimals, deviation_measure, number
-from service.kit.names import PARAMETER_NAMES
+from service.kit.measures import COVERAGE, HARD, PARAMETER_NAMES, THIN, Measure, decimals, deviation_measure, number
 from service.models.records import MovedParameter, Progress, Recomputation
 
 GIVEN_UP = (

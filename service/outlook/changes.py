@@ -9,14 +9,13 @@ from hashlib import sha256
 from estimator.health.pooled import Prior, learn
 from service.kit.lock_order import outside_writing
 from service.kit.measures import COVERAGE
-from service.outlook.document import unpacked
 from service.outlook.records import UnitOutlook
 from service.outlook.rules.forecast import Past, forecast
 from service.outlook.rules.histories import Histories, histories
-from service.outlook.store import Outlooks
+from service.outlook.store import Outlooks, unpacked
 from service.sessions.store import Sessions
-from service.sessions.words.motion import motions_in_words
-from service.storage.store import Store
+from service.sessions.words.readings import motions_in_words
+from service.storage.queries import Store
 from service.types.store import UnitTypes
 from service.units.store import Services, Units
 

@@ -10,14 +10,13 @@ from datetime import datetime
 
 from estimator.message import say
 from service.errors import NotFoundError
-from service.kit.failure_words import unit_failed
+from service.kit.failure import unit_failed
 from service.outlook.populations import Population
-from service.outlook.populations_store import Populations
 from service.outlook.records import ParameterTrend, UnitOutlook
-from service.outlook.store import Outlooks
+from service.outlook.store import Outlooks, Populations
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Units
 
 

@@ -245,3 +245,12 @@ class UnitOutlook:
         low, high = before[-1], after[0]
         share = (at - low.at) / (high.at - low.at)
         return low.risk + share * (high.risk - low.risk)
+
+
+@answer
+@dataclass(frozen=True)
+class OutlookAnswer(UnitOutlook):
+    """When a unit must be calibrated next, why, and what waiting costs."""
+
+    until: RiskPoint | None = None
+    """The risk of waiting until the date that was asked for."""

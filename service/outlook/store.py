@@ -1,22 +1,79 @@
 """Outlooks, one a unit, the changes that they are made of, and those still to be worked out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import ColumnElement, Select, delete, func, or_, select
+import numpy as np
+from sqlalchemy import ColumnElement, Row, Select, delete, func, or_, select
 
+from estimator.health.error_laws import FREEDOMS
+from estimator.health.fits import PART_KINDS, PARTS, WALKS
 from estimator.health.pooled import Evidence
+from estimator.health.shapes import Kind
 from estimator.session import IN_SERVICE
-from service.outlook.document import outlook_from_dicts, outlook_to_dicts, packed
+from service.outlook.populations import Placed, Population
 from service.outlook.records import DueDate, ParameterTrend, Rate, UnitOutlook
-from service.outlook.tables import HistoryRow, OutlookRow
+from service.outlook.tables import HistoryRow, OutlookRow, PopulationRow
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import DecisionRow, SessionRow
+from service.storage.json_text import STORED
 from service.storage.queries import Queries
+from service.types.store import tells_of_type
 from service.types.tables import UnitTypeRow
-from service.types.telling_store import tells_of_type
 from service.units.tables import UnitRow
+
+
+def outlook_to_dicts(outlook: UnitOutlook) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What `outlook_from_dicts` reads; times are ISO 8601."""
+    written: dict[str, Any] = STORED.written(outlook)
+    fans = [trend.pop("fan") for trend in written["trends"]]
+    return written, {"risk": written.pop("risk"), "fans": fans}
+
+
+def outlook_from_dicts(document: dict[str, Any], drawn: dict[str, Any] | None = None) -> UnitOutlook:
+    """The outlook that was written; without its fans and its risk where what is drawn was left in the store."""
+    if drawn is None:
+        return STORED.read(UnitOutlook, document)
+    trends = [trend | {"fan": fan} for trend, fan in zip(document["trends"], drawn["fans"], strict=True)]
+    return STORED.read(UnitOutlook, document | {"trends": trends, "risk": drawn["risk"]})
+
+
+SHAPE = (len(WALKS), len(PARTS))
+"""Of the log evidence of one history."""
+LAWS = len(FREEDOMS)
+MARK = np.full(1, -np.inf, dtype="<f4")
+"""Rows behind a positive one were written before temperature was distinguished from drifts; those behind a NaN, which
+hold tails, and those behind nothing before aging that comes to an end was distinguished from aging that goes on."""
+WARM = int(np.count_nonzero(PART_KINDS == Kind.WARMTH))
+EARLIER, EARLIEST = SHAPE[1] - WARM, SHAPE[1] - WARM - 2
+"""Parts of the log evidence of those."""
+
+
+def packed(histories: Sequence[Evidence]) -> bytes:
+    """What `unpacked` reads; logs relative to their largest, which is all that is learned from."""
+    rows = [np.concatenate([[h.span], h.log_tails, (h.log_evidence - h.log_evidence.max()).ravel()]) for h in histories]
+    return MARK.tobytes() + np.asarray(rows, dtype="<f4").tobytes()
+
+
+def unpacked(content: bytes) -> tuple[Evidence, ...]:
+    """The histories that were written."""
+    numbers = np.frombuffer(content, dtype="<f4").astype(float)
+    is_marked = not np.isfinite(numbers[:1]).all()
+    parts = SHAPE[1] if np.isneginf(numbers[:1]).any() else EARLIER if np.isinf(numbers[:1]).any() else EARLIEST
+    laws = LAWS if is_marked else 0
+    rows = numbers[is_marked:].reshape(-1, 1 + laws + SHAPE[0] * parts)
+    tails = rows[:, 1 : 1 + laws] if laws else np.zeros((len(rows), LAWS))
+    evidence = rows[:, 1 + laws :].reshape(-1, SHAPE[0], parts)
+    if parts == EARLIEST:  # of which end was open: as likely by one as by the other
+        evidence = np.concatenate([evidence, evidence[..., -2:]], axis=2)
+    if parts != SHAPE[1]:  # of temperature they tell nothing: as likely with it as without
+        evidence = np.concatenate([evidence, np.repeat(evidence[..., :1], WARM, axis=2)], axis=2)
+    return tuple(
+        Evidence(float(row[0]), *own) for row, own in zip(rows, zip(evidence, tails, strict=True), strict=True)
+    )
+
 
 MOST_UNITS = 60
 """Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
@@ -204,3 +261,98 @@ def _rate(trend: ParameterTrend) -> list[str | float]:
 def outlook_of(row: OutlookRow, lot: str | None, unit_type: str) -> UnitOutlook:
     """A stored outlook, with what only a unit's page draws."""
     return replace(outlook_from_dicts(row.document, row.drawn), lot=lot, unit_type=unit_type)
+
+
+@dataclass(frozen=True)
+class FarOut:
+    """The populations with the furthest units and lots, and among how many these are."""
+
+    populations: tuple[Population, ...]
+    rates: int
+    lots: int
+
+
+class Populations(Queries):
+    """Centre and spread of every parameter's rates, by type."""
+
+    def put(self, unit_type: int, found: Sequence[Population], at: datetime) -> None:
+        """Rewrites what is known of a type."""
+        self._session.execute(delete(PopulationRow).where(PopulationRow.unit_type_id == unit_type))
+        self._session.add_all(_row(unit_type, one, at) for one in found)
+        self._session.flush()
+
+    def of_type(self, name: str) -> tuple[Population, ...]:
+        """Of every parameter of a type."""
+        rows = self._session.execute(_populations().where(UnitTypeRow.name == name))
+        return tuple(_population(row) for row in rows)
+
+    def furthest(self, most: int) -> FarOut:
+        """So many populations of those with the furthest units, and of those with the furthest lots."""
+        own = PopulationRow
+        far, lots = (
+            select(column).where(column > 0).order_by(column.desc()).offset(most - 1).limit(1).scalar_subquery()
+            for column in (own.furthest, own.furthest_lot)
+        )
+        among = (func.coalesce(select(func.sum(column)).scalar_subquery(), 0) for column in (own.rates, own.lots))
+        query = (
+            _populations()
+            .add_columns(*among)
+            .where(
+                or_(
+                    (own.furthest > 0) & (own.furthest >= func.coalesce(far, 0.0)),
+                    (own.furthest_lot > 0) & (own.furthest_lot >= func.coalesce(lots, 0.0)),
+                )
+            )
+        )
+        rows = self._session.execute(query.order_by(own.unit_type_id, own.kind, own.parameter)).all()
+        rates, lots_in_all = rows[0][2:] if rows else (0, 0)
+        return FarOut(tuple(_population(row[:2]) for row in rows), rates, lots_in_all)
+
+    def most_evident(self, most: int) -> tuple[Population, ...]:
+        """So many of those with the units that are furthest out beyond chance, the furthest first."""
+        query = _populations().where(PopulationRow.most_evident > 0)
+        order = (PopulationRow.most_evident.desc(), PopulationRow.unit_type_id, PopulationRow.kind)
+        rows = self._session.execute(query.order_by(*order, PopulationRow.parameter).limit(most))
+        return tuple(_population(row) for row in rows)
+
+
+def _populations() -> Select[PopulationRow, str]:
+    return select(PopulationRow, UnitTypeRow.name).join(UnitTypeRow, UnitTypeRow.id == PopulationRow.unit_type_id)
+
+
+def _row(unit_type: int, one: Population, at: datetime) -> PopulationRow:
+    return PopulationRow(
+        unit_type_id=unit_type,
+        kind=one.kind,
+        parameter=one.parameter,
+        centre=one.centre,
+        spread=one.spread,
+        rates=one.rates,
+        lots=one.lots,
+        furthest=max((abs(placed.z) for placed in one.fast), default=0.0),
+        furthest_lot=max((abs(z) for _, z in one.far_lots), default=0.0),
+        most_evident=max((abs(placed.z) for placed in one.evident), default=0.0),
+        far={
+            "fast": [asdict(placed) for placed in one.fast],
+            "evident": [asdict(placed) for placed in one.evident],
+            "lots": [list(lot) for lot in one.far_lots],
+        },
+        made_at=at,
+    )
+
+
+def _population(found: Row[PopulationRow, str] | Sequence[object]) -> Population:
+    row, unit_type = found
+    assert isinstance(row, PopulationRow)
+    return Population(
+        unit_type=str(unit_type),
+        kind=row.kind,
+        parameter=row.parameter,
+        centre=row.centre,
+        spread=row.spread,
+        rates=row.rates,
+        lots=row.lots,
+        fast=tuple(Placed(**placed) for placed in row.far["fast"]),
+        evident=tuple(Placed(**placed) for placed in row.far["evident"]),
+        far_lots=tuple((name, z) for name, z in row.far["lots"]),
+    )

@@ -8,13 +8,13 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from pydantic import BaseModel, Field
 
 from service.errors import AwayError
-from service.jobs.failures_store import Failures
+from service.jobs.store import Failures
 from service.kit.failure import FailedKind
 from service.kit.limits import in_force
 from service.people.dependencies import StorageOf
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
-from service.storage.space import space_at
+from service.storage.folders import space_at
 from service.web.dependencies import MetricsOf, Now, SettingsOf
 from service.web.problem_document import errors
 

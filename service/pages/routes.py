@@ -7,19 +7,19 @@ from fastapi.responses import HTMLResponse
 
 from service.diagnosis.store import Diagnoses
 from service.flags.store import FlagQuery, Flags
-from service.fleet.announced_store import Announcements
 from service.fleet.store import Fleet
+from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
+from service.groups.sections import MOST_FOUND, found_line, group_section
 from service.ingest import is_own_layout
 from service.kit.arriving_files import where
 from service.kit.limits import in_force
 from service.models.rules import model_as_of
 from service.models.store import Models
 from service.outlook.reading import dated
-from service.outlook.rules.standouts import fleet_standouts
+from service.outlook.rules.populations import fleet_standouts
 from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
 from service.pages.fleet.view import FleetAsked, FleetView
-from service.pages.group.sections import MOST_FOUND, found_line, group_section
 from service.pages.saved import saved
 from service.pages.session.pages import session_page
 from service.pages.unit.pages import unit_page
@@ -29,8 +29,7 @@ from service.papers.certified import traceability_of
 from service.papers.found_and_left import found_and_left
 from service.papers.session_report import recent_history, session_report
 from service.people.admission import PersonOf
-from service.people.dependencies import StorageOf
-from service.people.forms import Key
+from service.people.dependencies import Key, StorageOf
 from service.people.view_store import SavedViews
 from service.people.views import ListPage
 from service.planning.pattern import type_names
@@ -42,13 +41,12 @@ from service.sessions.store import Sessions
 from service.units.remarks_store import SaidOf
 from service.uploads.correct import remedies_of
 from service.uploads.layout.form import carried
+from service.uploads.pages import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
 from service.uploads.receive import receive_all
 from service.uploads.received import FormFiles
 from service.uploads.take_in import is_long
-from service.uploads.upload_pages import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
 from service.web.dependencies import Now, Reading, SettingsOf
-from service.web.follow import SOONEST, follow_seconds
-from service.web.render import render
+from service.web.render import SOONEST, follow_seconds, render
 from service.work.dependencies import JobDeskOf, ReadingFleet
 
 MOST_QUESTIONED = 20

@@ -14,8 +14,7 @@ from service.kit.person import Person
 from service.pages.fleet.view import FleetAsked, FleetView
 from service.pages.session.view import SessionsAsked, SessionsView
 from service.people.admission import PersonOf
-from service.people.dependencies import StorageOf
-from service.people.forms import SAYS_SOMETHING, SEE_OTHER, By, Number
+from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Number, StorageOf
 from service.people.keep_view import may_remove, may_share, remove_view, save_view
 from service.people.views import ListPage, NewView, SavedView
 from service.web.dependencies import Now

@@ -25,11 +25,10 @@ from service.sessions.store import Sessions
 from service.settings import VERSION, Settings
 from service.stands.store import StandCertificates
 from service.storage import Storage
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.types.records import UnitType
 from service.types.store import UnitTypes
-from service.units.customer import Customer
-from service.units.records import Service
+from service.units.records import Customer, Service
 from service.units.store import Services, Units
 
 

@@ -14,11 +14,11 @@ from service.kit.person import Role
 from service.papers.records import CertificateFile, Issue, Meaning, Signature
 from service.papers.store import Certificates, Signatures
 from service.papers.words import STATES
-from service.people.passwords import is_password
+from service.people.secret import is_password
 from service.people.store import Accounts
 from service.storage import Storage
 from service.storage.audit import Audit
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Units
 
 SPECIMEN = "specimen-"

@@ -15,9 +15,8 @@ from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array
 from service.errors import NotFoundError
 from service.ingest import read_upload
 from service.kit.measures import COVERAGE
-from service.models.evidence_document import evidence_to_dict
 from service.models.records import ModelRevision
-from service.models.store import Models
+from service.models.store import Models, evidence_to_dict
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.records import StoredSession
 from service.sessions.store import Sessions

@@ -1,17 +1,22 @@
 """Where certificates are handed out and signed: a new one is made of what is stored, an approved one is kept."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from datetime import datetime
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
 from hashlib import sha256
+from io import BytesIO
 
+from pypdf import PdfReader, PdfWriter
+
+from estimator.errors import Problem
 from estimator.message import say
 from service.diagnosis.records import StoredDiagnosis
-from service.errors import DamagedError, NotFoundError
+from service.errors import ConflictError, DamagedError, NotFoundError, RefusedError
+from service.kit.answer import answer
 from service.languages.language import Language
 from service.papers.certificate import certificate_pdf
-from service.papers.certificate.content import statement_of
-from service.papers.certificate.signed import Signed
+from service.papers.certificate.words import Signed, certificate
 from service.papers.certified import CertifiedSession, certified_session
 from service.papers.changes import (
     Rules,
@@ -26,9 +31,32 @@ from service.papers.dcc import certificate_dcc
 from service.papers.records import CertificateFile, Issue, Laboratory, Meaning, Signature
 from service.papers.sealing import Seal
 from service.papers.store import Certificates, Signatures
+from service.papers.words import CHANGED_HASH, NO_LONGER, NOT_COUNTED
 from service.people.changes import Attempt, attempting
 from service.sessions.store import Sessions
 from service.storage import Storage
+
+UNISSUED = Issue("", "", 0, datetime(1970, 1, 1, tzinfo=UTC), "", None, "")
+"""Stands in for an issue while what it states is being hashed."""
+
+
+def statement_of(found: CertifiedSession) -> Statement:
+    """What is about to be issued: the words of the paper, and every number in full that paper or XML rests on.
+
+    When its records were received is no part of it: the same records state the same, in whatever order they came.
+    """
+    session = found.report.session
+    report = replace(found.report, session=replace(session, uploaded_at=UNISSUED.issued_at))
+    words = certificate(replace(found, report=report), UNISSUED)
+    parts = (
+        json.dumps(asdict(words), sort_keys=True).encode(),
+        found.calibration_json,
+        repr(found.report.decisions).encode(),
+        repr(found.history).encode(),
+    )
+    digest = sha256(b"".join(sha256(part).digest() for part in parts)).hexdigest()
+    return Statement(session.unit, session.id, session.revision, digest, is_specimen=session.simulated)
+
 
 DAMAGED = "The approved certificate {number} is not what was kept, and is not given out: the database was changed."
 NOT_KEPT = "There is no approved certificate {number} of this session."
@@ -137,3 +165,103 @@ def _intact(kept: CertificateFile, number: str) -> bytes:
 
 def _name(unit: str, number: str) -> str:
     return f"{unit}-{number}-certificate"
+
+
+@answer
+@dataclass(frozen=True)
+class SignedIssue(Issue):
+    """One issue of a session's certificate."""
+
+    signatures: tuple[Signature, ...]
+    """Who signed it, in their order."""
+
+    @property
+    def is_approved(self) -> bool:
+        """Whether it is released."""
+        return any(signature.meaning is Meaning.APPROVED for signature in self.signatures)
+
+
+@answer
+@dataclass(frozen=True)
+class Papers:
+    """Every issue of a session's certificate."""
+
+    certificates: tuple[SignedIssue, ...]
+    """The first one first; the last one holds."""
+    is_current: bool
+    """Whether the last one states what is stored now; another number is due if not."""
+    concerns: tuple[str, ...]
+    """What speaks against using the last one, in words."""
+
+
+def papers_of(desk: Desk, id: str) -> Papers:
+    """Every issue; of the latest one what it rests on is worked out again and compared."""
+    with desk.storage.database.reading() as store:
+        Sessions(store).get(id)
+        issued, signatures = Certificates(store).of_session(id), Signatures(store).of_session(id)
+    issues = tuple(
+        SignedIssue(**vars(one), signatures=tuple(s for s in signatures if s.certificate == one.number))
+        for one in issued
+    )
+    if not issues:
+        return Papers((), is_current=False, concerns=())
+    latest = issues[-1]
+    counts, is_current = _compared(desk, id, latest)
+    told = ((CHANGED_HASH, _is_other(latest)), (NOT_COUNTED, not counts), (NO_LONGER, counts and not is_current))
+    concerns = (say(words, number=latest.number, done=_done(latest)) for words, holds in told if holds)
+    return Papers(issues, is_current=is_current, concerns=tuple(concerns))
+
+
+def _compared(desk: Desk, id: str, issue: Issue) -> tuple[bool, bool]:
+    """Whether the session counts, and whether its certificate would state the same today."""
+    try:
+        _, statement = certified(desk, id)
+    except ConflictError:
+        return False, False
+    return True, statement.content_hash == issue.content_hash
+
+
+def _is_other(latest: SignedIssue) -> bool:
+    """Whether something else was signed than is on record."""
+    return any(signature.content_hash != latest.content_hash for signature in latest.signatures)
+
+
+def _done(latest: SignedIssue) -> str:
+    return latest.signatures[-1].meaning if latest.signatures else "issued"
+
+
+NOT_ALL = "Not every one of these sessions has a certificate: leave out those named here. Nothing was issued."
+
+
+def hand_out_together(desk: Desk, ids: Sequence[str], now: datetime, *, who: str) -> HandedOut:
+    """The certificates that hold, each under its number, page after page.
+
+    Raises
+    ------
+    RefusedError
+        A session is not stored or does not count; every such one is named.
+    """
+    stated, problems = [], list[Problem]()
+    for id in dict.fromkeys(ids):
+        try:
+            stated.append(certified(desk, id))
+        except (ConflictError, NotFoundError) as error:
+            problems.append(Problem(id, error.detail))
+    if problems:
+        raise RefusedError(NOT_ALL, tuple(problems))
+    papers = [issued(desk, one, "pdf", now, who=who) for one in stated]
+    if len(papers) == 1:
+        return papers[0]
+    return HandedOut(f"certificates-{now:%Y-%m-%d}", joined([paper.content for paper in papers]))
+
+
+def joined(documents: Sequence[bytes]) -> bytes:
+    """PDF documents as one, without what is filled in or signed in them."""
+    writer = PdfWriter()
+    for document in documents:
+        for page in PdfReader(BytesIO(document)).pages:
+            writer.add_page(page)
+    writer.remove_annotations("/Widget")
+    file = BytesIO()
+    writer.write(file)
+    return file.getvalue()

@@ -4,17 +4,46 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from estimator.message import say
 from estimator.session import AS_FOUND, AS_LEFT, CALIBRATIONS
 from service.judging.judge import decisions_of
+from service.kit.measures import deviation_measure, limit, measured, signed
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Decision
 from service.sessions.records import StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import reference_query
-from service.storage.store import Store
+from service.sessions.words.conditions import Condition, condition_of
+from service.storage.queries import Store
 from service.types.records import UnitType
 from service.units.records import Service
 from service.units.store import Units, epoch
+
+
+@dataclass(frozen=True)
+class Moved:
+    """One parameter of one sensor."""
+
+    name: str
+    deviation: str
+    """With its U."""
+    tolerance: str
+    condition: Condition
+
+
+def moved(decision: Decision) -> Moved:
+    """The decision in people's units."""
+    sizes = (decision.deviation, decision.expanded, decision.tolerance)
+    unit = deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
+    one_sided = decision.parameter == "axis"
+    write = measured if one_sided else signed
+    seen = decision.deviation is not None
+    return Moved(
+        name=say("{sensor} {parameter}", sensor=decision.sensor, parameter=decision.parameter),
+        deviation=write(decision.deviation, decision.expanded, unit) if seen else "not observable",
+        tolerance=limit(decision.tolerance, unit, one_sided),
+        condition=condition_of(decision.verdict),
+    )
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ import segno
 
 from estimator.message import say
 from service.fleet.condition import UnitSummary
-from service.kit.measures import HARD
-from service.kit.names import day_of
+from service.kit.measures import HARD, day_of
 from service.languages.language import Language
 from service.papers.typeset import typeset, typeset_svg
 

@@ -5,7 +5,7 @@ from datetime import datetime
 from enum import StrEnum
 
 from service.kit.answer import answer
-from service.stands.paper_records import StandCertificate
+from service.stands.records import StandCertificate
 
 NOT_STATED = "not stated"
 """Stands in a paper where a name is wanted and nobody gave one: nothing is ever made up."""

@@ -12,7 +12,7 @@ from service.sessions.records import DiagnosisSummary, HistoryPoint, StoredSessi
 from service.sessions.states import RecordKind, StateChange
 from service.sessions.states_store import States
 from service.sessions.store import Sessions
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Units
 
 

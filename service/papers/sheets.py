@@ -14,7 +14,7 @@ from xlsxwriter.worksheet import Worksheet
 
 from service.languages.catalogue import catalogue_of
 from service.languages.language import Language
-from service.papers.pictures import PALETTE
+from service.papers.typeset import PALETTE
 from service.sessions.words.conditions import CONDITIONS, REFERENCE
 
 OPTIONS = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False}

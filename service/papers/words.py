@@ -5,12 +5,10 @@ from datetime import date, datetime
 from estimator.coverage import chance
 from estimator.message import joined, say
 from estimator.results import Calibration
-from service.kit.coverage import coverage_in_words, noise_is_estimated
-from service.kit.measures import number
-from service.kit.names import day_of, minute_of
+from service.kit.measures import coverage_in_words, day_of, minute_of, noise_is_estimated, number
 from service.papers.records import NOT_STATED, Laboratory, Meaning, Traceability, TraceState
-from service.stands.paper_records import StandCertificate
-from service.units.customer import Customer
+from service.stands.records import StandCertificate
+from service.units.records import Customer
 
 RELATES = "The results relate only to the item calibrated, as it was on the day of measurement."
 WHOLE = "This certificate may be reproduced only in full, except with the written approval of the laboratory."

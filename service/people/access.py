@@ -5,7 +5,7 @@ that no new route is open because somebody forgot it.
 from collections.abc import Iterable, Mapping
 
 from service.kit.person import Role
-from service.web.prefix import API
+from service.web.headers import API
 
 UNIT, SESSION = f"{API}/units/{{serial:path}}", f"{API}/sessions/{{id}}"
 Route = tuple[str, str]

@@ -11,7 +11,8 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from estimator.message import say
 from service.errors import ForbiddenError, SignInError
 from service.kit.person import Account, Role, Token
-from service.people.admission import COOKIE, PersonOf, attempt_of
+from service.people.admission import COOKIE, Gate, PersonOf, attempt_of, cookie_of, proof_for
+from service.people.admission import LASTS as KNOWN
 from service.people.changes import (
     LASTS,
     Chosen,
@@ -26,12 +27,8 @@ from service.people.changes import (
     sign_out,
     use_link,
 )
-from service.people.dependencies import StorageOf
-from service.people.forms import SEE_OTHER, Number
-from service.people.gate import Gate
-from service.people.known_browser import LASTS as KNOWN
-from service.people.known_browser import cookie_of, proof_for
-from service.people.passwords import LONGEST, SHORTEST
+from service.people.dependencies import SEE_OTHER, Number, StorageOf
+from service.people.secret import LONGEST, SHORTEST
 from service.people.store import Accounts, Tokens
 from service.settings import Settings
 from service.web.application import application_of

@@ -11,8 +11,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from service.kit.person import UNNAMED, Account, Role
 from service.people.admission import PersonOf
 from service.people.changes import AccountChange, add_account, change_account, make_link, require_no_token
-from service.people.dependencies import StorageOf
-from service.people.forms import SEE_OTHER
+from service.people.dependencies import SEE_OTHER, StorageOf
 from service.people.store import Accounts
 from service.storage.audit import Audit, AuditCheck, AuditLine
 from service.web.application import application_of

@@ -1,5 +1,10 @@
 """Who sends a request, and whether they may: asked once for every route, before anything of it is done."""
 
+import hmac
+from datetime import datetime, timedelta
+from hashlib import sha256
+from ipaddress import IPv6Address, IPv6Network, ip_address
+from secrets import token_urlsafe
 from typing import Annotated, Any
 
 from fastapi import Depends, Request
@@ -7,18 +12,90 @@ from starlette.datastructures import UploadFile
 
 from estimator.message import say
 from service.errors import ForbiddenError, SignInError
-from service.ingest.sender import SENDER
+from service.ingest.apart import SENDER
 from service.kit.person import EVERYBODY, LOOKING, RANKS, STRANGER, Person, Role
 from service.people.access import METRICS, NEEDED, Route
 from service.people.changes import Attempt
-from service.people.client_address import counted_address
-from service.people.gate import Gate
-from service.people.known_browser import browser_of, cookie_of
+from service.people.provider import Provider
 from service.people.secret import csrf_of, is_same, stored_hash
 from service.people.store import Accounts, SignIns, Tokens, is_stale
 from service.sessions.store import Sessions
+from service.settings import Settings
+from service.storage import Storage
 from service.web.application import application_of
-from service.web.prefix import API
+from service.web.headers import API
+
+
+class Gate:
+    """Whether everybody may do everything: on this machine alone, until the first account is made."""
+
+    def __init__(self, settings: Settings, provider: Provider | None = None) -> None:
+        self._settings, self._has_accounts = settings, False
+        self.provider = provider
+        """Where else people sign in."""
+
+    @property
+    def may_be_open(self) -> bool:
+        """Whether there are times at which nobody needs to sign in."""
+        return self._settings.sign_in == "off" or (self._settings.sign_in == "auto" and self._settings.is_local)
+
+    def is_open(self, storage: Storage) -> bool:
+        """Asks the database until there is an account; accounts are never deleted."""
+        if not self.may_be_open or self._settings.sign_in == "off":
+            return self.may_be_open
+        if not self._has_accounts:
+            with storage.database.reading() as store:
+                self._has_accounts = Accounts(store).any()
+        return not self._has_accounts
+
+
+SITE = 64
+"""Bits of an IPv6 address that a provider gives to one customer, who chooses the others freely."""
+
+
+def counted_address(client: str) -> str:
+    """The client's address; of IPv6 the network of its site, of IPv4 in IPv6 the IPv4 address."""
+    try:
+        found = ip_address(client)
+    except ValueError:
+        return client
+    if not isinstance(found, IPv6Address):
+        return client
+    return str(found.ipv4_mapped or IPv6Network((found, SITE), strict=False))
+
+
+LASTS = timedelta(days=365)
+"""That a browser is known after it last signed in."""
+
+
+def cookie_of(login: str) -> str:
+    """What the cookie is called, one for each account: several people may use one browser."""
+    return f"imu-health-known-{sha256(_plain(login).encode()).hexdigest()[:12]}"
+
+
+def proof_for(login: str, password_hash: str, now: datetime) -> str:
+    """What a browser keeps that has just shown the account's password."""
+    said = f"{token_urlsafe(12)}.{int((now + LASTS).timestamp())}"
+    return f"{said}.{_sealed(login, password_hash, said)}"
+
+
+def browser_of(proof: str, login: str, password_hash: str | None, now: datetime) -> str:
+    """The identifier of a browser; empty where its proof is none, or is of another account or an earlier
+    password."""
+    said, _, seal = proof.rpartition(".")
+    browser, _, until = said.partition(".")
+    holds = is_same(seal, _sealed(login, password_hash or "", said)) and password_hash is not None
+    return browser if holds and int(until) > now.timestamp() else ""
+
+
+def _sealed(login: str, password_hash: str, said: str) -> str:
+    key = hmac.digest(password_hash.encode(), b"known browsers of imu-health", sha256)
+    return hmac.new(key, "\n".join((_plain(login), said)).encode(), sha256).hexdigest()
+
+
+def _plain(login: str) -> str:
+    return login.strip().lower()
+
 
 COOKIE = "imu-health"
 """Holds the secret of a signed-in browser."""

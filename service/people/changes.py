@@ -17,12 +17,11 @@ from estimator.errors import Problem
 from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, RefusedError, SignInError, TooOftenError
 from service.kit.person import Account, Person, Role, Token
-from service.people.passwords import fault_of, hashed, is_password
-from service.people.secret import TOKEN_PREFIX, new_secret, stored_hash
+from service.people.secret import TOKEN_PREFIX, fault_of, hashed, is_password, new_secret, stored_hash
 from service.people.store import Accounts, Attempts, SignIns, Tokens
 from service.storage import Storage
 from service.storage.audit import Audit
-from service.storage.store import Store
+from service.storage.queries import Store
 
 LOGIN = re.compile(r"[a-z0-9][a-z0-9._@-]{0,59}")
 """What a login is made of; it stands in addresses and logs."""

@@ -8,9 +8,8 @@ from fastapi.responses import RedirectResponse
 
 from service.errors import NotFoundError, ServiceError, SignInError
 from service.people.account_pages import SignInPage, inside, is_secure, signed_in
-from service.people.dependencies import StorageOf
-from service.people.forms import SEE_OTHER
-from service.people.gate import Gate
+from service.people.admission import Gate
+from service.people.dependencies import SEE_OTHER, StorageOf
 from service.people.provider import Answer, Journey, Provider, joining_of
 from service.people.secret import new_secret
 from service.people.sign_in_elsewhere import sign_in_elsewhere

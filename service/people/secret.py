@@ -4,8 +4,14 @@ Each holds 256 random bits, so that a plain SHA-256 hides it: there is nothing t
 """
 
 import hmac
+from functools import cache
 from hashlib import sha256
 from secrets import token_urlsafe
+
+from argon2 import PasswordHasher
+from argon2.exceptions import InvalidHashError, VerifyMismatchError
+
+from estimator.message import say
 
 TOKEN_PREFIX = "imuh_"
 """Of every token, so that one that slipped into a repository or a log is recognised."""
@@ -29,3 +35,47 @@ def csrf_of(secret: str) -> str:
 def is_same(given: str, expected: str) -> bool:
     """Compares in constant time."""
     return hmac.compare_digest(given.encode(), expected.encode())
+
+
+SHORTEST = 12
+"""Characters: length, not a mixture of signs, is what makes a password hard to guess (NIST SP 800-63B)."""
+LONGEST = 1000
+"""Characters; hashing a longer one is work that anybody could ask for."""
+
+
+@cache
+def _hasher() -> PasswordHasher:
+    return PasswordHasher()
+
+
+@cache
+def _nobody() -> str:
+    return _hasher().hash("of nobody")
+
+
+def hashed(password: str) -> str:
+    """What is stored of a password."""
+    return _hasher().hash(password)
+
+
+def is_password(stored: str | None, password: str) -> bool:
+    """Whether a password is the stored one. Where there is none it takes as long, so that time tells nothing."""
+    try:
+        _hasher().verify(stored or _nobody(), password[:LONGEST])
+    except (VerifyMismatchError, InvalidHashError):
+        return False
+    return stored is not None
+
+
+def fault_of(password: str) -> str | None:
+    """What is wrong with a new password; None where nothing is."""
+    if len(password) < SHORTEST:
+        return say(
+            "is shorter than {shortest} characters; a few words in a row are easy to remember and hard to guess",
+            shortest=SHORTEST,
+        )
+    if len(password) > LONGEST:
+        return say("is longer than {longest} characters", longest=LONGEST)
+    if len(set(password)) < SHORTEST // 3:
+        return "repeats the same few characters"
+    return None

@@ -15,7 +15,7 @@ from service.people.provider import Claims, Joining
 from service.people.store import Accounts, Identities
 from service.storage import Storage
 from service.storage.audit import Audit
-from service.storage.store import Store
+from service.storage.queries import Store
 
 FIRST = "There is no account yet, and the first one must be an admin's: make it with a link, or by the provider's role."
 NO_ROLE = "The provider knows you, but gives you no role here. Ask an administrator."

@@ -11,8 +11,7 @@ from estimator.planning import Plan, Sweep
 from estimator.readiness import Readiness
 from estimator.results import PARAMETERS
 from estimator.session import Array
-from service.kit.measures import MEASURES, THIN, Measure, deviation_measure, number
-from service.kit.names import heading
+from service.kit.measures import MEASURES, THIN, Measure, deviation_measure, heading, number
 from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
 
 HEIGHT = 150

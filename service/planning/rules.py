@@ -16,10 +16,8 @@ from service.ingest import in_turn, read_first_rows, read_upload
 from service.ingest.layout.envelope import wrapped
 from service.kit.arriving_files import SentFile, held, where
 from service.kit.measures import leading_kind
-from service.planning.pattern import earlier
-from service.planning.question import PlanQuestion
-from service.planning.ready import ReadyQuestion
-from service.planning.stored_type import asked_of, sensors_of, why_not
+from service.planning.pattern import asked_of, earlier, sensors_of, why_not
+from service.planning.question import PlanQuestion, ReadyQuestion
 from service.sessions.records import PARAMETERS
 from service.storage import Storage
 from service.types.rules import DEFAULTS, tolerances_of

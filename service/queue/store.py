@@ -22,11 +22,10 @@ from sqlalchemy import (
 )
 from sqlalchemy.orm import InstrumentedAttribute, aliased
 
-from service.kit.failed import AT_FAULT
+from service.kit.failure import AT_FAULT
 from service.queue.records import Waiting, WorkKind, WorkState
 from service.queue.tables import SINGLE, WorkRow
-from service.storage.queries import Queries
-from service.storage.store import Store
+from service.storage.queries import Queries, Store
 
 ANEW: dict[str, Any] = {"state": WorkState.WAITING, "not_before": None, "attempts": 0, "failed": None}
 """Of work that failed, and is tried at once."""

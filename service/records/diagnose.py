@@ -12,25 +12,24 @@ from estimator import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.results import COVERAGE
 from estimator.session import DIAGNOSED, CalibrationSession
-from service.diagnosis.document import inapplicable_to_dict, read_diagnosis
 from service.diagnosis.records import StoredDiagnosis, state_of
-from service.diagnosis.store import Diagnoses
+from service.diagnosis.store import Diagnoses, inapplicable_to_dict, read_diagnosis
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
 from service.groups.changes import as_evidence, keep_statistics, kept_before
 from service.ingest import read_upload
 from service.ingest.checked import dated
 from service.judging.reservations import UNCHECKED
-from service.kit.failure_words import with_last_try
+from service.kit.failure import with_last_try
 from service.kit.lock_order import outside_writing
 from service.kit.log import log
 from service.models.store import Models
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
-from service.records.change_state import question_diagnosed
+from service.records.changes import question_diagnosed
 from service.records.derive_again import NOTHING_LEFT, Derived, Deriving
-from service.records.flagging.diagnosis import flag_diagnosis
+from service.records.flagging.fold import flag_diagnosis
 from service.records.follow import follow
-from service.records.keep_noise import keep_noise
+from service.records.keep import keep_noise
 from service.records.weigh import Weighed, weigh, weighing_of
 from service.sessions.records import DiagnosisState, StoredSession
 from service.sessions.states import RecordState
@@ -38,10 +37,9 @@ from service.sessions.store import Sessions
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.audit import Audit
-from service.storage.documents import STORED
 from service.storage.files import LOST
-from service.storage.json_text import json_text
-from service.storage.store import Store
+from service.storage.json_text import STORED, json_text
+from service.storage.queries import Store
 from service.units.store import Services, Units
 
 MOST_EARLIER = 10

@@ -21,9 +21,9 @@ from service.diagnosis.records import StoredDiagnosis
 from service.diagnosis.words.causes import UNKNOWN_CAUSE, cause_on
 from service.errors import ConflictError, RefusedError
 from service.groups.changes import tell_own
-from service.groups.document import read_group
 from service.groups.records import Group, GroupShown
-from service.groups.words.learned_term import equation_of
+from service.groups.store import read_group
+from service.groups.words import equation_of
 from service.jobs.changes import tell_job
 from service.models.records import SCOPES, Evidence, ModelRevision, NewLasting, NewModel, Pooled, Scope
 from service.models.rules import in_force, pooled_of
@@ -34,7 +34,7 @@ from service.sessions.records import DiagnosisState, StoredSession
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.types.store import UnitTypes
 
 

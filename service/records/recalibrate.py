@@ -15,8 +15,8 @@ from service.jobs.records import JobFailure, Piece
 from service.jobs.store import Jobs
 from service.jobs.words import left_in_words
 from service.judging.calibrate import Basis, calibrate, rests_on_model
-from service.judging.known_unit import known_unit
-from service.judging.moved import furthest, moved_parameters, moved_verdicts
+from service.judging.judge import furthest, moved_parameters, moved_verdicts
+from service.judging.reference import known_unit
 from service.judging.store import Derivations
 from service.kit.answer import Hidden, answer
 from service.models.records import (
@@ -31,21 +31,19 @@ from service.models.records import (
 )
 from service.models.rules import model_of
 from service.models.store import Models, Recomputations
-from service.records.derive_again import NOTHING_FORESEEN, Derived, Deriving, derive_again
+from service.records.derive_again import NOTHING_FORESEEN, Derived, Deriving, derive_again, foresee_revisions
 from service.records.follow import follow
-from service.records.foresee import foresee_revisions
 from service.records.judge_again import Foreseen
 from service.records.keep import Made, keep, made
 from service.records.reception import Reception
-from service.sessions.calibrations_store import Calibrations
+from service.sessions.calibrations_store import Calibrations, Noises
 from service.sessions.history_store import History
-from service.sessions.noise_store import Noises
 from service.sessions.records import ParameterValue, StoredSession
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import LOST
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Units
 
 

@@ -16,13 +16,12 @@ from estimator.moments import written
 from estimator.session import CalibrationSession
 from service.diagnosis.store import Diagnoses
 from service.groups.changes import add_statistics, tell_own
-from service.groups.document import group_document, read_group
 from service.groups.records import Group, GroupAnswer, Level, Member, Members
-from service.groups.store import Groups, Statistics
-from service.groups.words.group import FAILED, summary_of_group
+from service.groups.store import Groups, Statistics, group_document, read_group
+from service.groups.words import FAILED, summary_of_group
 from service.ingest import read_upload
 from service.ingest.checked import dated
-from service.kit.failure_words import with_last_try
+from service.kit.failure import with_last_try
 from service.kit.lock_order import outside_writing
 from service.kit.log import log
 from service.models.records import SCOPES
@@ -33,7 +32,7 @@ from service.records.flagging.lasting import flag_lasting
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.files import LOST
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Services
 
 RULE = b"4"

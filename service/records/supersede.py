@@ -7,10 +7,10 @@ from estimator.message import say
 from service.errors import ConflictError
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
-from service.judging.known_unit import known_unit
 from service.judging.plausible import doubts
+from service.judging.reference import known_unit
 from service.kit.arriving_files import Replaced
-from service.records.change_state import change
+from service.records.changes import change
 from service.records.derive_again import Derived, Deriving, derive_again
 from service.records.follow import follow
 from service.sessions.records import StoredSession
@@ -19,7 +19,7 @@ from service.sessions.states_store import States
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.files import LOST
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Units
 
 REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)

@@ -17,9 +17,8 @@ from service.kit.arriving_files import Content
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
-from service.storage.store import Store
-from service.units.customer import Customer
-from service.units.records import Attachment, NewAttachment, Note, Withdrawal
+from service.storage.queries import Store
+from service.units.records import Attachment, Customer, NewAttachment, Note, Withdrawal
 from service.units.remarks_store import Attachments, Notes
 from service.units.store import Units
 

@@ -12,10 +12,18 @@ from service.ingest import read_upload
 from service.judging.cause_sizes import Yardstick
 from service.judging.records import Counted
 from service.judging.reference import reference_of
-from service.judging.reservations import UNCHECKED, Doubted, reservations_of
-from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
+from service.judging.reservations import (
+    UNCHECKED,
+    Basis,
+    Covered,
+    Doubted,
+    Otherwise,
+    covered_by,
+    reservations_of,
+    verdicts_under_alternatives,
+    worth_of,
+)
 from service.judging.store import Derivations
-from service.judging.temperatures import Covered, covered_by, worth_of
 from service.kit.lock_order import outside_writing
 from service.models.rules import in_force, places_of
 from service.models.store import Models
@@ -27,7 +35,7 @@ from service.sessions.records import StoredSession
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.files import LOST
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.types.rules import tolerances_of
 from service.types.store import UnitTypes, held_at
 from service.units.store import Units

@@ -5,7 +5,7 @@ from datetime import datetime
 from estimator.errors import Problem
 from estimator.message import say
 from service.errors import RefusedError
-from service.stands.paper_records import StandCertificate
+from service.stands.records import StandCertificate
 from service.stands.store import StandCertificates
 from service.storage import Storage
 from service.storage.audit import Audit

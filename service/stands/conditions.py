@@ -2,7 +2,7 @@
 
 from service.stands.records import StandCondition
 from service.stands.store import Stands
-from service.storage.store import Store
+from service.storage.queries import Store
 
 
 def stand_conditions(store: Store) -> tuple[StandCondition, ...]:

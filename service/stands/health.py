@@ -9,11 +9,11 @@ import numpy as np
 
 from estimator.health.common_motion import sigma_of, size_of
 from estimator.health.stands import Motion, StandShift, StandState, stand_states
-from service.kit.names import YEAR
+from service.kit.measures import YEAR
 from service.stands.records import MotionOnStand, StandCondition, StandEvidence, StandSeating
 from service.stands.store import Stands
 from service.stands.words import reason_of
-from service.storage.store import Store
+from service.storage.queries import Store
 
 
 def stand_health(store: Store) -> tuple[StandCondition, ...]:

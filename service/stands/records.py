@@ -1,7 +1,7 @@
 """What is known of a stand's own health: frozen records, SI."""
 
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime
 from math import isfinite
 
 from estimator.health.common_motion import AXES, SCALES
@@ -129,3 +129,20 @@ class KnownStand:
     use: StandUse
     condition: StandCondition | None
     """As it was last made; None where no session tells of it."""
+
+
+@answer
+@dataclass(frozen=True)
+class StandCertificate:
+    """The certificate of a stand's own calibration."""
+
+    stand: str
+    """Name of the stand."""
+    number: str
+    """As printed on it."""
+    issued_by: str
+    """The laboratory that calibrated the stand."""
+    issued_on: date
+    """From this day on it speaks for the stand."""
+    valid_until: date
+    """The last day on which it holds."""

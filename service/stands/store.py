@@ -12,12 +12,11 @@ from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import CommonMotionRow, SessionRow
-from service.stands.paper_records import StandCertificate
-from service.stands.records import STILL, KnownStand, MotionOnStand, StandCondition, StandUse
+from service.stands.records import STILL, KnownStand, MotionOnStand, StandCertificate, StandCondition, StandUse
 from service.stands.tables import StandCertificateRow, StandConditionRow, StandRow, StandTallyRow
-from service.storage.documents import STORED
+from service.storage.json_text import STORED
 from service.storage.queries import Queries
-from service.types.telling_store import tells_of_stand
+from service.types.store import tells_of_stand
 from service.units.tables import UnitRow
 
 MOST = 4000

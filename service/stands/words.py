@@ -7,10 +7,8 @@ from datetime import date, timedelta
 from estimator.health.common_motion import AXES
 from estimator.message import joined, say
 from estimator.session import ACCELEROMETER
-from service.kit.measures import COVERAGE, deviation_measure, in_words, measured, signed
-from service.kit.names import day_of
-from service.stands.paper_records import StandCertificate
-from service.stands.records import StandCondition, StandEvidence, StandSeating
+from service.kit.measures import COVERAGE, day_of, deviation_measure, in_words, measured, signed
+from service.stands.records import StandCertificate, StandCondition, StandEvidence, StandSeating
 
 STEADY = "Nothing that all units measured on it have in common."
 TOO_FEW = "Fewer than three units tell of it."

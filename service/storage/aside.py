@@ -10,8 +10,7 @@ from pathlib import Path
 from service.kit.arriving_files import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.files import Files, content_hash
-from service.storage.folders import make_folder, named_in
-from service.storage.parts import written_whole
+from service.storage.folders import make_folder, named_in, written_whole
 
 FOLDER = "aside"
 """Beside the folders of the uploads, whose names are two hexadecimal digits."""

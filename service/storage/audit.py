@@ -11,12 +11,27 @@ from datetime import UTC, datetime
 from hashlib import sha256
 from typing import Any
 
-from sqlalchemy import select, text
+from sqlalchemy import String, select, text
+from sqlalchemy.orm import Mapped, mapped_column
 
 from service.kit.answer import answer
-from service.storage.audit_table import AuditRow
-from service.storage.queries import Queries
-from service.storage.store import Store
+from service.storage.queries import Queries, Store
+from service.storage.tables import Base
+
+
+class AuditRow(Base):
+    """Who did what when, each line with a hash of itself and of the one before; the database refuses to change it."""
+
+    __tablename__ = "audit"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    at: Mapped[datetime] = mapped_column(index=True)
+    who: Mapped[str]
+    account: Mapped[str] = mapped_column(String(260), server_default="")
+    action: Mapped[str] = mapped_column(String(40))
+    subject: Mapped[str]
+    details: Mapped[dict[str, Any]]
+    hash: Mapped[str] = mapped_column(String(64), server_default="")
+
 
 FIRST = "0" * 64
 """Before the first line."""

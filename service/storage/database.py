@@ -16,11 +16,10 @@ from service.kit.lock_order import writing
 from service.storage.audit import Audit
 from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
+from service.storage.queries import BeforeCommit, Store
 from service.storage.revisions import unfit
 from service.storage.schema import stored_revision
-from service.storage.store import BeforeCommit, Store
-from service.storage.turns import Turns
-from service.storage.waits import Waits
+from service.storage.waits import Turns, Waits
 
 
 class Database:

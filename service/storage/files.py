@@ -11,9 +11,8 @@ from service.errors import DamagedError, NotFoundError
 from service.kit.arriving_files import Content, Landed
 from service.kit.log import log
 from service.storage.faults import disk_faults
-from service.storage.folders import make_folder, named_in, sync_folder
+from service.storage.folders import PART, make_folder, named_durably, named_in, sweep, sync_folder, written_whole
 from service.storage.landing import IN_MEMORY, Landings, landings
-from service.storage.parts import PART, named_durably, sweep, written_whole
 
 LOST = (NotFoundError, DamagedError)
 """What reading a file may end in although it was stored."""

@@ -1,10 +1,12 @@
 """JSON as the database keeps it: the one place where what the estimator found becomes text."""
 
 import json
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 
+from estimator.codec import WITH_PARTS, Codec, Form
 from estimator.message import say
 
 
@@ -20,3 +22,6 @@ def _plain(value: object) -> object:
     if isinstance(value, np.generic):
         return value.item()
     raise TypeError(say("{name} is not kept as JSON", name=type(value).__name__))
+
+
+STORED = Codec({datetime: Form(datetime.isoformat, datetime.fromisoformat), **WITH_PARTS})

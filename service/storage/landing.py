@@ -11,8 +11,7 @@ from typing import IO
 from service.kit.arriving_files import Content, Landed
 from service.kit.log import log
 from service.storage.faults import disk_faults
-from service.storage.folders import make_folder
-from service.storage.parts import PART
+from service.storage.folders import PART, make_folder
 
 IN_MEMORY = 256 * 1024
 """Bytes that are held: a session of positions has a tenth, and a form may bring 200 files."""

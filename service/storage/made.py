@@ -6,8 +6,7 @@ from estimator.message import say
 from service.errors import NotFoundError
 from service.storage.faults import disk_faults
 from service.storage.files import Files, content_hash
-from service.storage.folders import make_folder, named_in, sync_folder
-from service.storage.parts import written_whole
+from service.storage.folders import make_folder, named_in, sync_folder, written_whole
 
 FOLDER = "made"
 """Beside the folders of the uploads, whose names are two hexadecimal digits."""

@@ -1,13 +1,24 @@
 """What all queries share."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from sqlalchemy import Integer, Subquery, Table, insert, literal, literal_column, select, union_all
 from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.orm import Session
 
-from service.storage.store import Store
 from service.storage.tables import Base
+
+
+class Store:
+    """One transaction. Every subject has its queries, made of a store: ``Units(store).find(serial)``."""
+
+    def __init__(self, session: Session, account: str = "") -> None:
+        self.session, self.account = session, account
+
+
+BeforeCommit = Callable[[Store], None]
+"""What a transaction that writes does last."""
 
 TOUCHED = "tallied"
 """Units whose counts are to be brought in line, in the session's own notes."""

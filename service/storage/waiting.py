@@ -9,8 +9,7 @@ from service.errors import DamagedError
 from service.kit.arriving_files import Content, Landed, Sent
 from service.storage.faults import disk_faults
 from service.storage.files import Files, file_hash
-from service.storage.folders import is_name, make_folder, named_in, sync_folder
-from service.storage.parts import named_durably, written_whole
+from service.storage.folders import is_name, make_folder, named_durably, named_in, sync_folder, written_whole
 
 FOLDER = "waiting"
 """Beside the folders of the uploads, whose names are two hexadecimal digits."""

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import datetime
 
-from sqlalchemy import Select, bindparam, func, select
+from sqlalchemy import ColumnElement, Select, bindparam, func, or_, select
+from sqlalchemy.orm import aliased
 
 from estimator.message import say
 from estimator.session import CALIBRATIONS
@@ -201,3 +202,17 @@ def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
         revision=tolerances.revision,
         maximum_interval_days=row.maximum_interval_days,
     )
+
+
+def tells_of_type(unit_type: int) -> ColumnElement[bool]:
+    """Of units of a type."""
+    other = aliased(UnitRow)
+    measured = select(other.id).where(other.unit_type_id == unit_type, other.simulated.is_(False)).exists()
+    return or_(UnitRow.simulated.is_(False), ~measured)
+
+
+def tells_of_stand(stand: ColumnElement[int] | int) -> ColumnElement[bool]:
+    """Of sessions on a stand."""
+    other = aliased(SessionRow)
+    measured = select(other.id).where(other.stand_id == stand, other.simulated.is_(False)).exists()
+    return or_(SessionRow.simulated.is_(False), ~measured)

@@ -134,3 +134,18 @@ class Said:
 
 
 NOTHING_SAID = Said((), (), (), ())
+
+
+@answer
+@dataclass(frozen=True)
+class Customer:
+    """For whom a unit is calibrated, as its certificates name them."""
+
+    name: str = ""
+    """Empty where it is not stated."""
+    address: str = ""
+    """Where they can be reached."""
+
+
+NOBODY = Customer()
+"""Of a unit for which no customer is stated."""

@@ -13,8 +13,7 @@ from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
 from service.storage.queries import Queries
 from service.types.tables import UnitTypeRow
-from service.units.customer import Customer
-from service.units.records import NewService, Service
+from service.units.records import Customer, NewService, Service
 from service.units.tables import ServiceRow, UnitRow
 
 

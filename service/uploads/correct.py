@@ -16,8 +16,8 @@ from estimator.writing import session_document
 from service.errors import ConflictError
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
-from service.judging.known_unit import known_unit
 from service.judging.plausible import doubts
+from service.judging.reference import known_unit
 from service.kit.arriving_files import Replaced, SentFile
 from service.records.reception import Reception
 from service.records.supersede import supersede_session

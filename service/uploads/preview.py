@@ -13,10 +13,10 @@ from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
 from service.ingest import look_at, read_upload
 from service.ingest.layout.envelope import wrapped
-from service.ingest.layout.fingerprint import fingerprint
+from service.ingest.layout.look import fingerprint
 from service.ingest.layout.mapping import ASKED_ANEW, FORMAT, layout_of
 from service.ingest.layout.understand import Seen, understood
-from service.ingest.layout.units import plain_label
+from service.ingest.layout.vocabulary import plain_label
 from service.planning.pattern import earlier
 from service.storage import Storage
 from service.types.store import UnitTypes

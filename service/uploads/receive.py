@@ -16,21 +16,20 @@ from service.ingest import in_turn, look_at
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.ingest.layout.envelope import wrapped
-from service.ingest.layout.fingerprint import fingerprint
+from service.ingest.layout.look import fingerprint
 from service.ingest.layout.mapping import layout_of, remembered
 from service.jobs.changes import UNFOLLOWED, Course
 from service.judging.calibrate import Calibrated, basis_of, calibrate
-from service.judging.known_unit import KnownUnit, known_unit
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
+from service.judging.reference import KnownUnit, known_unit
 from service.kit.arriving_files import NOTHING_STATED, Content, Received, Replaced, SentFile, Stated, held, where
 from service.models.rules import model_for
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
-from service.records.change_state import question
-from service.records.derive_again import Derived, Deriving, derive_again
+from service.records.changes import question
+from service.records.derive_again import Derived, Deriving, derive_again, foresee_upload
 from service.records.follow import follow
-from service.records.foresee import foresee_upload
 from service.records.judge_again import Foreseen
 from service.records.keep import Made, keep, made
 from service.records.reception import Reception
@@ -42,7 +41,7 @@ from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import content_hash
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.types.rules import type_of
 from service.types.store import UnitTypes
 from service.units.store import Units

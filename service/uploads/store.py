@@ -11,7 +11,7 @@ from estimator.message import say
 from service.errors import NotFoundError
 from service.sessions.store import session_record, session_rows
 from service.sessions.tables import SessionRow
-from service.storage.documents import STORED
+from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.uploads.records import Arrival, ArrivalQuery, Refusal
 from service.uploads.tables import LayoutRow, RefusalRow

@@ -18,8 +18,8 @@ from service.errors import (
     RefusedError,
     ServiceError,
 )
+from service.ingest.apart import heard_by
 from service.ingest.checked import plain_filename
-from service.ingest.scanned import heard_by
 from service.jobs.changes import Course, require_room
 from service.jobs.records import KILOBYTE, Job, JobFailure, JobKind, NewJob
 from service.jobs.store import Jobs
@@ -31,7 +31,7 @@ from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import content_hash
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.storage.waiting import drop_unasked, drop_waiting, put_waiting, waiting_file
 from service.uploads.receive import receive, receive_mapped, refuse
 

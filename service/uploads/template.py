@@ -7,7 +7,7 @@ password: nobody changes one by mistake.
 
 import io
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -19,10 +19,42 @@ from xlsxwriter.worksheet import Worksheet
 from estimator.message import say
 from estimator.session import ACCELEROMETER, COUNTERS, GYROSCOPE, PROGRAMMES, STAGES, CalibrationSession
 from estimator.writing import session_document
+from service.ingest.in_russian import SHEETS, heading_in_russian, key_in_russian, value_in_russian
 from service.ingest.session_keys import COLUMN_HINTS, KEY_HINTS, NEEDED_HERE, reading_hint, standard_error_hint
+from service.languages.catalogue import catalogue_of
 from service.languages.language import Language
 from service.papers.sheets import OPTIONS, naive, write_text
-from service.uploads.template_wording import Wording, wording
+
+
+@dataclass(frozen=True)
+class Wording:
+    """How each part of the workbook is called."""
+
+    sheet: Callable[[str], str]
+    key: Callable[[str], str]
+    heading: Callable[[str], str]
+    value: Callable[[str, Any], Any]
+    """Of a key or a column, by its English name."""
+    say: Callable[[str], str]
+    """A hint or a warning."""
+
+
+def wording(language: Language, sensors: Sequence[str]) -> Wording:
+    """The words of a language."""
+    if language is Language.ENGLISH:
+        return Wording(_as_it_is, _as_it_is, _as_it_is, lambda _, value: value, _as_it_is)
+    return Wording(
+        sheet=lambda name: SHEETS[name],
+        key=key_in_russian,
+        heading=lambda name: heading_in_russian(name, sensors),
+        value=value_in_russian,
+        say=catalogue_of(language).say,
+    )
+
+
+def _as_it_is(text: str) -> str:
+    return text
+
 
 DOCUMENT = dict[str, Any]
 ASKED = ("unit", "started_at", "stage", "operator", "notes")

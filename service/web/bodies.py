@@ -13,7 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from estimator.message import say
-from service.web.prefix import API as PREFIX
+from service.web.headers import API as PREFIX
 from service.web.problems import problem
 
 UPLOADS = frozenset(

@@ -13,7 +13,7 @@ from service.kit.limits import in_force
 from service.kit.metrics import Metrics
 from service.languages.language import Language, asked
 from service.settings import Settings
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.web.application import application_of
 
 ENVELOPE = 64 * 1024

@@ -10,7 +10,7 @@ from structlog.contextvars import bound_contextvars
 
 from service.kit.log import REQUEST_ID, log
 from service.kit.metrics import Metrics
-from service.web.prefix import API as PREFIX
+from service.web.headers import API as PREFIX
 
 PLAIN_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 """An id that came with a request is handed on if nothing in it can be taken for anything else in a log."""

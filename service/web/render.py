@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, MutableMapping
+from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -15,15 +16,26 @@ from markupsafe import Markup, escape
 
 from estimator.message import capitalised, joined, say
 from estimator.wording import counted
-from service.kit.names import day_of, heading, spaced
+from service.kit.measures import day_of, heading, spaced
 from service.kit.person import EVERYBODY, Person, Role
 from service.languages.language import QUERY, Language, asked
-from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED
-from service.sessions.words.reservations import but, but_alone
+from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED, but, but_alone
 from service.web.assets import asset_url
-from service.web.spoken import Spoken
+from service.web.in_language import Spoken
 
-TEMPLATES = Path(__file__).parent / "templates"
+SOONEST, LATEST = 2, 60
+"""Seconds: a usual diagnosis takes one or two; behind many others it takes minutes."""
+
+
+def follow_seconds(uploaded_at: datetime, now: datetime, workers: int) -> int | None:
+    """After how long a page looks again: half of what it has taken so far. None where nobody makes it unasked."""
+    if not workers:
+        return None
+    return round(min(max((now - uploaded_at).total_seconds() / 2, SOONEST), LATEST))
+
+
+TEMPLATES = sorted(Path(__file__).parents[1].glob("*/templates"))
+"""Each subject has its own; what all pages share is here."""
 
 
 def embed(data: Any) -> Markup:

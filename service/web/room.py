@@ -7,7 +7,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from service.kit.log import log
-from service.storage.space import space_at
+from service.storage.folders import space_at
 from service.web.bodies import UPLOADS
 from service.web.problems import problem
 

@@ -9,9 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from estimator.errors import Problem
 from service.jobs.changes import cancel_job, file_of
-from service.jobs.failures_store import Failures
 from service.jobs.records import Job, JobKind, NewJob
-from service.jobs.store import Jobs
+from service.jobs.store import Failures, Jobs
 from service.kit.answer import answer
 from service.kit.failure import Failed, FailedKind
 from service.models.records import Scope

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.web.application import application_of
 from service.work.job_desk import JobDesk
 from service.work.readers import GroupReader, Reader

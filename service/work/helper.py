@@ -15,7 +15,7 @@ from multiprocessing.process import BaseProcess
 
 from service.errors import ServiceError
 from service.kit import limits
-from service.kit.failed import too_long
+from service.kit.failure import too_long
 from service.kit.guard import Failure, ending_here
 from service.kit.limits import Limits
 from service.kit.log import write_log

@@ -10,7 +10,7 @@ from service.groups.store import Groups
 from service.jobs.records import KEPT, Job, JobFailure, JobKind, Made, Piece
 from service.jobs.store import Jobs
 from service.jobs.words import AT_FAULT, FILE_AT_FAULT, left_in_words
-from service.kit.failure_words import with_last_try
+from service.kit.failure import with_last_try
 from service.languages.language import Language
 from service.models.records import task_of
 from service.models.store import Recomputations
@@ -18,11 +18,11 @@ from service.papers.fleet.file import fleet_file
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records import diagnose, refresh_group
+from service.records.follow import refresh_beside
 from service.records.recalibrate import Recalibrated, recalibrate, recompute
-from service.records.refresh_outlooks import refresh_beside
 from service.storage import Storage
 from service.storage.made import drop_made, put_made
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.uploads.take_in import give_up
 
 PUT_OFF = timedelta(minutes=10)

@@ -12,27 +12,23 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from estimator.errors import Problem
 from service.diagnosis.store import Diagnoses
 from service.jobs.changes import cancel_job, may_cancel
-from service.jobs.failures_store import Failures
 from service.jobs.records import Job, JobFailure, JobKind, JobState, NewJob
-from service.jobs.store import Jobs
+from service.jobs.store import Failures, Jobs
 from service.jobs.words import STATES, ending_of, progress_of, title_of
 from service.jobs.words import outcome_of as outcome_in_words
-from service.kit.failure import Failed
-from service.kit.failure_words import NAMES
+from service.kit.failure import NAMES, Failed
 from service.kit.measures import number
 from service.kit.person import Person
 from service.models.records import Scope
 from service.people.admission import PersonOf
-from service.people.dependencies import StorageOf
-from service.people.forms import SEE_OTHER, By, Number
+from service.people.dependencies import SEE_OTHER, By, Number, StorageOf
 from service.sessions.store import Sessions
-from service.storage.store import Store
+from service.storage.queries import Store
+from service.uploads.pages import Outcome, job_outcome, outcome_of, upload_page
 from service.uploads.store import Arrivals
-from service.uploads.upload_pages import Outcome, job_outcome, outcome_of, upload_page
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
 from service.web.fields import NO_NUL
-from service.web.follow import SOONEST, follow_seconds
-from service.web.render import render
+from service.web.render import SOONEST, follow_seconds, render
 from service.work.dependencies import JobDeskOf
 
 PAGE_SIZE = 50

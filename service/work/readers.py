@@ -17,15 +17,15 @@ from service.fleet.changes import summarise_all
 from service.groups.records import Group, GroupAnswer, Level
 from service.groups.store import Groups
 from service.kit.bell import Bell
-from service.kit.failure_words import group_failed
+from service.kit.failure import group_failed
 from service.kit.guard import Guard
 from service.kit.metrics import Metrics
 from service.queue.records import Waiting, WorkKind
 from service.queue.store import WorkQueue
 from service.records import refresh_group
 from service.records.diagnose import diagnose, give_up, known_of
+from service.records.follow import date_one
 from service.records.refresh_group import current
-from service.records.refresh_outlooks import date_one
 from service.sessions.store import Sessions
 from service.settings import VERSION
 from service.storage import Storage

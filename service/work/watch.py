@@ -9,7 +9,7 @@ from threading import Event
 from service.fleet.store import Fleet
 from service.groups.store import Groups
 from service.jobs.changes import drop_outlived
-from service.jobs.failures_store import Failures
+from service.jobs.store import Failures
 from service.judging.store import Derivations
 from service.kit.bell import Bell
 from service.kit.guard import Alone, Guard, kept, plainly
@@ -19,16 +19,15 @@ from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import Deriving
+from service.records.flagging.lasting import flag_shifted_stands
 from service.records.flagging.overdue_units import flag_overdue
-from service.records.flagging.shifted_stands import flag_shifted_stands
-from service.records.follow import derive_waiting_of
+from service.records.follow import date, date_one, derive_waiting_of
 from service.records.refresh_group import current
-from service.records.refresh_outlooks import date, date_one
 from service.sessions.store import Sessions
 from service.settings import VERSION
 from service.storage import Storage
 from service.storage.aside import drop_stale
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.units.store import Units
 from service.uploads.take_in import sweep_waiting
 from service.work.kinds import DIAGNOSES

@@ -8,7 +8,7 @@ import pytest
 from estimator.results import ARCSEC
 from tests.databases import ENGINES
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.service.turntable import MICRO_G, alignment_bytes, rate_table_bytes
 
 SESSIONS = "/api/v1/sessions"

@@ -7,7 +7,7 @@ import httpx
 import pytest
 
 from tests.how_to.follow import House, followed
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 
 @pytest.fixture(scope="module")

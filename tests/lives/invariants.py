@@ -9,7 +9,7 @@ from itertools import product
 from typing import Any
 from urllib.parse import quote
 
-from service.kit.names import day_of
+from service.kit.measures import day_of
 from tests.lives.world import API, FindError, World
 
 HTML = {"Accept": "text/html"}

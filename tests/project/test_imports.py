@@ -14,10 +14,16 @@ from tests.project.source import PACKAGES, Module, modules
 SUBJECTS = (
     "errors", "settings", "languages", "kit", "client", "storage", "queue", "ingest", "sessions", "web", "units",
     "types", "stands", "models", "diagnosis", "outlook", "groups", "fleet", "opening", "tables", "people",
-    "flags", "judging", "jobs", "records", "planning", "papers", "uploads", "work", "pages", "app", "demo",
-    "commands", "cli",
+    "flags", "judging", "jobs", "records", "planning", "papers", "uploads", "work", "pages", "all_pages", "all_api",
+    "app", "demo", "commands", "cli",
 )  # fmt: skip
 """The service's subjects, from the ground up: one imports only from those before it."""
+EDGE = re.compile(
+    r"service\.(pages\b|uploads\.(received|layout)\b"
+    r"|(?!commands\b|web\b)(\w+\.)+(\w+_)?(api|pages|sections|schemas|dependencies)$)"
+)
+"""Routes and what they are made of: they lie with their subject, and stand above all subjects, where a page of one
+shows what another knows."""
 SERVICE_LAYERS = tuple({subject} for subject in SUBJECTS)
 ESTIMATOR_LAYERS = (
     {"message"},
@@ -38,9 +44,9 @@ ESTIMATOR_LAYERS = (
 HOMES = {
     "sqlalchemy": r"service\.storage\b|service\.\w+\.(\w+_)?(store|tables)$|migrations\b",
     "alembic": r"service\.storage\b|migrations\b",
-    "fastapi": r"service\.(web|pages|app)\b|service\.\w+\.(\w+_)?(api|pages|dependencies|admission|forms)$"
-    r"|service\.uploads\.(arriving|received|layout)\b|service\.papers\.onboard\.api$",
-    "starlette": r"service\.(web|pages)\b|service\.people\.admission$|service\.uploads\.(arriving|layout)\b",
+    "fastapi": r"service\.(web|pages|app|all_pages|all_api)\b|service\.\w+\.(\w+_)?(api|pages|dependencies|admission)$"
+    r"|service\.uploads\.(received$|layout\b)|service\.papers\.onboard\.api$",
+    "starlette": r"service\.(web|pages|all_pages)\b|service\.people\.admission$|service\.uploads\.(received$|layout\b)",
     "typer": r"service\.(cli|commands)\b",
     "pyhanko": r"service\.papers\.seal\b",
     "signxml": r"service\.papers\.seal\b",
@@ -70,14 +76,15 @@ def upward(package: str, layers: tuple[set[str], ...]) -> list[str]:
     for module in modules(package):
         if module.name == package:
             continue
-        own = module.name.split(".")[1]
+        own = "pages" if EDGE.match(module.name) else module.name.split(".")[1]
         for name in module.imports:
             parts = name.split(".")
             if parts[0] != package or len(parts) == 1 or parts[1] == own or not is_part(package, parts[1]):
                 continue
             if name.endswith(".tables"):
                 continue  # all tables are one schema, which a store may join
-            if layer(parts[1], layers) >= layer(own, layers):
+            to = "pages" if EDGE.match(name) else parts[1]
+            if to != own and layer(to, layers) >= layer(own, layers):
                 found.append(f"{module.name} imports {name}")
     return found
 

@@ -47,9 +47,9 @@ class Part:
 
 PARTS = {
     "seal": Part(("service/papers/seal",)),
-    "exports": Part(("service/papers/onboard",), {"service/pages/api.py": "onboard"}),
+    "exports": Part(("service/papers/onboard",), {"service/all_api.py": "onboard"}),
     "provider": Part(
-        ("service/people/oidc.py", "service/people/oidc_pages.py"), {"service/pages/__init__.py": "oidc_pages"}
+        ("service/people/oidc.py", "service/people/oidc_pages.py"), {"service/all_pages.py": "oidc_pages"}
     ),
 }
 

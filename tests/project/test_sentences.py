@@ -6,14 +6,14 @@ from tests.project.source import ROOT, modules
 
 SENTENCES = {
     "Cannot tell which": "service.diagnosis.words.causes",
-    "Something is there that no known cause explains": "service.diagnosis.words.structures",
-    "Something common to all sensors": "service.diagnosis.words.structures",
-    "stated standard errors": "service.sessions.words.noise_claims",
+    "Something is there that no known cause explains": "service.diagnosis.words.findings",
+    "Something common to all sensors": "service.diagnosis.words.findings",
+    "stated standard errors": "service.sessions.words.noise",
     "one that is not in the catalogue": "service.diagnosis.words.causes",
-    "by chance alone in": "service.diagnosis.words.finding",
-    "a sound model would give this much": "service.sessions.words.fit",
-    "cannot be seen without motion": "service.judging.in_service_words",
-    "with one another as they did": "service.judging.in_service_words",
+    "by chance alone in": "service.diagnosis.words.findings",
+    "a sound model would give this much": "service.sessions.words.readings",
+    "cannot be seen without motion": "service.judging.words",
+    "with one another as they did": "service.judging.words",
     "beyond the tolerance of": "service.judging.words",
 }
 """Where each is made."""
@@ -34,5 +34,5 @@ def test_words_hold_no_markup() -> None:
 
 
 def test_templates_hold_none_of_these_sentences() -> None:
-    templates = [path.read_text("utf-8") for path in (ROOT / "service" / "web" / "templates").glob("*.html")]
+    templates = [path.read_text("utf-8") for path in (ROOT / "service").glob("*/templates/*.html")]
     assert [sentence for sentence in SENTENCES for text in templates if sentence in text] == []

@@ -11,7 +11,7 @@ import pytest
 from estimator.health import odds, posterior
 from service.kit.log import write_log
 from tests.conftest import Holding
-from tests.service.sessions import FAILED
+from tests.service.made_sessions import FAILED
 
 
 @pytest.fixture(scope="package", autouse=True)

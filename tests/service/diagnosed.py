@@ -15,7 +15,7 @@ from tests.estimator.causes.hiding import change, scene, with_readings
 from tests.estimator.diagnosis.selection.small import measured
 from tests.estimator.diagnosis.selection.test_common_or_own import swaying
 from tests.estimator.diagnosis.selection.test_noise_claim import stated
-from tests.service.sessions import session_id
+from tests.service.made_sessions import session_id
 
 LONGEST = 16
 TEMPERATURE = ("single", (77, 3), "bias-temperature")

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from tests.service.sessions import MICRO_G, session_bytes
+from tests.service.made_sessions import MICRO_G, session_bytes
 
 LATE, EARLY = 45, 17
 """Rows: near the end, where the mean hardly feels it, and within the first run, where it passes for something else."""

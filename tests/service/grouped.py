@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 CUBIC = 6.5e-8
 """(m/s²)⁻² of A2: some two standard errors of a session, seven of twelve. Counted, not derived: a session that shows

@@ -1,4 +1,4 @@
-"""Recordings in service of the unit of `tests.service.sessions`, as bytes."""
+"""Recordings in service of the unit of `tests.service.made_sessions`, as bytes."""
 
 import json
 from dataclasses import replace
@@ -8,7 +8,7 @@ from zlib import crc32
 import numpy as np
 
 from tests.builders import Array, Document, declared, response, true_sensors
-from tests.service.sessions import MICRO_G
+from tests.service.made_sessions import MICRO_G
 
 RATE = 10.0
 NOISE = 6e-6

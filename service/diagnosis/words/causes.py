@@ -7,8 +7,7 @@ from estimator.diagnosis import Finding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.layout import EVERY
 from estimator.message import joined, say
-from service.kit.measures import HARD, number
-from service.kit.names import spaced
+from service.kit.measures import HARD, number, spaced
 
 UNKNOWN_CAUSE = "unexplained"
 """Stands among the alternatives of a finding that a cause which is not in the catalogue explains as well."""

@@ -1,5 +1,7 @@
 """What a preview shows of a file before anything is decided: headings, first cells, the words of its columns."""
 
+import hashlib
+from collections.abc import Mapping
 from typing import Any
 
 from estimator.message import say
@@ -11,6 +13,13 @@ from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import word_text
 from service.ingest.xlsx import session_sheets, sheet_names
 from service.kit.limits import refusal
+
+
+def fingerprint(seen: Mapping[str, Any]) -> str:
+    """SHA-256 of the headings of a first look, in small letters and without spaces."""
+    headings = ["".join(column["heading"].casefold().split()) for column in seen["columns"]]
+    return hashlib.sha256("\n".join(headings).encode()).hexdigest()
+
 
 SHOWN = 5
 """First cells of a column."""

@@ -11,7 +11,7 @@ from estimator.message import joined, say
 from estimator.reading.problems import Where, shown
 from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import ColumnMapping, Layout
-from service.ingest.layout.units import conversion, target_label
+from service.ingest.layout.vocabulary import conversion, target_label
 
 FORMAT = "imu-session/1"
 WORDS = ("run", "position")

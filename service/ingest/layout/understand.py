@@ -5,8 +5,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.ingest.layout.units import plain_label, unit_of
-from service.ingest.layout.vocabulary import ASIDE, BY_WORD, DIRECT, ERROR_WORDS, FLIPPED, LOOK_ALIKE, SENSOR_WORDS
+from service.ingest.layout.vocabulary import (
+    ASIDE,
+    BY_WORD,
+    DIRECT,
+    ERROR_WORDS,
+    FLIPPED,
+    LOOK_ALIKE,
+    SENSOR_WORDS,
+    plain_label,
+    unit_of,
+)
 
 IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]{1,20})[\])]\s*$")
 AFTER_COMMA = re.compile(r"^(?P<name>.+?)\s*[,/;:]\s*(?P<unit>[^,;]{1,12})$")

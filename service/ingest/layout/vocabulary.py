@@ -1,5 +1,100 @@
 """Words that people head columns with, in English and Russian, and what they mean in a session."""
 
+from dataclasses import dataclass
+from math import pi
+
+from estimator.applied_vector import STANDARD_GRAVITY
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A number in this unit is number · times / over + offset in the first unit of its quantity."""
+
+    quantity: str
+    times: float = 1.0
+    over: float = 1.0
+    offset: float = 0.0
+
+
+SPELLINGS = {
+    Unit("voltage"): "v в volt volts вольт",
+    Unit("voltage", over=1e3): "mv мв millivolt",
+    Unit("voltage", over=1e6): "µv uv мкв microvolt",
+    Unit("current"): "amp ampere ампер",
+    Unit("current", over=1e3): "ma ма",
+    Unit("current", over=1e6): "µa ua мка",
+    Unit("count"): "count counts cnt lsb code adc отсч отсчет отсчеты код ед емр",
+    Unit("pulse"): "pulse pulses imp имп импульс импульсы",
+    Unit("acceleration"): "m/s² m/s2 m/s^2 м/с² м/с2 м/с^2",
+    Unit("acceleration", STANDARD_GRAVITY): "g",
+    Unit("acceleration", STANDARD_GRAVITY, 1e3): "mg мg",
+    Unit("acceleration", STANDARD_GRAVITY, 1e6): "µg ug мкg",
+    Unit("acceleration", over=1e2): "gal",
+    Unit("rate"): "rad/s рад/с",
+    Unit("rate", pi, 180): "°/s deg/s dps °/с град/с",
+    Unit("rate", pi, 180 * 3600): "°/h deg/h °/ч град/ч °/hr",
+    Unit("angle"): "deg degree degrees ° град градус градусы",
+    Unit("angle", 180, pi): "rad рад",
+    Unit("angle", 180e-3, pi): "mrad мрад",
+    Unit("angle", over=60): "arcmin ' ′ угл.мин мин.дуги",
+    Unit("angle", over=3600): 'arcsec " ″ угл.с угл.сек',
+    Unit("time"): "s с sec сек second seconds секунды",
+    Unit("time", over=1e3): "ms мс msec",
+    Unit("time", over=1e6): "µs us мкс",
+    Unit("time", 60): "min мин minutes минуты",
+    Unit("time", 3600): "h ч hr hours час часы",
+    Unit("temperature"): "°c c degc celsius °с",
+    Unit("temperature", offset=-273.15): "k к kelvin",
+    Unit("temperature", 5, 9, -160 / 9): "°f f degf fahrenheit",
+}
+"""Every unit with its spellings, in small letters; the first of a quantity is what others are turned into."""
+BY_SPELLING = {word: unit for unit, words in SPELLINGS.items() for word in words.split()}
+PLAIN = {unit: words.split()[0] for unit, words in SPELLINGS.items()}
+MICRO = str.maketrans({"μ": "µ", "º": "°", "˚": "°"})
+"""Letters that look alike."""
+SHOWN = {
+    "v": "V", "mv": "mV", "µv": "µV", "amp": "A", "ma": "mA", "µa": "µA", "°c": "°C", "k": "K", "°f": "°F",
+    "gal": "Gal",
+}  # fmt: skip
+"""As they are written, where that is not in small letters."""
+TARGETS = {"beta_deg": "deg", "turn_angle_deg": "deg", "time_s": "s", "temperature_c": "°c", "vibration_m_s2": "m/s²"}
+"""Columns of a session with the unit of each; rates of a table are in °/s."""
+
+
+def unit_of(label: str) -> Unit | None:
+    """The unit that a label stands for; None where it is not known. A single A is ampere."""
+    word = label.strip().strip("[]()").translate(MICRO).replace(" ", "").rstrip(".")
+    if word in ("A", "А"):
+        return BY_SPELLING["amp"]
+    return BY_SPELLING.get(word.casefold().translate(MICRO))
+
+
+def plain_label(label: str) -> str:
+    """``mV`` for мВ; the label itself where the unit is not known."""
+    unit = unit_of(label)
+    if unit is None:
+        return label.strip()
+    return SHOWN.get(PLAIN[unit], PLAIN[unit])
+
+
+def target_label(meaning: str) -> str:
+    """The unit that a column of a session is in; empty where it has none."""
+    return "°/s" if meaning == "turn_rate_deg_s" else plain_label(TARGETS.get(meaning, ""))
+
+
+def conversion(label: str, wanted: str) -> tuple[float, float, float] | None:
+    """(times, over, offset) from one unit to another; None where they measure different things."""
+    if label.strip().casefold() == wanted.strip().casefold() or not label.strip():
+        return 1.0, 1.0, 0.0
+    given, goal = unit_of(label), unit_of(wanted)
+    if given is None or goal is None or given.quantity != goal.quantity:
+        return None
+    if given == goal:
+        return 1.0, 1.0, 0.0
+    times, over = given.times * goal.over, given.over * goal.times
+    return times, over, (given.offset - goal.offset) * goal.over / goal.times
+
+
 MEANINGS = {
     "run": "run series прогон серия ход заход mounting установка направление",
     "beta_deg": "beta β бета angle угол turn поворот headangle anglebeta уголβ уголбета уголповорота rotation azimuth",

@@ -6,8 +6,7 @@ from importlib import import_module
 
 from estimator.message import say
 from service.ingest.formats import MCAP, SQLITE, ULOG
-from service.ingest.logs.streams import Stream
-from service.ingest.logs.table import LogTable, log_table
+from service.ingest.logs.table import LogTable, Stream, log_table
 from service.kit.limits import refusal
 
 Read = Callable[[bytes, str], "Contents"]

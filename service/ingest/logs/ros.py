@@ -17,7 +17,7 @@ from rosbags.typesys.store import Typestore
 from estimator.message import say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.ingest.logs.readers import Contents
-from service.ingest.logs.streams import Array, Stream
+from service.ingest.logs.table import Array, Stream
 from service.kit.limits import refusal
 
 IMU = "sensor_msgs/msg/Imu"

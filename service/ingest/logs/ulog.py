@@ -15,7 +15,7 @@ from pyulog.exceptions import ULogException
 from estimator.message import say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.ingest.logs.readers import Contents
-from service.ingest.logs.streams import Array, Stream
+from service.ingest.logs.table import Array, Stream
 from service.kit.limits import refusal
 
 RAW = {"sensor_accel": ACCELEROMETER, "sensor_gyro": GYROSCOPE}

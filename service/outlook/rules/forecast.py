@@ -12,7 +12,7 @@ from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
 from estimator.health.pooled import Prior
 from estimator.health.prognosis import Outlook, Prognosis, prognosis
 from estimator.health.shapes import Kind
-from service.kit.names import YEAR
+from service.kit.measures import YEAR
 from service.outlook.records import (
     Action,
     ChangeKind,
@@ -26,7 +26,7 @@ from service.outlook.records import (
     UnitOutlook,
 )
 from service.outlook.rules.histories import Histories
-from service.outlook.words.due import UNFIT, reason_of
+from service.outlook.words import UNFIT, reason_of
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession
 

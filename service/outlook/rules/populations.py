@@ -4,12 +4,16 @@ A type of thousands of units is looked at once for many pages: what they read is
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.population import group_standing, spread
+from estimator.health.population import group_standing, outliers, spread
 from service.outlook.populations import TINY, Placed, Population
 from service.outlook.records import Rate
+from service.outlook.store import FarOut, Populations
+from service.outlook.words import drift_stands_out, lot_stands_out
+from service.storage.queries import Store
 
 FEWEST_UNITS = 3
 """Units of a type that make a population."""
@@ -70,3 +74,43 @@ def _lots(own: Group) -> list[tuple[str, float]]:
         units.setdefault(rate.lot or "", set()).add(rate.serial)
     z = group_standing([(rate.value, rate.sigma) for rate in own], [rate.lot or "" for rate in own])
     return [(lot, far) for lot, far in z.items() if len(units[lot]) > 1]
+
+
+@dataclass(frozen=True)
+class Standout:
+    """A unit or a lot that drifts unlike the others of its type."""
+
+    unit: str | None
+    """Serial number; None for a lot."""
+    text: str
+
+
+def fleet_standouts(store: Store, most: int) -> tuple[Standout, ...]:
+    """The first of the whole fleet, in one query."""
+    return standouts(Populations(store).furthest(most))[:most]
+
+
+def standouts(far: FarOut) -> tuple[Standout, ...]:
+    """Units first, the furthest out first; then lots."""
+    return (*_units(far), *_far_lots(far))
+
+
+def _units(far: FarOut) -> list[Standout]:
+    placed = [(one, population) for population in far.populations for one in population.fast]
+    placed.sort(key=lambda pair: -abs(pair[0].z))
+    out = outliers([one.z for one, _ in placed], among=far.rates)
+    return [_unit(*pair) for pair, is_out in zip(placed, out, strict=True) if is_out]
+
+
+def _unit(one: Placed, population: Population) -> Standout:
+    return Standout(one.serial, drift_stands_out(one.sensor, population.parameter, one.value))
+
+
+def _far_lots(far: FarOut) -> list[Standout]:
+    lots = [(*lot, population) for population in far.populations for lot in population.far_lots]
+    out = outliers([z for _, z, _ in lots], among=far.lots)
+    return [
+        Standout(None, lot_stands_out(lot, population.unit_type, population.parameter))
+        for (lot, _, population), is_out in zip(lots, out, strict=True)
+        if is_out
+    ]

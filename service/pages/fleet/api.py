@@ -1,24 +1,56 @@
 """The fleet as a whole."""
 
-from typing import Annotated, Literal
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
 
+import polars as pl
 from fastapi import APIRouter, Query, Request, Response
 
-from service.fleet.condition import FleetCondition
+from service.fleet.condition import FleetCondition, UnitSummary
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
+from service.judging.words import unit_in_words
 from service.languages.language import asked
-from service.pages.fleet.columns import fleet_table
 from service.pages.unit.schemas import UnitPage, said_unit
 from service.papers.fleet.paper import fleet_pdf
 from service.papers.fleet.report import fleet_report
 from service.papers.fleet.workbook import fleet_xlsx
 from service.web.dependencies import Now, Reading
 from service.web.fields import Page, Window
-from service.web.files import BINARY, BY_HEADER, PDF, TABLES, XLSX, as_file, as_table
-from service.web.negotiated import FORMS, wanted_form
+from service.web.files import (
+    BINARY,
+    BY_HEADER,
+    FORMS,
+    PDF,
+    TABLES,
+    TIME,
+    XLSX,
+    as_file,
+    as_table,
+    table_of,
+    wanted_form,
+)
 from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
+
+FLEET_COLUMNS = {
+    "serial": pl.String(), "unit_type": pl.String(), "simulated": pl.Boolean(), "sessions": pl.Int64(),
+    "last_session": pl.String(), "last_at": TIME, "verdict": pl.String(), "is_reference": pl.Boolean(),
+    "reason": pl.String(),
+    "worst_sensor": pl.String(), "worst_parameter": pl.String(), "margin": pl.Float64(),
+    "diagnosis": pl.String(), "flags": pl.Int64(), "due": TIME, "lot": pl.String(),
+    "said": pl.String(), "last_at_ms": pl.Int64(), "due_ms": pl.Int64(),
+}  # fmt: skip
+
+
+def fleet_table(units: Sequence[UnitSummary]) -> pl.DataFrame:
+    """One row a unit."""
+    return table_of([_unit_row(unit) for unit in units], FLEET_COLUMNS)
+
+
+def _unit_row(unit: UnitSummary) -> dict[str, Any]:
+    return vars(unit) | {"said": unit_in_words(unit), "last_at_ms": unit.last_at_ms, "due_ms": unit.due_ms}
+
 
 router = APIRouter(prefix="/fleet", tags=["fleet"])
 FORM = (

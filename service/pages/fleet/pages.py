@@ -7,10 +7,10 @@ from datetime import datetime
 from estimator.message import joined, say_count
 from service.fleet.condition import FleetCondition, UnitSummary
 from service.fleet.records import FleetChoices
-from service.outlook.rules.standouts import Standout
-from service.outlook.words.due import needed_now
+from service.groups.sections import FoundLine
+from service.outlook.rules.populations import Standout
+from service.outlook.words import needed_now
 from service.pages.fleet.view import DUE, FIRST, ORDERS, PAGE_SIZE, FleetView
-from service.pages.group.sections import FoundLine
 from service.pages.saved import Saved
 from service.people.views import ListPage
 from service.sessions.decision import Verdict

@@ -8,9 +8,17 @@ from fastapi.responses import FileResponse, JSONResponse
 from estimator.message import say
 from service.errors import NotFoundError
 from service.ingest.layout.envelope import is_wrapped, unwrapped
-from service.judging.schemas import said
-from service.pages.records.event_schemas import NewStage
-from service.pages.session.schemas import (
+from service.judging.records import said
+from service.papers.certified import traceability_of
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.records.changes import set_stage
+from service.records.dependencies import ReceptionOf
+from service.records.event_schemas import NewStage
+from service.sessions.calibrations_store import Calibrations, Noises
+from service.sessions.decision import Verdict
+from service.sessions.records import NoiseDocument, SessionOrder, SessionQuery
+from service.sessions.schemas import (
     RECEIPT_EXAMPLE,
     CalibrationDocument,
     CommonMotionSchema,
@@ -21,19 +29,9 @@ from service.pages.session.schemas import (
     SessionReportAnswer,
     said_session,
 )
-from service.pages.uploads.api import LaterOf
-from service.papers.certified import traceability_of
-from service.people.admission import PersonOf
-from service.people.dependencies import StorageOf
-from service.records.changes import set_stage
-from service.records.dependencies import ReceptionOf
-from service.sessions.calibrations_store import Calibrations
-from service.sessions.decision import Verdict
-from service.sessions.noise_schemas import NoiseDocument
-from service.sessions.noise_store import Noises
-from service.sessions.records import SessionOrder, SessionQuery
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
+from service.uploads.api import LaterOf
 from service.uploads.receive import receive, receive_mapped
 from service.uploads.received import REQUEST_BODY, FileOf
 from service.web.dependencies import Now, Reading

@@ -16,8 +16,7 @@ from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 from service.errors import ConflictError
 from service.judging.judge import judge
-from service.kit.measures import measured
-from service.kit.names import PARAMETER_NAMES, day_of
+from service.kit.measures import PARAMETER_NAMES, day_of, measured
 from service.pages.fleet.pages import Margin, margin_of
 from service.pages.session.pages import (
     decision_measure,
@@ -34,8 +33,8 @@ from service.sessions.records import ALL_PARAMETERS, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.sessions.words.conditions import Condition, condition_of
-from service.sessions.words.motion import MotionLine, motions_in_words
-from service.storage.store import Store
+from service.sessions.words.readings import MotionLine, motions_in_words
+from service.storage.queries import Store
 from service.types.store import UnitTypes
 from service.units.records import Service
 from service.units.store import Services

@@ -12,39 +12,41 @@ from service.diagnosis.sections import DiagnosisLine, diagnosis_line
 from service.diagnosis.words.causes import cause_on
 from service.judging.parity_words import agreement_in_words
 from service.judging.sections import ParityView, parity_view
-from service.kit.coverage import coverage_in_words
 from service.kit.measures import (
     HARD,
     THIN,
     Measure,
+    coverage_in_words,
     decimals,
     deviation_measure,
     in_measure,
     limit,
     measured,
+    method_name,
     number,
     signed,
     size_in_words,
     value_measure,
 )
-from service.kit.names import method_name
 from service.models.records import ModelRevision
 from service.pages.unit.remarks import Remarks
 from service.papers.records import Traceability
 from service.papers.session_report import SessionReport
-from service.sessions.charts import ChartSet
-from service.sessions.charts.noise import noise_of
-from service.sessions.charts.residuals import residual_charts
+from service.sessions.charts import ChartSet, noise_of, residual_charts
 from service.sessions.decision import Decision, Verdict, nominal_factor_of
 from service.sessions.doubt import Remedies, Reservations
+from service.sessions.lines import ResidualTable, residual_table
 from service.sessions.records import ALL_PARAMETERS, DiagnosisSummary, StoredSession
-from service.sessions.residual_table import ResidualTable, residual_table
 from service.sessions.states import RecordState
-from service.sessions.words.conditions import Condition, condition_of
-from service.sessions.words.fit import FitWords, bands_in_words, fit_in_words
-from service.sessions.words.known import combination_in_words
-from service.sessions.words.motion import MotionLine, motions_in_words
-from service.sessions.words.states import MEANINGS, STATES, state_in_words
+from service.sessions.words.conditions import MEANINGS, STATES, Condition, condition_of, state_in_words
+from service.sessions.words.readings import (
+    FitWords,
+    MotionLine,
+    bands_in_words,
+    combination_in_words,
+    fit_in_words,
+    motions_in_words,
+)
 
 NOTHING_KNOWN = Remedies()
 """Of a session that counts."""

@@ -9,8 +9,7 @@ from pydantic import BaseModel
 from service.sessions.decision import Verdict
 from service.sessions.records import SessionOrder, SessionQuery
 from service.sessions.states import RecordState
-from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED, UNDECIDED
-from service.sessions.words.states import STATES
+from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED, STATES, UNDECIDED
 from service.web.list_view import Asked, ListView, known_order
 
 PAGE_SIZE = 50

@@ -7,8 +7,7 @@ from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.stands.changes import record_stand_certificate
 from service.stands.conditions import stand_conditions
-from service.stands.paper_records import StandCertificate
-from service.stands.records import StandCondition
+from service.stands.records import StandCertificate, StandCondition
 from service.stands.store import StandCertificates
 from service.web.dependencies import Now, Reading
 from service.web.fields import Day, Said, StandName

@@ -1,6 +1,6 @@
 """The pages of unit types."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Annotated
@@ -12,15 +12,21 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from estimator.wording import counted
+from service.flags.pages import FlagCard, flag_cards
+from service.flags.records import Flag
+from service.flags.store import FlagQuery, Flags
+from service.fleet.condition import UnitSummary
+from service.fleet.records import FleetQuery
+from service.fleet.store import Fleet
 from service.groups.records import Level
-from service.kit.measures import deviation_measure, in_measure, limit, number, scale_measure
-from service.kit.names import heading
-from service.pages.flags import FlagCard, flag_cards
+from service.groups.sections import GroupSection, group_section
+from service.kit.measures import deviation_measure, heading, in_measure, limit, number, scale_measure
+from service.models.records import ModelRevision, Scope
+from service.models.rules import in_force
+from service.models.sections import AcceptedCause, accepted_causes
+from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, fleet_row
 from service.pages.fleet.view import FleetView
-from service.pages.group.sections import GroupSection, group_section
-from service.pages.model.sections import AcceptedCause, accepted_causes
-from service.pages.type.report import MOST, TypeLine, TypeReport, every_type, type_report
 from service.pages.type.tolerances import (
     ToleranceField,
     days,
@@ -30,15 +36,70 @@ from service.pages.type.tolerances import (
     tolerance_fields,
     wanted,
 )
-from service.people.dependencies import StorageOf
-from service.people.forms import SEE_OTHER, By, Key, Why
+from service.people.dependencies import SEE_OTHER, By, Key, StorageOf, Why
 from service.sessions.records import PARAMETERS
 from service.sessions.words.conditions import Condition, condition_of
+from service.storage.audit import Audit
+from service.storage.queries import Store
 from service.types.records import ToleranceRevision, TypeUse, UnitType, WantedTolerances
 from service.types.rules import tolerances_of
 from service.types.store import UnitTypes
 from service.web.dependencies import Now, Reading, SettingsOf
 from service.web.render import render
+
+MOST_TYPES = 500
+"""In the list: no maker has more kinds of unit."""
+MOST = 25
+"""Units that the page of one type lists: a screen; the fleet's page has all."""
+
+
+@dataclass(frozen=True)
+class TypeLine:
+    """One type in the list."""
+
+    unit_type: UnitType
+    use: TypeUse
+
+
+@dataclass(frozen=True)
+class TypeReport:
+    """One type; one unit more than are listed says that there are others."""
+
+    line: TypeLine
+    kinds: Mapping[str, str]
+    """Of its sensors, where a session told."""
+    revisions: tuple[ToleranceRevision, ...]
+    """Of its tolerances, oldest first."""
+    setters: Mapping[datetime, str]
+    """Who set the tolerances, by when; the first ones nobody did."""
+    flags: tuple[Flag, ...]
+    """Open ones on what its sessions show together."""
+    units: tuple[UnitSummary, ...]
+    """Worst first."""
+    models: tuple[ModelRevision, ...]
+    """Causes that engineers accepted into its model, and that hold."""
+
+
+def every_type(store: Store) -> tuple[TypeLine, ...]:
+    """All types, by name, in two queries."""
+    uses = UnitTypes(store).uses()
+    return tuple(TypeLine(known, uses[known.name]) for known in UnitTypes(store).page(0, MOST_TYPES))
+
+
+def type_report(store: Store, name: str) -> TypeReport:
+    """One type; NotFoundError where there is none of that name."""
+    unit_type = UnitTypes(store).get(name)
+    revisions = UnitTypes(store).revisions(name)
+    return TypeReport(
+        line=TypeLine(unit_type, UnitTypes(store).uses(name)[name]),
+        kinds=UnitTypes(store).kinds(name),
+        revisions=revisions,
+        setters=Audit(store).who_did("tolerances", name, [revision.since for revision in revisions]),
+        flags=Flags(store).page(FlagQuery(unresolved=True, unit_type=name)),
+        units=Fleet(store).units(FleetQuery(unit_type=name, limit=MOST + 1)),
+        models=in_force(Models(store).of_subject(Scope.UNIT_TYPE, name)),
+    )
+
 
 DEFAULTS = "the service itself, with the first session of the type"
 """Who set tolerances that nobody set."""

@@ -21,18 +21,17 @@ from service.fleet.store import Fleet
 from service.judging.calibrate import Comparison
 from service.judging.judge import judge, judge_recording
 from service.judging.reference import reference_of
-from service.kit.measures import COVERAGE, Measure, deviation_measure, in_measure
-from service.kit.names import heading
+from service.kit.measures import COVERAGE, Measure, deviation_measure, heading, in_measure
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import Deriving
-from service.records.refresh_outlooks import date
+from service.records.follow import date
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.records import PARAMETERS
 from service.sessions.words.conditions import Condition, condition_of
 from service.storage import Storage
 from service.storage.audit import Audit
-from service.storage.store import Store
+from service.storage.queries import Store
 from service.types.records import LatestSession, TolerancePreview, Tolerances, UnitType, VerdictChange, WantedTolerances
 from service.types.store import UnitTypes
 from service.units.store import Units

@@ -1,7 +1,9 @@
 """Units: their condition, history and known breaks."""
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, Any
 
+import polars as pl
 from fastapi import APIRouter, Query, Request, Response
 
 from service.flags.api import FlagPage, WantedState, flag_page
@@ -9,9 +11,7 @@ from service.flags.store import FlagQuery
 from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.outlook.reading import outlook_of
-from service.outlook.records import RiskPoint
-from service.outlook.schemas import OutlookAnswer
-from service.pages.unit.columns import history_table
+from service.outlook.records import OutlookAnswer, RiskPoint
 from service.pages.unit.report import unit_report
 from service.pages.unit.schemas import (
     HistoryAsked,
@@ -28,14 +28,38 @@ from service.people.dependencies import CREW, StorageOf
 from service.records.recalibrate import Recalibrated, recalibrate
 from service.records.unit_changes import set_customer, set_lot
 from service.sessions.history_store import History
-from service.units.customer import Customer
+from service.sessions.records import HistoryPoint
+from service.units.records import Customer
 from service.units.store import Units
 from service.web.dependencies import Now, Reading, SettingsOf
 from service.web.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
-from service.web.files import BY_HEADER, TABLES, as_table
-from service.web.negotiated import wanted_form
+from service.web.files import BY_HEADER, TABLES, TIME, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 from service.work.dependencies import ReaderOf, ReadingFleet
+
+HISTORY_COLUMNS = {
+    "session": pl.String(), "at": TIME, "sensor": pl.String(), "kind": pl.String(), "parameter": pl.String(),
+    "value": pl.Float64(), "u": pl.Float64(), "lower": pl.Float64(), "upper": pl.Float64(),
+    "reference": pl.Float64(), "deviation": pl.Float64(), "expanded": pl.Float64(), "tolerance": pl.Float64(),
+    "verdict": pl.String(), "is_reference": pl.Boolean(),
+    "axis_x": pl.Float64(), "axis_y": pl.Float64(), "axis_z": pl.Float64(), "revision": pl.Int64(),
+    "at_ms": pl.Int64(), "unit": pl.String(),
+}  # fmt: skip
+
+
+NO_AXIS = (None, None, None)
+"""Of a parameter that is a number."""
+
+
+def history_table(serial: str, points: Sequence[HistoryPoint]) -> pl.DataFrame:
+    """One row a point of a unit's history; the axis as three columns."""
+    return table_of([_point_row(serial, point) for point in points], HISTORY_COLUMNS)
+
+
+def _point_row(serial: str, point: HistoryPoint) -> dict[str, Any]:
+    axis = dict(zip(("axis_x", "axis_y", "axis_z"), point.axis or NO_AXIS, strict=True))
+    return vars(point) | axis | {"at_ms": point.at_ms, "unit": serial}
+
 
 router = APIRouter(prefix="/units", tags=["units"])
 WORST_FIRST = Order.CONDITION

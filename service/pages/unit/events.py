@@ -10,8 +10,7 @@ from service.papers.found_and_left import FoundAndLeft
 from service.sessions.decision import Decision
 from service.sessions.records import StoredSession
 from service.sessions.states import StateChange
-from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of
-from service.sessions.words.states import state_in_words
+from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of, state_in_words
 from service.units.records import Note, Service
 
 KINDS = {

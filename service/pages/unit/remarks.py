@@ -8,11 +8,10 @@ from fastapi import APIRouter
 from fastapi.responses import RedirectResponse
 
 from service.kit.measures import size_in_words
-from service.people.dependencies import StorageOf
-from service.people.forms import SEE_OTHER, By, Key, Number, Why
+from service.people.dependencies import SEE_OTHER, By, Key, Number, StorageOf, Why
 from service.records.unit_changes import attach_file, comment_on, withdraw_attachment
 from service.units.records import Attachment, Note
-from service.uploads.arriving import SentOf
+from service.uploads.received import SentOf
 from service.web.dependencies import Now
 
 

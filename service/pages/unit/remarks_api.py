@@ -7,15 +7,15 @@ from fastapi.responses import FileResponse
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.flags.api import Handling
-from service.pages.records.event_schemas import NoteList
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
+from service.records.event_schemas import NoteList
 from service.records.unit_changes import attach_file, comment_on, given_out, withdraw_attachment, withdraw_note
 from service.sessions.store import Sessions
 from service.units.records import Attachment, Note
 from service.units.remarks_store import Attachments, Notes
 from service.units.store import Units
-from service.uploads.arriving import SentOf
+from service.uploads.received import SentOf
 from service.web.dependencies import Now, Reading
 from service.web.fields import Name, Number, Reason, Serial, SessionId
 from service.web.files import disposition

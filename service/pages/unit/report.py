@@ -1,15 +1,43 @@
 """Everything that is known of one unit, apart from its history."""
 
+from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.message import say
 from service.errors import NotFoundError
+from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
-from service.pages.unit.records import UnitReport
-from service.sessions.states import RecordState
+from service.outlook.records import UnitOutlook
+from service.sessions.records import StoredSession
+from service.sessions.states import RecordState, StateChange
 from service.sessions.store import Sessions
-from service.storage.store import Store
+from service.storage.queries import Store
+from service.types.records import UnitType
+from service.units.records import NOTHING_SAID, Said, Service
 from service.units.remarks_store import SaidOf
+
+
+@dataclass(frozen=True)
+class UnitReport:
+    """Everything a unit's page or answer shows, apart from its history."""
+
+    summary: UnitSummary
+    unit_type: UnitType
+    reference_session: str | None
+    """What the next session will be judged against; None when the next one becomes the reference."""
+    sessions: tuple[StoredSession, ...]
+    """The latest ones, newest first."""
+    services: tuple[Service, ...]
+    """All known breaks, oldest first."""
+    withdrawn_services: tuple[Service, ...] = ()
+    withdrawals: tuple[StateChange, ...] = ()
+    """Of these services: by whom, when and why."""
+    waiting: int = 0
+    """Sessions that are still to be judged again after a change of the records."""
+    outlook: UnitOutlook | None = None
+    """None before a session was judged."""
+    said: Said = NOTHING_SAID
+
 
 LATEST = 50
 """Sessions in the list of a unit: some years of them."""

@@ -6,11 +6,11 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from service.fleet.condition import UnitSummary
-from service.judging.schemas import SaidVerdict, said
+from service.judging.records import SaidVerdict, said
 from service.kit.answer import answer
-from service.pages.session.schemas import SaidSession, said_session
 from service.sessions.history_store import HistoryQuery
 from service.sessions.records import HistoryPoint
+from service.sessions.schemas import SaidSession, said_session
 from service.types.records import UnitType
 from service.units.records import Service
 from service.web.fields import Bound, Paged, Text, Window

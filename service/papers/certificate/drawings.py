@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 
 from estimator.message import say
-from service.kit.names import spaced
+from service.kit.measures import spaced
 from service.languages.language import Language
-from service.outlook.charts import history_charts
-from service.outlook.tracks import tracks_of
+from service.outlook.charts import history_charts, tracks_of
 from service.papers.certified import CertifiedSession
-from service.papers.pictures import picture
-from service.sessions.charts import ChartSet
-from service.sessions.charts.residuals import residual_charts
+from service.papers.typeset import picture
+from service.sessions.charts import ChartSet, residual_charts
 from service.sessions.decision import Decision
 
 MOST_HISTORIES = 6

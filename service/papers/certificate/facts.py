@@ -1,5 +1,6 @@
 """What was measured, with what, by whom, and what it was worked out from."""
 
+from dataclasses import dataclass
 from math import degrees
 
 from estimator.applied_vector import gravity
@@ -7,12 +8,58 @@ from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
 from estimator.wording import counted
 from service.diagnosis.words.causes import cause_on
-from service.kit.measures import THIN, number, size_in_words
-from service.kit.names import day_of, method_name, minute_of, spaced
-from service.papers.certificate.fact import Fact
+from service.diagnosis.words.findings import FindingView, finding_view
+from service.kit.measures import THIN, day_of, method_name, minute_of, number, size_in_words, spaced
 from service.papers.certified import CertifiedSession
 from service.papers.words import stated
 from service.sessions.records import StoredSession
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A name and what is stated of it."""
+
+    name: str
+    value: str
+    is_written: bool = False
+    """Whether the value is what somebody named or wrote: it is the same in every language."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What the simulation gets wrong about the session, named."""
+
+    sentence: str
+    amplitudes: str
+    evidence: str
+    alternatives: str
+    """Causes that this session cannot tell from it."""
+    corrected: str
+    """Whether the calibration takes it into account; empty of one that is no part of a model."""
+
+
+def causes_of(found: CertifiedSession) -> tuple[Cause, ...]:
+    """The findings of the diagnosis, in their order; none where there is no diagnosis yet."""
+    diagnosis = found.diagnosis.found
+    findings = () if diagnosis is None else diagnosis.findings
+    views = (finding_view(finding, found.revisions, findings) for finding in findings)
+    return tuple(
+        Cause(
+            sentence=view.sentence,
+            amplitudes=joined("; ", (part for part in (*view.amplitudes, view.shape) if part)),
+            evidence=view.evidence,
+            alternatives=joined(", ", (choice.name for choice in view.choices)),
+            corrected=_corrected(view),
+        )
+        for view in views
+    )
+
+
+def _corrected(view: FindingView) -> str:
+    if view.accepted:
+        return say("Taken into account by model revision {accepted}.", accepted=max(view.accepted))
+    return "Not taken into account by the numbers of this certificate." if view.acceptable else ""
+
 
 STEADY = 0.05
 """°C: a temperature that moved by less is one number, as it is printed to a tenth."""

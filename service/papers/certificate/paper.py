@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from estimator.message import joined, say
-from service.kit.names import day_of
-from service.papers.certificate.fact import Fact
+from service.kit.measures import day_of
+from service.papers.certificate.facts import Fact
 from service.papers.certified import CertifiedSession
 from service.papers.records import Issue
 from service.papers.words import RECEIVED, RELATES, SAMPLING, WHOLE, draft_in_words, lacks, stated, uncertainty_in_words

@@ -3,22 +3,90 @@
 from dataclasses import dataclass
 
 from estimator.health.rule import WITH_SESSION_LEVEL
-from service.kit.coverage import coverage_in_words
-from service.kit.names import day_of, spaced
-from service.papers.certificate.causes import Cause, causes_of
-from service.papers.certificate.fact import Fact
-from service.papers.certificate.facts import facts_of, record_of, title_of
-from service.papers.certificate.pair import Pair, pair_of
+from estimator.message import say
+from service.kit.measures import coverage_in_words, day_of, spaced
+from service.papers.certificate.facts import Cause, Fact, causes_of, facts_of, record_of, title_of
 from service.papers.certificate.paper import Paper, paper_of
 from service.papers.certificate.results import ResultTable, result_tables
 from service.papers.certified import CertifiedSession
-from service.papers.records import Issue
+from service.papers.found_and_left import FoundAndLeft, Moved, moved
+from service.papers.records import Issue, Meaning, Signature
+from service.papers.words import BOUND, STATES, done_by, moment_of
 from service.sessions.decision import nominal_factor_of
-from service.sessions.words.conditions import CONDITIONS, Condition, condition_of
-from service.sessions.words.fit import FitWords, fit_in_words
-from service.sessions.words.known import combination_in_words
-from service.sessions.words.motion import motions_in_words
-from service.sessions.words.reservations import but
+from service.sessions.words.conditions import CONDITIONS, Condition, but, condition_of
+from service.sessions.words.readings import FitWords, combination_in_words, fit_in_words, motions_in_words
+
+MEASURED = "Measured by"
+"""Signed by hand: whoever measured need not have an account."""
+
+
+@dataclass(frozen=True)
+class Signed:
+    """Who signed an issue, and whose seal its file will carry."""
+
+    signatures: tuple[Signature, ...] = ()
+    sealed_by: str = ""
+    """Empty where it has none."""
+
+
+UNSIGNED = Signed()
+"""An issue that nobody has signed."""
+
+
+@dataclass(frozen=True)
+class SignatureLine:
+    """One place for a name."""
+
+    by: str
+    who: str
+    """Empty where it is left for a pen."""
+    at: str
+    states: str
+    bound: str
+
+
+def lines_of(signed: Signed) -> tuple[SignatureLine, ...]:
+    """Who measured, reviewed, approved."""
+    given = {signature.meaning: _line(signature) for signature in signed.signatures}
+    empty = (SignatureLine(done_by(meaning), "", "", "", "") for meaning in Meaning)
+    places = tuple(given.get(meaning, place) for meaning, place in zip(Meaning, empty, strict=True))
+    return (SignatureLine(MEASURED, "", "", "", ""), *places)
+
+
+def _line(signature: Signature) -> SignatureLine:
+    return SignatureLine(
+        by=done_by(signature.meaning),
+        who=f"{signature.name} ({signature.login})",
+        at=moment_of(signature.signed_at),
+        states=STATES[signature.meaning],
+        bound=say(BOUND, hash=signature.content_hash),
+    )
+
+
+@dataclass(frozen=True)
+class PairRow:
+    """One parameter as found and as left."""
+
+    found: Moved
+    left: Moved | None
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The unit before and after it was worked on, against the reference that held before."""
+
+    found: str
+    """Session and date."""
+    rows: tuple[PairRow, ...]
+
+
+def pair_of(pair: FoundAndLeft) -> Pair:
+    """What was judged of both sessions, in people's units."""
+    rows = (PairRow(moved(before), None if after is None else moved(after)) for before, after in pair.decisions)
+    return Pair(
+        say("session {id} of {started_at}", id=pair.found.id[:12], started_at=day_of(pair.found.started_at)),
+        tuple(rows),
+    )
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The certificate for programs: a PTB Digital Calibration Certificate, release 3.3.0 with D-SI 2.2.1. SI throughout."""
 
-from service.kit.xml import document
-from service.papers.certificate.signed import UNSIGNED, Signed
+from service.kit.printable import document
+from service.papers.certificate.words import UNSIGNED, Signed
 from service.papers.certified import CertifiedSession
 from service.papers.dcc.administrative import administrative
 from service.papers.dcc.elements import DCC, NAMESPACES

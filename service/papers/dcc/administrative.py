@@ -1,14 +1,23 @@
 """Who calibrated what, for whom, under which number."""
 
 from collections.abc import Iterator
+from math import degrees
 
-from service.kit.xml import Element
-from service.papers.certificate.signed import Signed
+import numpy as np
+
+from estimator.applied_vector import gravity
+from estimator.session import ACCELEROMETER, CalibrationSession
+from service.judging.words import verdict_in_words
+from service.kit.measures import day_of
+from service.kit.printable import Element
+from service.papers.certificate.words import Signed
 from service.papers.certified import CertifiedSession
-from service.papers.dcc.elements import DCC, english, plain, software
-from service.papers.dcc.statements import statements
-from service.papers.records import NOT_STATED, Issue, Meaning, Signature
-from service.papers.words import BOUND, STATES, moment_of
+from service.papers.dcc.elements import DCC, INPUT, bare_quantity, conformity, english, plain, software
+from service.papers.records import NOT_STATED, Issue, Meaning, Signature, Traceability, TraceState
+from service.papers.words import BOUND, RELATES, STATES, WHOLE, draft_in_words, lacks, moment_of, uncertainty_in_words
+from service.sessions.decision import nominal_factor_of
+from service.sessions.records import StoredSession
+from service.sessions.words.conditions import condition_of
 
 UNKNOWN_COUNTRY = "ZZ"
 """User-assigned in ISO 3166-1: nobody set the laboratory's country, or nothing was measured anywhere. PTB's rules
@@ -104,3 +113,96 @@ def _contact(element: str, name: str, address: str, country: str) -> Element:
     """The address as one text: nobody is asked for its parts."""
     codes = [DCC.countryCode(country)] if country else []
     return DCC(element, english("name", name), DCC.location(*codes, english("further", address)))
+
+
+CELSIUS, DEGREE, METRE = r"\degreecelsius", r"\degree", r"\metre"
+ELEVATIONS = {
+    "alpha": "Elevation α of the head's axis above the horizon",
+    "chi": "Elevation χ of the head's axis above the plane orthogonal to the Earth's axis",
+}
+"""How a stand was set, by the attribute that holds it."""
+
+
+def conditions(source: CalibrationSession) -> Element:
+    """Every condition that is known; of the temperature also that it was not recorded."""
+    return DCC.influenceConditions(_temperature(source), *_site(source), *_elevations(source))
+
+
+def _condition(name: str, *data: Element) -> Element:
+    return DCC.influenceCondition(english("name", name), DCC.data(*data))
+
+
+def _temperature(source: CalibrationSession) -> Element:
+    if source.temperature is None:
+        return _condition("Temperature", english("text", "not recorded"))
+    extremes = (("lowest", np.min(source.temperature)), ("highest", np.max(source.temperature)))
+    return _condition("Temperature", *(bare_quantity(name, float(value), CELSIUS) for name, value in extremes))
+
+
+def _site(source: CalibrationSession) -> Iterator[Element]:
+    site = source.site
+    if site.latitude is not None:
+        latitude = bare_quantity("latitude", degrees(site.latitude), DEGREE)
+        yield _condition("Site", latitude, bare_quantity("height", site.height, METRE))
+    if any(sensor.kind == ACCELEROMETER for sensor in source.sensors):
+        origin = "measured" if site.gravity is not None else "by the formula for latitude and height"
+        yield _condition(f"Gravity, {origin}", bare_quantity("gravity", gravity(site), INPUT[True]))
+
+
+def _elevations(source: CalibrationSession) -> Iterator[Element]:
+    for attribute, name in ELEVATIONS.items():
+        angle = None if source.stand is None else getattr(source.stand, attribute)
+        if angle is not None:
+            yield _condition(name, bare_quantity("elevation", degrees(angle), DEGREE))
+
+
+NOTHING_JUDGED = "none: nothing was there to judge it by"
+TRACEABLE = {TraceState.TRACEABLE: "true", TraceState.INTERRUPTED: "false"}
+"""Of a chain that is not on record nothing is claimed."""
+
+
+def statements(found: CertifiedSession) -> Iterator[Element]:
+    """In the order of the paper."""
+    session, decisions = found.report.session, found.report.decisions
+    draft = draft_in_words(lacks(found.laboratory, found.customer, dated=found.source.started_at is not None))
+    if session.simulated:
+        yield _statement(
+            "Simulated", "SIMULATED: not a measurement of real hardware, and not a calibration certificate."
+        )
+    if draft:
+        yield _statement("Draft", draft)
+    yield _verdict(session)
+    judged = bool(decisions) and not session.is_reference
+    rule = f"{decisions[0].rule}; guard band w = U." if judged else NOTHING_JUDGED
+    yield _statement("Decision rule", rule)
+    yield _statement("Reference session", _reference(found))
+    yield _chain("Traceability", found.traceability)
+    if found.reference is not None:
+        yield _chain("Traceability of the reference session", found.reference.traceability)
+    yield _statement("Uncertainty", uncertainty_in_words(found.report.calibration, nominal_factor_of(decisions)))
+    yield _statement("Item", RELATES)
+    yield _statement("Reproduction", WHOLE)
+    yield _statement("What the simulation gets wrong", found.diagnosis.summary)
+
+
+def _reference(found: CertifiedSession) -> str:
+    if found.reference is None:
+        return "none: this session is a reference itself, or there was none"
+    other = found.reference.session
+    return f"session {other.id} of {day_of(other.started_at)}, model revision {other.revision}"
+
+
+def _verdict(session: StoredSession) -> Element:
+    said = verdict_in_words(condition_of(session.verdict, is_reference=session.is_reference), session.reservations)
+    verdict = None if session.is_reference else session.verdict
+    told = english("declaration", f"{said}. {session.reason}")
+    return DCC.statement(english("name", "Verdict"), told, *conformity(verdict))
+
+
+def _chain(name: str, chain: Traceability) -> Element:
+    claimed = [DCC.traceable(TRACEABLE[chain.state])] if chain.state in TRACEABLE else []
+    return DCC.statement(english("name", name), *claimed, english("declaration", chain.text))
+
+
+def _statement(name: str, declaration: str) -> Element:
+    return DCC.statement(english("name", name), english("declaration", declaration))

@@ -6,7 +6,7 @@ from service.languages.language import Language
 from service.papers.fleet.paper import fleet_pdf
 from service.papers.fleet.report import fleet_report
 from service.papers.fleet.workbook import fleet_xlsx
-from service.storage.store import Store
+from service.storage.queries import Store
 
 
 def fleet_file(store: Store, form: str, now: datetime, language: Language) -> bytes:

@@ -10,25 +10,20 @@ from service.fleet.condition import FleetCondition, UnitSummary
 from service.fleet.records import NOT_JUDGED, FleetQuery, Tally
 from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
-from service.kit.measures import COVERAGE, deviation_measure, measured, number, signed
-from service.kit.names import day_of
+from service.kit.measures import COVERAGE, day_of, deviation_measure, measured, number, signed
 from service.languages.language import Language
-from service.outlook.charts import history_charts
+from service.outlook.charts import history_charts, tracks_of
 from service.outlook.populations import Placed, Population
-from service.outlook.populations_store import Populations
 from service.outlook.records import DueDate
-from service.outlook.store import Outlooks
-from service.outlook.tracks import tracks_of
+from service.outlook.store import Outlooks, Populations
 from service.papers.fleet.charts import fleet_chart
 from service.papers.fleet.report import FleetReport
-from service.papers.moved import Moved, moved
-from service.papers.pictures import picture
-from service.papers.typeset import typeset
+from service.papers.found_and_left import Moved, moved
+from service.papers.typeset import picture, typeset
 from service.sessions.decision import Decision, Verdict
 from service.sessions.records import HistoryPoint
-from service.sessions.words.conditions import REFERENCE, Condition, condition_of
-from service.sessions.words.reservations import but
-from service.storage.store import Store
+from service.sessions.words.conditions import REFERENCE, Condition, but, condition_of
+from service.storage.queries import Store
 from service.units.records import Service
 
 MOST_MOVED = 8

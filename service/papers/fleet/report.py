@@ -8,7 +8,7 @@ from service.fleet.records import Tally
 from service.fleet.store import Fleet
 from service.outlook.store import Outlooks
 from service.settings import VERSION
-from service.storage.store import Store
+from service.storage.queries import Store
 
 MOST_UNITS = 10_000
 """More than a report is read of; it bounds what one answer holds in memory."""

@@ -17,7 +17,7 @@ from service.papers.sheets import Cell, Column, Kind, Workbook
 from service.sessions.decision import Decision
 from service.sessions.records import HistoryPoint
 from service.sessions.words.conditions import condition_of, said_with
-from service.storage.store import Store
+from service.storage.queries import Store
 
 MOST_HISTORY_ROWS = 30_000
 """Rows of the sheet of histories; the newest sessions of every unit share them alike."""

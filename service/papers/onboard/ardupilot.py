@@ -3,8 +3,7 @@
 Source: ardupilot, libraries/AP_InertialSensor/AP_InertialSensor_Backend.cpp. One parameter a line, name and value.
 """
 
-from service.papers.onboard.axiswise import Names, left_of, parameters
-from service.papers.onboard.given import Given, commented, heading, number
+from service.papers.onboard.given import Given, Names, commented, heading, left_of, number, parameters
 
 NAMES = Names("INS_ACCOFFS_{}", "INS_ACCSCAL_{}", "INS_GYROFFS_{}")
 LEARNED = "INS_GYR_CAL = 0 keeps the gyro offsets; else ArduPilot measures them anew at every start."

@@ -4,8 +4,7 @@ Source: PX4-Autopilot, src/lib/sensor_calibration/Accelerometer.hpp and Gyroscop
 vehicle, component, name, value and type (9: float) between tabs.
 """
 
-from service.papers.onboard.axiswise import Names, left_of, parameters
-from service.papers.onboard.given import Given, commented, heading, number
+from service.papers.onboard.given import Given, Names, commented, heading, left_of, number, parameters
 
 NAMES = Names("CAL_ACC0_{}OFF", "CAL_ACC0_{}SCALE", "CAL_GYRO0_{}OFF")
 FLOAT = 9

@@ -4,7 +4,7 @@ from estimator.nominal_vector import nominal_vector
 from service.errors import ConflictError
 from service.papers.correction import corrected
 from service.papers.onboard.given import Given
-from service.sessions.noise_store import Noises
+from service.sessions.calibrations_store import Noises
 from service.sessions.words.conditions import condition_of
 from service.settings import VERSION
 from service.storage import Storage

@@ -5,7 +5,7 @@ from lxml import etree
 from signxml.algorithms import DigestAlgorithm, SignatureConstructionMethod, SignatureMethod
 from signxml.xades.xades import XAdESDataObjectFormat, XAdESSigner
 
-from service.kit.xml import sealed_document
+from service.kit.printable import sealed_document
 from service.papers.seal.keys import KeyPair
 
 WHAT = "Digital Calibration Certificate"

@@ -6,8 +6,8 @@ from service.flags.records import Matter
 from service.flags.store import Flags
 from service.kit.guard import Alone, plainly
 from service.outlook.store import Outlooks
-from service.records.flagging.overdue import no_longer_overdue, overdue_by
-from service.records.flagging.settle import Occasion, raise_flag
+from service.records.flagging.fold import Occasion, raise_flag
+from service.records.flagging.lasting import no_longer_overdue, overdue_by
 from service.storage import Storage
 from service.units.store import Units
 
@@ -19,10 +19,10 @@ def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> Non
         opened = [flag.unit for flag in Flags(store).open_about(Matter.OVERDUE)]
     for serial in sorted({*late, *opened}):
         with alone("due dates", serial):
-            _settle(storage, serial, now)
+            _settle_overdue(storage, serial, now)
 
 
-def _settle(storage: Storage, serial: str, now: datetime) -> None:
+def _settle_overdue(storage: Storage, serial: str, now: datetime) -> None:
     with storage.database.writing() as store:
         occasion = Occasion(Units(store).hold(serial), None, now)
         outlook = Outlooks(store).of_unit(serial)

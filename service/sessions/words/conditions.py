@@ -1,10 +1,16 @@
 """A verdict in words, colour and shape: the same three everywhere."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from estimator.message import say
+from estimator.message import joined, say, say_count
+from estimator.results import Calibration
+from estimator.session import ACCELEROMETER
+from service.kit.measures import day_of, number
 from service.sessions.decision import Verdict
-from service.sessions.doubt import Reservations
+from service.sessions.doubt import DoubtKind as Doubt
+from service.sessions.doubt import Reservation, Reservations
+from service.sessions.states import RecordState, StateChange
 
 
 @dataclass(frozen=True)
@@ -93,4 +99,112 @@ def said_with(condition: Condition, reservations: Reservations) -> Condition:
         condition,
         word=say("{word}, {with_reservation}", word=condition.word, with_reservation=WITH_RESERVATION),
         reserved=True,
+    )
+
+
+STATES = {
+    RecordState.ACCEPTED: "Accepted",
+    RecordState.QUESTIONED: "Questioned",
+    RecordState.WITHDRAWN: "Withdrawn",
+    RecordState.SUPERSEDED: "Superseded",
+}
+MEANINGS = {
+    RecordState.ACCEPTED: "",
+    RecordState.QUESTIONED: "It is stored and drawn, and is no reference and no verdict until an engineer accepts it.",
+    RecordState.WITHDRAWN: "It stays readable, and nothing that is known of the unit rests on it.",
+    RecordState.SUPERSEDED: "Another session stands for it.",
+}
+
+
+def state_in_words(change: StateChange) -> str:
+    """``Withdrawn on 21 Nov 2026 by K. Ito: wrong unit``."""
+    return say(
+        "{states} on {at} by {who}: {why}",
+        states=STATES[change.state],
+        at=day_of(change.at),
+        who=change.who,
+        why=change.why,
+    )
+
+
+LOOKING = "causes are still being looked for"
+STILL_LOOKING = say("; {looking}", looking=LOOKING)
+MOST_TOLD = 2
+"""Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""
+
+
+def but(reservations: Reservations) -> str:
+    """What follows a verdict's word: nothing where it is plain."""
+    if reservations is None:
+        return STILL_LOOKING
+    if not reservations:
+        return ""
+    return say(", {but}", but=but_alone(reservations))
+
+
+def but_alone(reservations: Reservations) -> str:
+    """The same where no word stands before it."""
+    if reservations is None:
+        return LOOKING
+    told, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
+    rest = say("; and {more} more", more=more) if more > 0 else ""
+    return say(
+        "but {text}{rest}: {told}",
+        text=joined("; and ", (one.text for one in told)),
+        rest=rest,
+        told=joined(" and ", _advice(told)),
+    )
+
+
+def _advice(told: Sequence[Reservation]) -> tuple[str, ...]:
+    """What to do, once, and not what other advice says already; a wrong file is put right before anything else."""
+    if any(one.kind is Doubt.RECORD for one in told):
+        told = [one for one in told if one.kind is Doubt.RECORD]
+    advice = tuple(dict.fromkeys(one.advice for one in told))
+    return tuple(one for one in advice if not any(one in other for other in advice if other != one))
+
+
+def what_to_add(calibration: Calibration) -> str:
+    """The rows that would tell what a session leaves open."""
+    flipped, add = calibration.residuals.flipped, calibration.fit.add
+    if flipped is not None and len(set(flipped)) == 1:
+        return "measure the same positions in the other run too"
+    if not add:
+        return "more or other positions would tell it"
+    up = joined(", ", (f"({', '.join(number(x, 2) for x in direction)})" for direction in add))
+    return say_count(
+        "add {n} still orientation with up, in block axes, along {up}",
+        "add {n} still orientations with up, in block axes, along {up}",
+        len(add),
+        up=up,
+    )
+
+
+def too_few(calibration: Calibration) -> str:
+    """That the session gives no uncertainty, and what to add; empty where it gives one."""
+    add = calibration.fit.positions_to_add
+    if not add:
+        return ""
+    return say(
+        "Too few positions to give an uncertainty: add {add}, or state the standard errors of "
+        "the readings. The parameters take all that the readings tell, and nothing is left to "
+        "estimate the noise by.",
+        add=add,
+    )
+
+
+def left_open(calibration: Calibration) -> str:
+    """What a calibration does not show of its accelerometers, and what to add; empty where it shows all it must."""
+    needed = ("scale", "bias", "axis")
+    felt = [s for s in calibration.sensors if s.kind == ACCELEROMETER and set(needed) <= set(s.observable)]
+    blind = [s.name for s in felt if not all(s.observable[name] for name in needed)]
+    if not blind or calibration.parity is not None:
+        return ""
+    missing = [name for name in needed if any(not s.observable[name] for s in felt)]
+    who = "every accelerometer" if len(blind) == len(felt) else joined(", ", blind)
+    return say(
+        "It does not show {missing} of {who}: {calibration}.",
+        missing=joined(", ", missing),
+        who=who,
+        calibration=what_to_add(calibration),
     )

@@ -8,15 +8,21 @@ is written last.
     manifest.json       this
 """
 
+import json
 import zipfile
 import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import IO, Annotated, Literal
+from typing import IO, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+from sqlalchemy import Connection, delete, func, inspect, select, update
 
 from service.errors import ServiceError
+from service.people.tables import AttemptRow, SignInLinkRow, SignInRow, TokenRow
+from service.storage.folders import is_name
 
 MANIFEST = "manifest.json"
 HASH = "^[0-9a-f]{64}$"
@@ -107,3 +113,58 @@ def write_manifest(archive: zipfile.ZipFile, manifest: Manifest) -> None:
 def member_to_write(archive: zipfile.ZipFile, name: str) -> IO[bytes]:
     """A member whose size is not known yet."""
     return archive.open(name, "w", force_zip64=True)
+
+
+HASHES = "sha256"
+"""The column, in any table, of the hash that a stored file is named by; empty where there is none."""
+SENT = "sent"
+"""The column of a file that waits, with its ``place``."""
+
+
+def faulty_names(archive: zipfile.ZipFile, table: TableContents) -> Iterator[str]:
+    """Every row of a table with a name that no stored file has; the table itself was found whole."""
+    columns = [at for at, name in enumerate(table.columns) if name in (HASHES, SENT)]
+    if not columns:
+        return
+    with archive.open(table.member) as lines:
+        for number, line in enumerate(lines, start=1):
+            values = json.loads(line)
+            for at in columns:
+                name = _name(table.columns[at], values[at])
+                if name and not is_name(name):
+                    yield f"table {table.name}, row {number}: {str(name)[:100]!r} is not the name of a stored file"
+
+
+def _name(column: str, value: Any) -> Any:
+    """Nothing where the row names no file."""
+    if column == HASHES or value is None:
+        return value
+    sent = json.loads(value)
+    return None if sent is None else sent.get("place")
+
+
+@dataclass(frozen=True)
+class Doors:
+    """What was closed, and what stands open."""
+
+    browsers: int = 0
+    """That were signed in, and must sign in again."""
+    tokens: int = 0
+    """That held when the backup was made and hold by their dates."""
+    revoked: bool = False
+    """Whether those were revoked."""
+
+
+def close_doors(connection: Connection, now: datetime, *, revoke: bool) -> Doors:
+    """Ends browsers and links, and revokes tokens where that is wanted, within the transaction that restores."""
+    known = set(inspect(connection).get_table_names())
+    if not {"tokens", "sign_ins", "sign_in_links"} <= known:
+        return Doors()
+    browsers = connection.scalar(select(func.count()).select_from(SignInRow).where(SignInRow.expires_at > now)) or 0
+    for row in (SignInRow, SignInLinkRow, *((AttemptRow,) if "attempts" in known else ())):
+        connection.execute(delete(row))
+    held = TokenRow.revoked_at.is_(None), TokenRow.expires_at > now
+    tokens = connection.scalar(select(func.count()).select_from(TokenRow).where(*held)) or 0
+    if revoke:
+        connection.execute(update(TokenRow).where(*held).values(revoked_at=now))
+    return Doors(browsers, tokens, revoke)

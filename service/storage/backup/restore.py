@@ -5,22 +5,31 @@ until all are there. Whatever interrupts it leaves a database without a schema, 
 import os
 import shutil
 import zipfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from hashlib import sha256
 from pathlib import Path
 
 from sqlalchemy import Connection, inspect
 from sqlalchemy.exc import DataError, IntegrityError
 
-from service.errors import ConflictError, ServiceError
-from service.storage.backup.doors import Doors, close_doors
-from service.storage.backup.manifest import Manifest, file_member, opened
+from service.errors import ConflictError, DamagedError, ServiceError
+from service.storage.backup.manifest import (
+    UNREADABLE,
+    Doors,
+    Manifest,
+    TableContents,
+    close_doors,
+    faulty_names,
+    file_member,
+    opened,
+    read_manifest,
+)
 from service.storage.backup.rows import continue_numbers, put_lines, tables_of
-from service.storage.backup.verify import verified
 from service.storage.faults import disk_faults
 from service.storage.files import Files
-from service.storage.folders import make_folder, sync_folder
-from service.storage.parts import written_whole
+from service.storage.folders import make_folder, sync_folder, written_whole
 from service.storage.schema import alone, is_known, raise_to
 
 STAGING = ".restoring"
@@ -91,3 +100,53 @@ def _put_rows(archive: zipfile.ZipFile, manifest: Manifest, connection: Connecti
         except (DataError, IntegrityError) as fault:
             raise ServiceError(f"Table {contents.name} cannot be put into this database: {fault.orig}") from fault
         continue_numbers(connection, table)
+
+
+def verified(file: Path) -> Manifest:
+    """What a backup holds; DamagedError with every part that is not as it was written."""
+    with opened(file) as archive:
+        manifest = read_manifest(archive)
+        faults = list(_faults(archive, manifest))
+    if faults:
+        raise DamagedError(f"{file} is damaged: {'; '.join(faults)}.")
+    return manifest
+
+
+def _faults(archive: zipfile.ZipFile, manifest: Manifest) -> Iterator[str]:
+    """Whatever is not as the manifest says."""
+    yield from (f"{name} does not belong to it" for name in sorted(set(archive.namelist()) - manifest.members))
+    for table in manifest.tables:
+        if not _is_table(archive, table):
+            yield f"table {table.name} was changed or is missing"
+        else:
+            yield from faulty_names(archive, table)
+    for digest in manifest.files:
+        if not _is_file(archive, digest):
+            yield f"file {digest} was changed or is missing"
+
+
+PIECE = 1024 * 1024
+"""Bytes of a file that are held at a time."""
+
+
+def _is_table(archive: zipfile.ZipFile, table: TableContents) -> bool:
+    hashed, rows = sha256(), 0
+    try:
+        with archive.open(table.member) as lines:
+            for line in lines:
+                hashed.update(line)
+                rows += 1
+    except UNREADABLE:
+        return False
+    return (hashed.hexdigest(), rows) == (table.sha256, table.rows)
+
+
+def _is_file(archive: zipfile.ZipFile, digest: str) -> bool:
+    try:
+        with archive.open(file_member(digest)) as member:
+            hashed = sha256()
+            while piece := member.read(PIECE):
+                hashed.update(piece)
+            return hashed.hexdigest() == digest
+    except UNREADABLE:
+        return False

@@ -19,8 +19,7 @@ from service.storage.backup.rows import lines_of, tables_of
 from service.storage.engine import open_engine
 from service.storage.faults import database_faults
 from service.storage.files import LOST, Files
-from service.storage.folders import sync_folder
-from service.storage.parts import sweep, written_whole
+from service.storage.folders import sweep, sync_folder, written_whole
 from service.storage.schema import stored_revision
 from service.storage.waiting import whole_file
 from service.storage.waits import PATIENT

@@ -9,7 +9,7 @@ from estimator.errors import Problem
 from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
-from service.ingest.layout.decoding import ENCODINGS
+from service.ingest.layout.grids import ENCODINGS
 from service.ingest.session_keys import COLUMN_HINTS
 from service.kit.measures import number
 from service.uploads.layout.form import Carried, LayoutForm, moment

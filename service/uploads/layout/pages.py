@@ -9,7 +9,7 @@ from estimator.errors import Problem
 from service.errors import RefusedError
 from service.ingest.layout.mapping import ASKED_ANEW
 from service.kit.arriving_files import held
-from service.people.forms import SEE_OTHER
+from service.people.dependencies import SEE_OTHER
 from service.planning.pattern import type_names
 from service.records.dependencies import ReceptionOf
 from service.storage import Storage

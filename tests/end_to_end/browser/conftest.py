@@ -18,8 +18,8 @@ from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.patience import LONG
 from tests.service.diagnosed import swaying_stand
+from tests.service.made_sessions import session_bytes
 from tests.service.recordings import recording_document
-from tests.service.sessions import session_bytes
 from tests.service.turntable import alignment_bytes
 from tests.serving import serving
 from tests.stock import stores

@@ -15,8 +15,8 @@ from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.end_to_end.browser.conftest import opened
-from tests.service.flows.test_questioned import exchanged, slipped, times
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
+from tests.service.uploads.test_questioned import exchanged, slipped, times
 from tests.serving import serving
 from tests.stock import stores
 

@@ -16,9 +16,9 @@ from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.kit.printable import printable_data
 from service.papers.certificate import drawn_certificate
-from service.papers.certificate.content import statement_of
 from service.papers.certified import certified_session
 from service.papers.changes import issue_certificate
+from service.papers.desk import statement_of
 from service.papers.records import Laboratory
 from service.papers.typeset import TEMPLATES
 from service.records.diagnose import diagnose

@@ -19,8 +19,8 @@ from service.kit.person import Role
 from service.settings import Settings
 from tests.conftest import SettingsHolding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - a hook
-from tests.service.identity.staff import NOW, staffed
-from tests.service.sessions import FAILED, session_bytes, session_id
+from tests.service.made_sessions import FAILED, session_bytes, session_id
+from tests.service.people.staff import NOW, staffed
 from tests.serving import running, serving
 from tests.stock import stores
 

@@ -13,7 +13,7 @@ from service.ingest import is_own_layout, look_at, read_upload
 from service.ingest.digest import content_digest
 from service.ingest.layout.envelope import is_wrapped, unwrapped, wrapped
 from service.ingest.layout.understand import Seen, understood
-from service.ingest.layout.units import conversion, plain_label
+from service.ingest.layout.vocabulary import conversion, plain_label
 from tests.service import tables
 
 TEXTS = {

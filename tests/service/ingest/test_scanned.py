@@ -2,8 +2,8 @@
 
 import pytest
 
-from service.ingest import scanned
-from service.ingest.scanned import Teller
+from service.ingest import apart as scanned
+from service.ingest.apart import Teller
 
 
 @pytest.fixture

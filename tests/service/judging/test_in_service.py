@@ -18,8 +18,8 @@ from tests.builders import gyro_block
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.estimator.parity.test_gyros import gyros
 from tests.estimator.parity.test_gyros import recording as gyro_recording
+from tests.service.made_sessions import session_bytes
 from tests.service.recordings import recording_bytes, recording_document
-from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 

@@ -9,7 +9,7 @@ from service.storage import Storage
 from service.units.records import NewService
 from service.units.store import Units
 from service.uploads.receive import upload
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 APRIL, JUNE, AUGUST = (datetime(2026, month, 1, 9, tzinfo=UTC) for month in (4, 6, 8))

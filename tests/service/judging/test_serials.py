@@ -3,7 +3,7 @@
 import pytest
 
 from service.demo.cast import CAST
-from service.judging.serials import folded, is_one_keystroke, is_slip
+from service.judging.origin import folded, is_one_keystroke, is_slip
 
 FLEET = [f"BA-{k}" for k in range(101, 131)]
 

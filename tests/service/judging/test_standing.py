@@ -8,7 +8,7 @@ from estimator.reading import read_session
 from estimator.session import CalibrationSession
 from service.diagnosis.words.causes import UNKNOWN_CAUSE
 from service.ingest.checked import as_checked
-from service.judging.standing import MOST_ALTERNATIVES, Basis, verdicts_under_alternatives
+from service.judging.reservations import MOST_ALTERNATIVES, Basis, verdicts_under_alternatives
 from service.sessions.decision import Verdict
 from service.types.rules import type_of
 from tests.service.diagnosed import ALIASES, drawn

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from estimator.results import Residuals
-from service.judging.temperatures import Covered, covered_by, worth_of
+from service.judging.reservations import Covered, covered_by, worth_of
 from service.outlook.store import ChangeRow, ReferenceRow
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession

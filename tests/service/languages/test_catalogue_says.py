@@ -6,7 +6,7 @@ import pytest
 
 from estimator.message import joined, say
 from estimator.wording import counted
-from service.kit.names import day_of
+from service.kit.measures import day_of
 from service.languages.catalogue import catalogue_of
 from service.languages.language import Language
 

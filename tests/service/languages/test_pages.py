@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 import pytest
 from lxml import html
 
-from service.pages import PARTS
+from service.all_pages import PARTS
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
-from tests.service.sessions import session_bytes, session_id
+from tests.service.made_sessions import session_bytes, session_id
 
 RU = {"Accept-Language": "ru"}
 HEADERS = {"Accept": "text/html"} | RU

@@ -11,7 +11,7 @@ from service.languages.documents import document_in
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.languages.test_pages import RU, SESSION, UPLOADS, english_in
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 
 @pytest.fixture

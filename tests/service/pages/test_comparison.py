@@ -17,9 +17,9 @@ from service.uploads.receive import upload
 from tests.builders import accelerometer_block, true_sensors
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.made_records import NOW
+from tests.service.made_sessions import FAILED, MICRO_G, session_bytes, session_id
 from tests.service.pages.records import NOON, session_report
-from tests.service.records import NOW
-from tests.service.sessions import FAILED, MICRO_G, session_bytes, session_id
 
 FIRST, SECOND = (session_id(content) for content in FAILED)
 

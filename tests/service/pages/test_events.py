@@ -5,7 +5,7 @@ import pytest
 
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 HTML = {"Accept": "text/html"}
 FORMS = {

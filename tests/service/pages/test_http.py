@@ -15,7 +15,7 @@ from service.app import create_app
 from service.settings import Settings
 from service.web.assets import asset_url
 from tests.databases import one_engine
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.serving import http_client, limited_client, running
 
 HTML = {"Accept": "text/html"}

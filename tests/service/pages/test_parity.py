@@ -10,8 +10,8 @@ import pytest
 from tests.blind.flight import Setting, draw_block, fly, tumble
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.made_sessions import session_bytes, session_id
 from tests.service.recordings import recording_bytes, recording_document
-from tests.service.sessions import session_bytes, session_id
 
 
 def page_of(holding: Holding, recording: bytes) -> str:

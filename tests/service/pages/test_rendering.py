@@ -7,7 +7,7 @@ from fastapi import Request
 from estimator.errors import Problem
 from service.pages.session.pages import session_page
 from service.settings import Settings
-from service.uploads.upload_pages import Outcome, upload_page
+from service.uploads.pages import Outcome, upload_page
 from service.web.render import TEMPLATES, embed, render
 from tests.service.pages.records import session_report
 
@@ -37,7 +37,7 @@ def test_problems_name_field_row_and_what_to_do() -> None:
 
 
 def test_templates_hold_no_inline_style_and_no_inline_script() -> None:
-    templates = list(TEMPLATES.glob("*.html"))
+    templates = [template for folder in TEMPLATES for template in folder.glob("*.html")]
     assert templates
     for template in templates:
         text = template.read_text()

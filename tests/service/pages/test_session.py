@@ -7,8 +7,7 @@ import pytest
 
 from estimator.results import KnownCombination
 from service.pages.session.pages import session_page
-from service.sessions.words.fit import fit_in_words
-from service.sessions.words.known import combination_in_words
+from service.sessions.words.readings import combination_in_words, fit_in_words
 from tests.builders import Document, accelerometer_block, gyro_block
 from tests.service.pages.records import session_report
 

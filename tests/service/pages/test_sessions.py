@@ -14,8 +14,8 @@ from service.people.views import ListPage
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession
 from tests.databases import one_engine
+from tests.service.made_sessions import FAILED, session_id
 from tests.service.pages.records import session_report
-from tests.service.sessions import FAILED, session_id
 
 ASKED = SessionsAsked(
     q="BA",

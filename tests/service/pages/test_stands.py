@@ -5,12 +5,10 @@ from datetime import date
 
 import httpx
 
-from service.pages.stand.pages import stand_page, stands_page
-from service.pages.stand.report import StandLine, StandReport
-from service.stands.paper_records import StandCertificate
-from service.stands.records import StandCondition, StandEvidence, StandSeating, StandUse
+from service.pages.stand.pages import StandLine, StandReport, stand_page, stands_page
+from service.stands.records import StandCertificate, StandCondition, StandEvidence, StandSeating, StandUse
 from tests.service.pages.records import NOON
-from tests.service.reports.laboratory import STAND
+from tests.service.papers.laboratory import STAND
 
 ARCSEC = 4.84813681e-6
 CERTIFICATE = StandCertificate("S2", "D-K-117", "PTB", date(2025, 12, 10), date(2026, 12, 10))

@@ -5,7 +5,7 @@ import pytest
 from lxml import html
 
 from tests.conftest import Holding
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 TYPE = "/unit-types/accelerometer × 6, V"
 SAID = {"by": "M. Okafor", "why": "the customer asks for more", "seen": "1"}

@@ -6,8 +6,8 @@ from lxml import html
 
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.made_sessions import session_bytes
 from tests.service.recordings import recording_bytes
-from tests.service.sessions import session_bytes
 
 TYPE = "/unit-types/accelerometer × 6, V"
 MOVED = tuple(

@@ -6,15 +6,14 @@ from dataclasses import replace
 import httpx
 import pytest
 
-from service.pages.type.pages import type_page, types_page
-from service.pages.type.report import TypeLine, TypeReport
+from service.pages.type.pages import TypeLine, TypeReport, type_page, types_page
 from service.sessions.decision import Verdict
 from service.types.records import ToleranceRevision, Tolerances, TypeUse, UnitType
 from tests.builders import mixed_block
 from tests.conftest import Holding
 from tests.databases import one_engine
+from tests.service.made_sessions import session_bytes
 from tests.service.pages.records import NOON
-from tests.service.sessions import session_bytes
 
 TOLERANCES = {"scale": 5e-5, "bias": 4e-4, "quadratic": None, "axis": 1e-4}
 G = 9.80665

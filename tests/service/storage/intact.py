@@ -9,7 +9,7 @@ from service.fleet.tables import ConditionRow
 from service.opening import open_database
 from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 from service.settings import Settings
-from service.storage.audit_table import AuditRow
+from service.storage.audit import AuditRow
 from tests.service.storage.whole import files
 
 SENSORS = 4

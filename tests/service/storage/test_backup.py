@@ -25,9 +25,9 @@ from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY, Role
 from service.opening import open_database
 from service.people.changes import make_link, sign_in
-from service.records.keep_noise import keep_noise
+from service.records.keep import keep_noise
 from service.records.reception import Reception
-from service.sessions.noise_store import Noises
+from service.sessions.calibrations_store import Noises
 from service.settings import Settings
 from service.storage import Files, Storage
 from service.storage.backup import restore, verified, write_backup
@@ -37,8 +37,8 @@ from service.uploads.take_in import ask_upload, take_in
 from tests.builders import raw_log
 from tests.conftest import SettingsFilled
 from tests.databases import ENGINES, Databases, one_engine
-from tests.service.identity.staff import PASSWORD, staffed
-from tests.service.sessions import FAILED, session_bytes
+from tests.service.made_sessions import FAILED, session_bytes
+from tests.service.people.staff import PASSWORD, staffed
 from tests.service.storage.whole import files, rows
 from tests.serving import http_client
 from tests.stock import stores

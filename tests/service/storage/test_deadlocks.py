@@ -10,7 +10,7 @@ import pytest
 
 from service.settings import Settings
 from tests.patience import until
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.serving import TLS, serving
 
 UNITS, CLIENTS, EACH = ("BA-101", "BA-202", "BA-303"), 8, 14

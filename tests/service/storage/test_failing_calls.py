@@ -19,7 +19,7 @@ from sqlalchemy.exc import OperationalError
 from service.errors import AwayError
 from service.settings import Settings
 from service.storage import Files, Storage
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.service.storage.intact import SENSORS, faults
 from tests.service.storage.sending import Way, as_bytes, landed
 

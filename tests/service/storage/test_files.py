@@ -11,7 +11,7 @@ import pytest
 from service.errors import AwayError, DamagedError, NoSpaceError, NotFoundError
 from service.storage.faults import disk_faults
 from service.storage.files import Files
-from service.storage.parts import YOUNG
+from service.storage.folders import YOUNG
 
 
 def half_written(files: Files, *, age: float) -> Path:

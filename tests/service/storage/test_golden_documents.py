@@ -12,13 +12,13 @@ from estimator.codec import Document
 from estimator.groups import SessionStatistics
 from estimator.parity import ParityResult
 from estimator.results import Calibration
-from service.diagnosis.document import read_diagnosis
-from service.groups.document import read_group
-from service.models.evidence_document import evidence_from_dict, evidence_to_dict
-from service.outlook.document import outlook_from_dicts, outlook_to_dicts
-from service.sessions.reservation_document import reservations_from_list, reservations_to_list
+from service.diagnosis.store import read_diagnosis
+from service.groups.store import read_group
+from service.models.store import evidence_from_dict, evidence_to_dict
+from service.outlook.store import outlook_from_dicts, outlook_to_dicts
+from service.sessions.doubt import reservations_from_list, reservations_to_list
 from service.stands.records import StandCondition
-from service.storage.documents import STORED
+from service.storage.json_text import STORED
 
 GOLDEN = Path(__file__).parents[2] / "golden" / "documents"
 """Written by the version before the codec; *older* ones lack what still earlier versions did not write."""

@@ -6,7 +6,7 @@ import httpx
 
 from service.settings import Settings
 from tests.databases import one_engine
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.serving import TLS, serving
 
 CLIENTS, EACH = 32, 2

@@ -12,9 +12,8 @@ from sqlalchemy.exc import DatabaseError
 from service.errors import AwayError
 from service.flags.records import Delivery
 from service.flags.webhooks_store import Webhooks
-from service.jobs.failures_store import Failures
 from service.jobs.records import Job, JobKind, NewJob
-from service.jobs.store import Jobs
+from service.jobs.store import Failures, Jobs
 from service.models.records import Scope
 from service.models.store import Models, Recomputations
 from service.opening import open_database
@@ -27,8 +26,8 @@ from service.storage.schema import downgrade, head_revision, stored_revision, up
 from service.storage.tables import Base
 from service.uploads.receive import upload
 from tests.databases import Databases
-from tests.service.background.test_given_up import accepted
-from tests.service.sessions import FAILED, session_bytes
+from tests.service.made_sessions import FAILED, session_bytes
+from tests.service.work.test_given_up import accepted
 
 
 def test_the_migrated_schema_is_the_one_of_the_tables(store_url: str) -> None:

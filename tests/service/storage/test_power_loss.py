@@ -16,7 +16,7 @@ from service.settings import Settings
 from service.storage import Files, Storage
 from service.storage.schema import upgrade
 from service.storage.waiting import FOLDER as WAITING
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.service.storage.disk import TRACED, Call, Disk, calls, moments
 from tests.service.storage.intact import SENSORS, faults
 from tests.service.storage.sending import WAYS, go_on

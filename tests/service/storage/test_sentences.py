@@ -9,7 +9,7 @@ from estimator.message import Message, say, say_count
 from service.languages.catalogue import catalogue_of
 from service.languages.language import Language
 from service.storage.columns import Sentence, is_made_of
-from service.storage.documents import STORED
+from service.storage.json_text import STORED
 
 KEPT = Table("kept", MetaData(), Column("id", Integer, primary_key=True), Column("said", Sentence))
 GONE = "The units measured on {stand} no longer show that it has shifted."

@@ -14,7 +14,7 @@ from service.storage.schema import downgrade, upgrade
 from service.uploads.receive import upload
 from service.uploads.records import ArrivalQuery
 from service.uploads.store import Arrivals
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, tzinfo=UTC)
 LONG = 3 * 1024**3

@@ -6,7 +6,7 @@ from time import sleep
 import pytest
 
 from service.errors import AwayError
-from service.storage.turns import Turns
+from service.storage.waits import Turns
 
 
 def waiting(turns: Turns, name: int, seen: list[int]) -> Thread:

@@ -14,7 +14,7 @@ from service.settings import Settings
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, upgrade
 from tests.conftest import SettingsHolding
-from tests.service.sessions import FAILED, session_bytes
+from tests.service.made_sessions import FAILED, session_bytes
 from tests.serving import http_client
 
 PAGE = Path(__file__).parents[3] / "docs" / "how-to" / "dashboards.md"

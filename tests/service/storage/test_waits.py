@@ -21,7 +21,7 @@ from service.storage.schema import alone
 from service.storage.waits import Waits
 from tests.databases import Databases, PostgresDatabases
 from tests.patience import LONG
-from tests.service.sessions import session_bytes
+from tests.service.made_sessions import session_bytes
 from tests.serving import http_client
 
 SHORT = Waits(lock=0.3, statement=0.5, connect=2.0)

@@ -1,0 +1,56 @@
+"""Pages for people: a frozen context each, made of records by pure functions, and a template.
+
+`mount` joins them to the service. Pages ask the flows; they know nothing of the store's tables.
+"""
+
+from functools import cache
+
+from fastapi import APIRouter, FastAPI
+from starlette.middleware.gzip import GZipMiddleware
+
+from service.diagnosis import pages as diagnoses
+from service.flags import pages as flags
+from service.models import pages as models
+from service.pages import help, routes, saved
+from service.pages.session import list_pages as sessions
+from service.pages.stand import pages as stands
+from service.pages.type import pages as types
+from service.pages.unit import remarks
+from service.papers import pages as papers
+from service.people import account_pages, admin_pages, oidc_pages
+from service.people.admission import ADMITTED
+from service.planning import pages as plan_pages
+from service.planning import readiness_pages as before_pages
+from service.records import pages as records
+from service.uploads import arrivals_pages
+from service.uploads.layout import pages as layouts
+from service.web import assets
+from service.web.headers import SecurityHeaders
+from service.web.in_language import InOneLanguage
+from service.web.problem_pages import ProblemPages, unexpected_pages
+from service.work import pages as work
+
+PARTS = (
+    routes, account_pages, admin_pages, papers, diagnoses, flags, saved, layouts, models, records, remarks, oidc_pages,
+    before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work, assets,
+)  # fmt: skip
+"""Every file of addresses."""
+
+
+def mount(app: FastAPI) -> None:
+    """Adds the pages, their static files, error pages, compression and the security headers of every answer."""
+    app.router.routes.extend(_every().routes)
+    unexpected_pages(app)
+    app.add_middleware(ProblemPages)
+    app.add_middleware(InOneLanguage)
+    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=6)
+    app.add_middleware(SecurityHeaders)
+
+
+@cache
+def _every() -> APIRouter:
+    """The addresses of all pages, built once for all applications."""
+    every = APIRouter(dependencies=ADMITTED)
+    for part in PARTS:
+        every.include_router(part.router)
+    return every

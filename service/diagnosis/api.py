@@ -1,0 +1,45 @@
+"""Diagnoses: what the simulation gets wrong about a session, and the acceptance of a named cause."""
+
+import json
+from typing import Any
+
+from fastapi import APIRouter, Response
+from fastapi.responses import JSONResponse
+
+from estimator.message import with_messages
+from service.errors import NotFoundError
+from service.models.api import DiagnosisDocument, ModelDocument, NewModelSchema, PendingDiagnosis, model_document
+from service.models.records import NewModel
+from service.people.dependencies import StorageOf
+from service.records.models import accept_model
+from service.web.dependencies import Now
+from service.web.fields import SessionId
+from service.web.problem_document import errors
+from service.work.dependencies import ReaderOf
+
+router = APIRouter(prefix="/sessions", tags=["diagnosis"])
+RETRY_AFTER = "2"
+"""Seconds: what the diagnosis of a larger session takes."""
+PENDING: dict[int | str, dict[str, Any]] = {
+    202: {"model": PendingDiagnosis, "description": "Still being made; ask again after Retry-After seconds."}
+}
+"""How OpenAPI describes the answer while a diagnosis is being made."""
+
+
+@router.get("/{id}/diagnosis", responses={**PENDING, **errors(404, 422)}, response_model=DiagnosisDocument)
+def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocument:
+    """What the simulation gets wrong about the session, imu-diagnosis/1; waits some seconds for one being made."""
+    found = reader.read(id)
+    if found is None:
+        return JSONResponse({"session": id, "status": "pending"}, 202, {"Retry-After": RETRY_AFTER})
+    if found.document is None:
+        raise NotFoundError(found.summary)
+    made = {name: value for name, value in vars(found).items() if name in DiagnosisDocument.model_fields}
+    return DiagnosisDocument(**with_messages(json.loads(found.document)), **made)
+
+
+@router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 409, 422))
+def accept_cause(id: SessionId, new: NewModelSchema, storage: StorageOf, reader: ReaderOf, now: Now) -> ModelDocument:
+    """Accept a named cause: from the next session on it is part of the model of the unit, unit type or stand."""
+    accepted = accept_model(storage, reader.made(id), NewModel(**new.model_dump()), now)
+    return model_document(accepted)

@@ -1,0 +1,229 @@
+"""The pages of flags and their forms."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Form, Query, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+from pydantic import Field
+
+from estimator.message import say, uncapitalised
+from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, bring_flags, resolve_flag
+from service.flags.records import Flag, FlagState, Matter, Notice, NoticeKind
+from service.flags.store import Flags
+from service.flags.view import ME, ORDERS, PAGE_SIZE, FlagsAsked, FlagsView, active_names, assignee_meant, choices_of
+from service.flags.view import STATES as CHOICES
+from service.groups.words import place_in_words
+from service.models.records import Scope
+from service.pages.saved import Saved, saved
+from service.people.admission import PersonOf
+from service.people.dependencies import SEE_OTHER, By, Number, Perhaps, StorageOf, Why
+from service.people.view_store import SavedViews
+from service.people.views import ListPage
+from service.sessions.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
+from service.web.dependencies import Now, Reading
+from service.web.fields import NO_NUL
+from service.web.render import render
+
+MATTERS = {
+    Matter.TOLERANCE: "Out of tolerance",
+    Matter.CAUSE: "Cause found",
+    Matter.UNEXPLAINED: "Unexplained",
+    Matter.STAND: "Stand at fault",
+    Matter.SHIFTED: "Stand has shifted",
+    Matter.JUMP: "Has jumped",
+    Matter.DRIFT: "Drifting",
+    Matter.LASTING: "Sessions together",
+    Matter.OVERDUE: "Calibration overdue",
+}
+HOMES = {Scope.UNIT: "units", Scope.UNIT_TYPE: "unit-types", Scope.STAND: "stands"}
+STATES = {FlagState.RAISED: "open", FlagState.ACKNOWLEDGED: "acknowledged", FlagState.RESOLVED: "resolved"}
+DONE = {
+    NoticeKind.RAISED: "raised",
+    NoticeKind.SEEN: "seen again",
+    NoticeKind.CLEAR: "no longer seen",
+    NoticeKind.ACKNOWLEDGED: "acknowledged",
+    NoticeKind.ASSIGNED: "assigned",
+    NoticeKind.RESOLVED: "resolved",
+    NoticeKind.VERDICT: "verdict changed",
+}
+TONES: dict[FlagState, Condition] = {
+    FlagState.RAISED: UNFIT, FlagState.ACKNOWLEDGED: UNDECIDED, FlagState.RESOLVED: FIT,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FlagCard:
+    """One flag."""
+
+    flag: Flag
+    heading: str
+    """``A3 out of tolerance``."""
+    state: str
+    tone: str
+    """Name of the style and the icon."""
+    life: tuple[tuple[Notice, str], ...]
+    """What happened and the word for it, newest first."""
+
+    @property
+    def stand(self) -> str:
+        """The stand that it finds at fault; empty where it is about something else."""
+        return self.flag.place if self.flag.matter in (Matter.STAND, Matter.SHIFTED) else ""
+
+    @property
+    def home(self) -> str:
+        """The page of the unit, the type or the stand that it is about."""
+        return f"/{HOMES[self.flag.scope]}/{quote(self.name)}"
+
+    @property
+    def name(self) -> str:
+        """Of the unit, the type or the stand that it is about."""
+        return self.flag.subject or self.flag.unit
+
+    @property
+    def is_open(self) -> bool:
+        """Whether somebody has yet to act."""
+        return self.flag.state is not FlagState.RESOLVED
+
+    @property
+    def is_raised(self) -> bool:
+        """Whether nobody has acknowledged it."""
+        return self.flag.state is FlagState.RAISED
+
+
+@dataclass(frozen=True)
+class FlagsPage:
+    """Everything the page of all open flags shows."""
+
+    cards: tuple[FlagCard, ...]
+    earlier: str
+    """Address of the page before this one; empty where it is the first."""
+    later: str
+    """Address of the next page; empty where it is the last."""
+    view: FlagsView
+    matters: Mapping[str, str]
+    states: Mapping[str, str]
+    """What the list can be narrowed to, in words."""
+    orders: Mapping[str, str]
+    assigned: Mapping[str, str]
+    """Whose flags can be asked for: what stands in the address, and the name or words."""
+    people: tuple[str, ...]
+    """Whom a flag can be given to; empty where anybody may be named."""
+    saved: Saved
+    """Views of the list that were kept."""
+
+
+def flags_page(
+    found: Sequence[Flag], view: FlagsView, assigned: Mapping[str, str], people: Sequence[str], kept: Saved
+) -> FlagsPage:
+    """One page of open flags; one more than fit on it says that there are others in the direction of reading."""
+    backwards, others = bool(view.before), len(found) > PAGE_SIZE
+    shown = found[-PAGE_SIZE:] if backwards else found[:PAGE_SIZE]
+    is_first, is_last = (not others, False) if backwards else (not view.after, not others)
+    return FlagsPage(
+        cards=flag_cards(shown),
+        earlier="" if is_first or not shown else view.url(before=shown[0].id, after=""),
+        later="" if is_last or not shown else view.url(after=shown[-1].id, before=""),
+        view=view,
+        matters={matter.value: word for matter, word in MATTERS.items()},
+        states=CHOICES,
+        orders=ORDERS,
+        assigned=assigned,
+        people=tuple(people),
+        saved=kept,
+    )
+
+
+def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:
+    """Cards in the order of the flags."""
+    return tuple(
+        FlagCard(
+            flag=flag,
+            heading=_heading(flag),
+            state=STATES[flag.state],
+            tone=TONES.get(flag.state, NOT_JUDGED).key,
+            life=tuple((change, DONE[change.kind]) for change in reversed(flag.changes)),
+        )
+        for flag in flags
+    )
+
+
+def _heading(flag: Flag) -> str:
+    matter = MATTERS[flag.matter]
+    if not flag.place:
+        return matter
+    place = place_in_words(flag.place, flag.subject or flag.unit) if flag.matter is Matter.LASTING else flag.place
+    return say("{place}: {matter}", place=place, matter=uncapitalised(matter))
+
+
+router = APIRouter(prefix="/flags", include_in_schema=False)
+Chosen = Annotated[list[Annotated[int, Field(ge=1, le=2_000_000_000)]], Form(min_length=1, max_length=200)]
+"""Flags that were ticked."""
+Asking = Annotated[FlagsAsked, Query()]
+"""The view that a form was sent from, and that comes back."""
+To = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+"""Login or name; empty for nobody."""
+
+
+@router.get("")
+def show_flags(request: Request, store: Reading, person: PersonOf, asked: Asking) -> HTMLResponse:
+    """The open flags of the fleet, newest first, or those of them that the address asks for."""
+    view = FlagsView.of(asked)
+    if view.assigned == ME and not person.login:
+        view = replace(view, assigned="")
+    found = Flags(store).page(view.query(assignee_meant(store, view.assigned, person)))
+    kept = saved(SavedViews(store).of(person.login, ListPage.FLAGS), view, ListPage.FLAGS, person)
+    assigned = choices_of(Flags(store).assignees(), is_signed_in=bool(person.login))
+    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), kept))
+
+
+@router.post("/assign")
+def assign_chosen(
+    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "", asked: Asking
+) -> RedirectResponse:
+    """Several are given to somebody."""
+    assign_flags(storage, flag, Assignment(to, by, why), now)
+    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+
+
+@router.post("/{id}/assign")
+def assign(id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "") -> RedirectResponse:
+    """One is given to somebody."""
+    return _back(assign_flag(storage, id, Assignment(to, by, why), now))
+
+
+@router.post("/acknowledge")
+def acknowledge_chosen(
+    flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, to: To = "", asked: Asking
+) -> RedirectResponse:
+    """Somebody looks after several; where the form names whom, they are given to them."""
+    if to.strip():
+        assign_flags(storage, flag, Assignment(to, by), now)
+    bring_flags(storage, flag, FlagState.ACKNOWLEDGED, by, why, now)
+    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+
+
+@router.post("/resolve")
+def resolve_chosen(flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, asked: Asking) -> RedirectResponse:
+    """Several matters are settled."""
+    bring_flags(storage, flag, FlagState.RESOLVED, by, why, now)
+    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+
+
+@router.post("/{id}/acknowledge")
+def acknowledge(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
+    """Somebody looks after the flag."""
+    return _back(acknowledge_flag(storage, id, by, why, now))
+
+
+@router.post("/{id}/resolve")
+def resolve(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
+    """The matter is settled."""
+    return _back(resolve_flag(storage, id, by, why, now))
+
+
+def _back(flag: Flag) -> RedirectResponse:
+    (card,) = flag_cards([flag])
+    return RedirectResponse(f"{card.home}#flags", SEE_OTHER)

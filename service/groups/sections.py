@@ -1,0 +1,117 @@
+"""What a group of sessions shows, as a section of the page of its unit, unit type or stand."""
+
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import quote
+
+from estimator.groups import GroupFinding
+from estimator.groups.pictures import ANGLES
+from estimator.message import say
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.fleet.records import Announced
+from service.groups.charts import forest_chart, picture_chart, picture_table
+from service.groups.records import Group, Level
+from service.groups.store import Groups, read_group
+from service.groups.words import GroupView, group_view
+from service.kit.failure import group_failed
+from service.models.records import SCOPES
+from service.models.rules import in_force
+from service.models.store import ModelQuery, Models
+from service.records.refresh_group import rests_on_now
+from service.sessions.charts import ChartSet
+from service.settings import VERSION
+from service.storage.queries import Store
+
+HOMES = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
+"""Of the pages of groups, and of their answers as JSON."""
+MOST_FOUND = 4
+"""Groups that the fleet page names before it counts the rest."""
+MOST_REVISIONS = 10_000
+"""More than anybody accepts."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Charts of an effect or of a learned term, and what the last of them shows as a table."""
+
+    forest: ChartSet | None
+    picture: ChartSet | None
+    is_angle: bool
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class GroupSection:
+    """Everything the section shows."""
+
+    group: Group
+    view: GroupView | None
+    """None until it is made of the group's records of now."""
+    failed: str
+    """Why it cannot be made; empty else."""
+    effects: tuple[Drawn, ...] = ()
+    """Of every effect in turn."""
+    terms: tuple[Drawn, ...] = ()
+    """Of every learned term in turn."""
+
+
+@dataclass(frozen=True)
+class FoundLine:
+    """What was found anywhere, in one line."""
+
+    found: tuple[tuple[str, str, str], ...]
+    """Address of its page, whose sessions, and what they show together."""
+    more: int
+    """Others."""
+
+
+def found_line(announced: Announced) -> FoundLine | None:
+    """Of the fleet page; None where no sessions together show anything."""
+    lines = tuple((home_of(one.group), whose(one.group), one.own) for one in announced.found)
+    return FoundLine(lines, announced.groups - len(lines)) if lines else None
+
+
+def home_of(group: Group) -> str:
+    """The section on the page of a group."""
+    return f"/{HOMES[group.level]}/{quote(group.name)}#together"
+
+
+def whose(group: Group) -> str:
+    """``unit type RA-6``."""
+    return say("{scopes} {name}", scopes=SCOPES[group.level.value], name=group.name)
+
+
+def group_section(store: Store, level: Level, name: str) -> GroupSection:
+    """What the sessions of a unit, a unit type or a stand show together, where it is made of its records of now."""
+    group, answer, is_asked, failed = Groups(store).known(level, name)
+    if failed:
+        return GroupSection(group, None, group_failed(failed))
+    if answer is None or answer.is_of_another(VERSION):
+        return GroupSection(group, None, "")
+    if is_asked and (level is not Level.UNIT or not rests_on_now(store, group, answer)):
+        return GroupSection(group, None, "")
+    if answer.document is None:
+        return GroupSection(group, None, answer.summary)
+    shown = read_group(answer.document)
+    if not shown.sessions:
+        return GroupSection(group, None, "")
+    accepted = in_force(Models(store).page(ModelQuery(limit=MOST_REVISIONS))) if shown.findings or shown.terms else ()
+    return GroupSection(
+        group,
+        group_view(answer, shown, accepted),
+        "",
+        effects=tuple(_drawn_effect(f, f"effect-{k}") for k, f in enumerate(shown.findings, 1)),
+        terms=tuple(_drawn(None, t.picture, t.units[0], f"term-{k}") for k, t in enumerate(shown.terms, 1)),
+    )
+
+
+def _drawn_effect(finding: GroupFinding, name: str) -> Drawn:
+    return _drawn(forest_chart(finding, name), finding.picture, "rad/s" if finding.kind == GYROSCOPE else "", name)
+
+
+def _drawn(forest: ChartSet | None, picture: dict[str, Any] | None, unit: str, name: str) -> Drawn:
+    if picture is None:
+        return Drawn(forest, None, False, (), ())
+    kind = GYROSCOPE if unit.startswith("rad/s") else ACCELEROMETER
+    return Drawn(forest, picture_chart(picture, kind, name), picture["of"] in ANGLES, *picture_table(picture, kind))

@@ -1,0 +1,341 @@
+"""What many sessions show together, in words."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from estimator.groups import GroupFinding
+from estimator.groups.fixed import EMPIRICAL
+from estimator.groups.results import EmpiricalTerm, GroupGain, PoolLimit, Rival, SessionAmplitude
+from estimator.message import Message, capitalised, joined, say, say_count, uncapitalised, without_stop
+from estimator.moments import moment
+from estimator.session import ACCELEROMETER
+from service.diagnosis.words.amplitudes import amplitude_measure, amplitudes_of
+from service.diagnosis.words.causes import cause_name, cause_on, percent
+from service.diagnosis.words.diagnosis import size_of
+from service.diagnosis.words.findings import standard_errors
+from service.groups.records import Group, GroupAnswer, GroupShown
+from service.kit.measures import COVERAGE, HARD, day_of, measured, number
+from service.models.records import SCOPES, ModelRevision, Scope
+
+FAILED = (
+    "The program failed at what these sessions show together: that is a fault of the program, not of the sessions. The "
+    "next version of the program tries again."
+)
+LONGEST_PLACE = 200
+"""Characters that a flag keeps of its place."""
+SHARED = "They share structure that no known cause explains."
+SOUND = "Nothing wrong found."
+UNKNOWN = "Structure that no known cause explains."
+NO_SESSION = "No accepted session calibrates a block."
+
+
+def over(sessions: int) -> str:
+    """``Over 34 sessions``."""
+    return "Over one session" if sessions == 1 else say("Over {sessions} sessions", sessions=sessions)
+
+
+def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexplained: bool = False) -> str:
+    """What the sessions of a group show together, in one line."""
+    if not sessions:
+        return NO_SESSION
+    if findings:
+        return say("{sessions}: {statement}", sessions=over(sessions), statement=joined(" ", map(statement, findings)))
+    if unexplained:
+        return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SHARED))
+    return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SOUND))
+
+
+def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained: bool) -> str:
+    """Of what the sessions show, that which is of the group itself; empty for nothing.
+
+    ``unexplained``: whether they share structure of its own that no cause explains.
+    """
+    mine = (group.level.value, group.name)
+    said = [statement(f) for f in findings if (f.level, f.subject) == mine]
+    if unexplained:
+        said.append(UNKNOWN)
+    return joined(" ", said)
+
+
+def statement(finding: GroupFinding) -> str:
+    """What is wrong, and what it may be instead: ``A2 bends with the cube, unless it is odd quadratic.``"""
+    if not finding.alternatives:
+        return finding.sentence
+    others = joined(" or ", dict.fromkeys(map(cause_name, finding.alternatives)))
+    return say("{sentence}, unless it is {others}.", sentence=without_stop(finding.sentence), others=others)
+
+
+def place_in_words(place: str, subject: str) -> str:
+    """The place of a lasting flag as people read it: it is a key, made of scope, subject, cause and sensors."""
+    scope, known, rest = place.partition(f" {subject}: ")
+    cause, bracket, sensors = rest.partition(" (")
+    if not known:
+        return place
+    of = say(" ({sensors})", sensors=sensors.removesuffix(")")) if bracket else ""
+    return say("{scope} {subject}: {cause}{of}", scope=scope, subject=subject, cause=cause, of=of)
+
+
+def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = None) -> str:
+    """``stand ODG-1: beta eccentricity``: where a flag on it is; without a finding how those of a group begin."""
+    whose = f"{scope} {subject}: "
+    return whose if finding is None else f"{whose}{cause_on(finding.cause, finding.sensors)}"[:LONGEST_PLACE]
+
+
+def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
+    """``The sessions on stand ODG-1 show together: The angle scale of the head is off centre.``"""
+    if scope is Scope.STAND:
+        return say(
+            "The sessions on stand {subject} show together: {finding}",
+            subject=finding.subject,
+            finding=statement(finding),
+        )
+    if scope is Scope.UNIT_TYPE:
+        return say(
+            "The sessions of unit type {subject} show together: {finding}",
+            subject=finding.subject,
+            finding=statement(finding),
+        )
+    return say(
+        "The sessions of unit {subject} show together: {finding}", subject=finding.subject, finding=statement(finding)
+    )
+
+
+READS = "{sensor} reads more by"
+TURNS = {"δα": "the elevation α is more by", "δβ": "the angle β is more by"}
+"""How a line of a term begins, by the angle that it turns."""
+
+
+@dataclass(frozen=True)
+class TermView:
+    """A learned term, for people."""
+
+    lines: tuple[tuple[str, str], ...]
+    """What is more, and by how much."""
+    whose: str
+    """Whose sessions taught it."""
+    worth: str
+    nearest: str
+    sensors: tuple[str, ...] = ()
+    model: str = ""
+    """Whose model it can become part of: ``unit BA-017``; empty where the sessions name none."""
+    accepted: tuple[int, ...] = ()
+    """Revisions in force that hold it."""
+
+
+def term_view(term: EmpiricalTerm, accepted: Sequence[ModelRevision] = ()) -> TermView:
+    """What an engineer reads of a learned term; ``accepted``: the revisions that are in force."""
+    scope = SCOPES.get(term.level) if term.subject else None
+    near = say("{separation} standard errors from it", separation=number(term.separation, 1))
+    return TermView(
+        lines=tuple(_lines(term)),
+        whose=term.subject,
+        worth=say(
+            "It removes {explained}{hard}% of what the sessions that took no part in learning it show too much.",
+            explained=number(100 * term.explained, 0),
+            hard=HARD,
+        ),
+        nearest=say("Nearest in the catalogue: {nearest}, {near}.", nearest=cause_name(term.nearest), near=near)
+        if term.nearest
+        else "",
+        sensors=term.sensors,
+        model="" if scope is None else say("{scope} {subject}", scope=scope, subject=term.subject),
+        accepted=tuple(r.id for r in accepted if holds_term(r, term)),
+    )
+
+
+def holds_term(revision: ModelRevision, term: EmpiricalTerm) -> bool:
+    """Whether a revision accepted a learned term of this place: an equation that was learned anew is another one of
+    it, and not beside it."""
+    own = (revision.cause, revision.scope, revision.subject, revision.sensors)
+    return own == (EMPIRICAL, SCOPES.get(term.level), term.subject, term.sensors)
+
+
+def equation_of(term: EmpiricalTerm) -> str:
+    """``A3 reads more by (3.1 ± 0.2) µg · sin 3β.``"""
+    return joined(
+        " ", (say("{what} {equation}.", what=capitalised(what), equation=equation) for what, equation in _lines(term))
+    )
+
+
+def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
+    """One for the sensor, or for each angle of the applied vector that is turned."""
+    found: dict[str, list[str]] = {}
+    for word, value, sigma, unit in zip(term.words, term.amplitude, term.sigma, term.units, strict=True):
+        target, _, factor = word.rpartition(": ")
+        spread = COVERAGE * sigma
+        measure = amplitude_measure("", unit, max(abs(value), spread))
+        found.setdefault(target, []).append(
+            say("({size}){hard}·{hard}{factor}", size=measured(value, spread, measure), hard=HARD, factor=factor)
+        )
+    for target, parts in found.items():
+        yield TURNS.get(target, say(READS, sensor=joined(", ", term.sensors))), joined(" + ", parts)
+
+
+def gain_in_words(gain: GroupGain | None) -> str:
+    """What the findings are worth for sessions that came later; empty where there were too few."""
+    if gain is None:
+        return ""
+    before, after = (number(x, 3) for x in (gain.chi2_per_dof_before, gain.chi2_per_dof_after))
+    likelier = (
+        say("{log_score} more", log_score=number(gain.log_score, 1))
+        if gain.log_score > 0
+        else say("{log_score} less", log_score=number(-gain.log_score, 1))
+    )
+    return say(
+        "Sizes fixed on the first {fitted} sessions, tried on the {held_out} that came later: "
+        "their χ² per degree of freedom goes from {before} to {after}, their log score is "
+        "{likelier}.",
+        fitted=gain.fitted,
+        held_out=gain.held_out,
+        before=before,
+        after=after,
+        likelier=likelier,
+    )
+
+
+FORMS = {
+    "same": "in all of these sessions",
+    "varying": "in these sessions, but different every time",
+}
+MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
+"""A moment as files state it, ISO 8601."""
+BLIND = "–"
+"""In place of a size that no number of such sessions shows, and of a date that is not known."""
+
+
+RULE_OUT = "These sessions do not rule the others out. Take the measurement that would, before you act on one of them."
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What else it could be, and what would tell."""
+
+    name: str
+    share: str
+    measurement: str
+
+
+@dataclass(frozen=True)
+class ForestRow:
+    """The effect in one session alone."""
+
+    day: str
+    unit: str
+    amplitude: str
+
+
+@dataclass(frozen=True)
+class LastingEffect:
+    """A finding of a group, for people."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    whose: str
+    """``unit BA-017``."""
+    accepted: tuple[int, ...]
+    """Revisions in force that hold it."""
+    statement: str
+    amplitudes: tuple[str, ...]
+    since: str
+    evidence: str
+    advice: str
+    choices: tuple[Choice, ...]
+    rows: tuple[ForestRow, ...]
+    """Newest first."""
+
+
+@dataclass(frozen=True)
+class GroupView:
+    """What a group's sessions show together, for people."""
+
+    heading: str
+    summary: str
+    left_out: int
+    effects: tuple[LastingEffect, ...]
+    structures: tuple[str, ...]
+    """Where structure lives that no cause explains."""
+    terms: tuple[TermView, ...]
+    gain: str
+    notes: tuple[str, ...]
+    limits: tuple[tuple[str, str, str], ...]
+    """Cause, the smallest size that the pool would find, and that one session would."""
+
+
+def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
+    """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
+    return GroupView(
+        heading=say("What the simulation gets wrong, {sessions}", sessions=uncapitalised(over(shown.sessions))),
+        summary="" if shown.findings or not shown.sessions else SHARED if shown.structures else SOUND,
+        left_out=shown.left_out,
+        effects=tuple(_effect(finding, accepted) for finding in shown.findings),
+        structures=shown.structures,
+        terms=tuple(term_view(term, accepted) for term in shown.terms),
+        gain=gain_in_words(shown.gain),
+        notes=tuple(map(with_days, shown.notes)),
+        limits=tuple(_limit(limit) for limit in shown.limits if limit.amplitude),
+    )
+
+
+def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> LastingEffect:
+    scope = SCOPES[finding.level]
+    return LastingEffect(
+        cause=finding.cause,
+        sensors=finding.sensors,
+        whose=say("{scope} {subject}", scope=scope, subject=finding.subject),
+        accepted=tuple(r.id for r in accepted if holds(r, finding)),
+        statement=statement(finding),
+        amplitudes=tuple(amplitudes_of(finding)),
+        since=since_in_words(finding.form, finding.since),
+        evidence=say("{strength} over all of them", strength=standard_errors(finding.strength)),
+        advice=RULE_OUT if finding.alternatives else finding.advice,
+        choices=tuple(map(_choice, finding.rivals)),
+        rows=tuple(_row(finding, one) for one in reversed(finding.sessions)),
+    )
+
+
+def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
+    """Whether a revision accepted what a group shows."""
+    own = (revision.scope, revision.subject, revision.cause)
+    theirs = (SCOPES[finding.level], finding.subject, finding.cause)
+    return own == theirs and set(finding.sensors) <= set(revision.sensors)
+
+
+def _choice(rival: Rival) -> Choice:
+    whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
+    count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
+    sensors = () if "*" in rival.sensors else rival.sensors
+    told = joined("", (rival.measurement, count)) if rival.measurement else "nothing that can be planned"
+    return Choice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
+
+
+def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
+    own = replace(finding, amplitude=one.amplitude, sigma=one.sigma)
+    day = BLIND if one.started_at is None else day_in_words(one.started_at)
+    return ForestRow(day, one.unit, joined("; ", amplitudes_of(own)) or BLIND)
+
+
+def _limit(limit: PoolLimit) -> tuple[str, str, str]:
+    one = replace(limit, amplitude=limit.one_session)
+    of_one = size_of(one, ACCELEROMETER) if one.amplitude else BLIND
+    return cause_on(limit.cause, ()), size_of(limit, ACCELEROMETER), of_one
+
+
+def with_days(note: str) -> str:
+    """A note with its moments as days."""
+    if isinstance(note, Message):
+        parts = {name: with_days(part) for name, part in note.parts.items()}
+        return Message(note.template, parts, note.many, note.number)
+    return day_in_words(note) if MOMENT.fullmatch(note) else MOMENT.sub(lambda found: day_in_words(found.group()), note)
+
+
+def since_in_words(form: str, since: str | None) -> str:
+    """In which of the sessions an effect is."""
+    return FORMS.get(form) or (
+        "since one of these sessions" if since is None else say("since {since}", since=day_in_words(since))
+    )
+
+
+def day_in_words(started_at: str) -> str:
+    """``3 May 2026`` of what a file states."""
+    return day_of(moment(started_at))

@@ -1,0 +1,179 @@
+"""The page of an accepted cause and its forms."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Form, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from estimator.groups.fixed import EMPIRICAL
+from estimator.message import say
+from service.diagnosis.words.amplitudes import Amounts, amplitudes_of
+from service.diagnosis.words.causes import cause_on
+from service.diagnosis.words.findings import standard_errors
+from service.groups.records import Level
+from service.groups.store import Groups
+from service.groups.words import over, since_in_words
+from service.models.records import ModelRevision, NewLasting, Pooled, Progress, Recomputation, Scope
+from service.models.rules import in_force, pooled_of
+from service.models.store import Models, Recomputations
+from service.models.words import left_in_words, moved_in_words, progress_of
+from service.people.dependencies import SEE_OTHER, By, Number, Why
+from service.records.dependencies import ReceptionOf
+from service.records.models import accept_lasting, withdraw_model
+from service.records.recalibrate import recompute_beside
+from service.sessions.words.conditions import Condition, condition_of
+from service.web.dependencies import Now, Reading
+from service.web.fields import NO_NUL
+from service.web.render import SOONEST, render
+
+HOMES = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
+"""Where the page of a subject is."""
+
+
+@dataclass(frozen=True)
+class MovedRow:
+    """A session with another verdict since."""
+
+    session: str
+    unit: str
+    at: datetime
+    before: Condition
+    after: Condition
+
+
+@dataclass(frozen=True)
+class UnitRow:
+    """What became of a unit's sessions."""
+
+    unit: str
+    sessions: str
+    furthest: str
+
+
+@dataclass(frozen=True)
+class ModelPage:
+    """Everything the page shows."""
+
+    revision: ModelRevision
+    name: str
+    whose: str
+    home: str
+    """Address of whose model it is."""
+    statement: str
+    amplitudes: tuple[str, ...]
+    evidence: str
+    withdrawn: ModelRevision | None
+    """That took it out again."""
+    holds: bool
+    progress: str
+    verdicts: tuple[MovedRow, ...]
+    units: tuple[UnitRow, ...]
+    follow: int | None
+    """Seconds until the page reads itself again; None once all is done."""
+
+
+def model_page(
+    revision: ModelRevision, of_subject: Sequence[ModelRevision], found: Sequence[Recomputation]
+) -> ModelPage:
+    """Of a revision among those of its subject, with what it brought."""
+    evidence, pooled = revision.evidence, pooled_of(revision)
+    return ModelPage(
+        revision=revision,
+        name=cause_on(revision.cause, revision.sensors),
+        whose=say("{scope} {subject}", scope=revision.scope, subject=revision.subject),
+        home=f"{HOMES[revision.scope]}{quote(revision.subject)}",
+        statement="" if evidence is None else evidence.sentence,
+        amplitudes=_amplitudes(revision),
+        evidence="" if evidence is None else _evidence(evidence.strength, pooled),
+        withdrawn=next((r for r in of_subject if r.withdraws == revision.id), None),
+        holds=revision in in_force(of_subject),
+        progress=progress_of(found),
+        verdicts=tuple(_moved(found)),
+        units=tuple(map(_unit, found)),
+        follow=SOONEST if any(one.state is Progress.WAITING for one in found) else None,
+    )
+
+
+def _amplitudes(revision: ModelRevision) -> tuple[str, ...]:
+    evidence = revision.evidence
+    if evidence is None or revision.cause == EMPIRICAL:  # the equation of a learned term states them
+        return ()
+    own = Amounts(revision.cause, revision.sensors, evidence.amplitude, evidence.sigma, evidence.units)
+    return tuple(amplitudes_of(own))
+
+
+def _evidence(strength: float, pooled: Pooled | None) -> str:
+    """``Over 34 sessions, in all of these sessions: 12.3 standard errors.``"""
+    if pooled is None:
+        return say("In one session: {strength}. Each session fits its own size.", strength=standard_errors(strength))
+    since = since_in_words(pooled.form, pooled.since)
+    fitted = "each session has a say in it" if pooled.form == "varying" else "no session fits it again"
+    return say(
+        "{sessions}, {since}: {strength}. The size is theirs: {fitted}.",
+        sessions=over(pooled.sessions),
+        since=since,
+        strength=standard_errors(strength),
+        fitted=fitted,
+    )
+
+
+def _moved(found: Sequence[Recomputation]) -> Iterator[MovedRow]:
+    for one in found:
+        for m in () if one.outcome is None else one.outcome.verdicts:
+            yield MovedRow(m.session, one.unit, m.started_at, condition_of(m.before), condition_of(m.after))
+
+
+def _unit(one: Recomputation) -> UnitRow:
+    told = one.outcome
+    if told is None:
+        return UnitRow(one.unit, one.state.value, left_in_words(one))
+    left = say(", {left} cannot be", left=told.left) if told.left else ""
+    return UnitRow(
+        one.unit,
+        say("{recomputed} of {sessions}{left}", recomputed=told.recomputed, sessions=told.sessions, left=left),
+        moved_in_words(told.furthest),
+    )
+
+
+router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+Plain = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+
+
+@router.get("/models/{id}")
+def show_model(request: Request, store: Reading, id: Number) -> HTMLResponse:
+    """An accepted cause, how far its sessions are computed again, and what moved."""
+    revision = Models(store).get(id)
+    of_subject = Models(store).of_subject(revision.scope, revision.subject)
+    return render(request, "model.html", model_page(revision, of_subject, Recomputations(store).of(id)))
+
+
+@router.post("/groups/accept")
+def accept(
+    reception: ReceptionOf,
+    now: Now,
+    *,
+    level: Annotated[Level, Form()],
+    name: Plain,
+    cause: Plain,
+    sensors: Annotated[list[str], Form(default_factory=list, max_length=1000)],
+    by: By,
+    note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+) -> RedirectResponse:
+    """Accepts what a group of sessions shows, and shows what that moves."""
+    with reception.storage.database.reading() as store:
+        group = Groups(store).find(level, name)
+    made = accept_lasting(reception.storage, group, NewLasting(cause, tuple(sensors), by, note), now)
+    recompute_beside(reception, now)
+    return RedirectResponse(f"/models/{made.id}", SEE_OTHER)
+
+
+@router.post("/models/{id}/withdraw")
+def withdraw(id: Number, reception: ReceptionOf, now: Now, *, by: By, why: Why) -> RedirectResponse:
+    """Takes an accepted cause out of the model again, and shows what that moves."""
+    made = withdraw_model(reception.storage, id, by, why, now)
+    recompute_beside(reception, now)
+    return RedirectResponse(f"/models/{made.id}", SEE_OTHER)

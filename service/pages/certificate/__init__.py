@@ -1,1 +1,0 @@
-"""Certificates, corrections and labels: the page, and the same over HTTP."""

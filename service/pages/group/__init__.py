@@ -1,1 +1,0 @@
-"""What a group shows, as a section of the pages of its unit, type or stand."""

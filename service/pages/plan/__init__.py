@@ -1,1 +1,0 @@
-"""The pages of a plan, and of what is asked before a measurement and while it is made."""

@@ -1,1 +1,0 @@
-"""Records taken back, accepted, superseded, from the page and over HTTP."""

@@ -1,1 +1,0 @@
-"""What came in and what became of it: pages, and the same over HTTP."""

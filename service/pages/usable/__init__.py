@@ -1,1 +1,0 @@
-"""May a unit be used?"""

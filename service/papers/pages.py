@@ -1,0 +1,176 @@
+"""The page of a session's certificate and its forms."""
+
+from dataclasses import dataclass
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Form, Request, Response
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from service.errors import SignInError
+from service.kit.measures import day_of
+from service.kit.person import Person
+from service.papers.changes import Signing
+from service.papers.dependencies import DeskOf
+from service.papers.desk import Papers, SignedIssue, papers_of, sign
+from service.papers.records import Meaning, Signature
+from service.papers.words import STATES, done_by, moment_of
+from service.people.admission import PersonOf, attempt_of
+from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, StorageOf
+from service.people.secret import LONGEST
+from service.records.unit_changes import set_customer
+from service.sessions.records import StoredSession
+from service.sessions.states import RecordState
+from service.sessions.store import Sessions
+from service.units.records import Customer
+from service.web.dependencies import Now, Reading
+from service.web.fields import NO_NUL
+from service.web.render import render
+
+RELEASED, REVIEWED, OPEN = "Approved", "Reviewed, not approved yet", "Not signed yet"
+
+
+@dataclass(frozen=True)
+class SignatureRow:
+    """One signature in words."""
+
+    by: str
+    name: str
+    login: str
+    at: str
+    states: str
+
+
+@dataclass(frozen=True)
+class IssueRow:
+    """One issue in words."""
+
+    number: str
+    issued: str
+    who: str
+    state: str
+    is_approved: bool
+    signatures: tuple[SignatureRow, ...]
+    content_hash: str
+
+
+@dataclass(frozen=True)
+class CertificatePage:
+    """Everything the page of a certificate shows."""
+
+    session: StoredSession
+    counts: bool
+    """Whether the session is accepted, so that a certificate can be issued."""
+    latest: IssueRow | None
+    earlier: tuple[IssueRow, ...]
+    """The newest first."""
+    concerns: tuple[str, ...]
+    signs: Meaning | None
+    """What can be signed next; None where nothing can."""
+    states: str
+    """What whoever signs states."""
+    by: str
+    is_account: bool
+    """Whether the one who looks has an account to sign with."""
+    four_eyes: bool
+    is_own: bool
+    """Whether the one who looks has reviewed it, and somebody else must approve."""
+    wrong: str
+    """What was wrong with the last try to sign; empty where nothing was."""
+
+
+def certificate_page(
+    session: StoredSession, papers: Papers, person: Person, *, four_eyes: bool, wrong: str = ""
+) -> CertificatePage:
+    """The page of a session's certificate as somebody sees it."""
+    rows = tuple(_issue(one) for one in papers.certificates)
+    signs = None if session.simulated else _next(papers)
+    return CertificatePage(
+        session=session,
+        counts=session.state is RecordState.ACCEPTED,
+        latest=rows[-1] if rows else None,
+        earlier=tuple(reversed(rows[:-1])),
+        concerns=papers.concerns,
+        signs=signs,
+        states="" if signs is None else STATES[signs],
+        by="" if signs is None else done_by(signs),
+        is_account=bool(person.login),
+        four_eyes=four_eyes,
+        is_own=four_eyes and signs is Meaning.APPROVED and rows[-1].signatures[0].login == person.login,
+        wrong=wrong,
+    )
+
+
+def _next(papers: Papers) -> Meaning | None:
+    """The first that nobody has signed, of an issue that states what is stored."""
+    if not papers.is_current:
+        return None
+    given = {signature.meaning for signature in papers.certificates[-1].signatures}
+    return next((meaning for meaning in Meaning if meaning not in given), None)
+
+
+def _issue(one: SignedIssue) -> IssueRow:
+    return IssueRow(
+        number=one.number,
+        issued=day_of(one.issued_at),
+        who=one.who,
+        state=RELEASED if one.is_approved else REVIEWED if one.signatures else OPEN,
+        is_approved=one.is_approved,
+        signatures=tuple(_signature(signature) for signature in one.signatures),
+        content_hash=one.content_hash,
+    )
+
+
+def _signature(one: Signature) -> SignatureRow:
+    return SignatureRow(done_by(one.meaning), one.name, one.login, moment_of(one.signed_at), STATES[one.meaning])
+
+
+router = APIRouter(include_in_schema=False)
+
+
+@router.get("/sessions/{id}/certificate")
+def show_certificate(request: Request, id: Key, store: Reading, desk: DeskOf, person: PersonOf) -> HTMLResponse:
+    """Every issue of the session's certificate, and who signed it."""
+    four_eyes = desk.rules.four_eyes
+    page = certificate_page(Sessions(store).get(id), papers_of(desk, id), person, four_eyes=four_eyes)
+    return render(request, "certificate.html", page)
+
+
+@router.post("/sessions/{id}/certificate/signatures")
+def take_signature(
+    request: Request,
+    id: Key,
+    number: Annotated[str, Form(max_length=60, pattern=SAYS_SOMETHING)],
+    meaning: Annotated[Meaning, Form()],
+    password: Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)],
+    *,
+    desk: DeskOf,
+    person: PersonOf,
+    now: Now,
+) -> Response:
+    """Puts a name under the certificate; the page again where the password is wrong."""
+    signing = Signing(id, number, meaning, person.login, password)
+    try:
+        sign(desk, signing, attempt_of(request, person.login), now)
+    except SignInError as wrong:
+        papers, four_eyes = papers_of(desk, id), desk.rules.four_eyes
+        with desk.storage.database.reading() as store:
+            session = Sessions(store).get(id)
+        page = certificate_page(session, papers, person, four_eyes=four_eyes, wrong=wrong.detail)
+        return render(request, "certificate.html", page, wrong.status)
+    return RedirectResponse(f"/sessions/{id}/certificate", SEE_OTHER)
+
+
+@router.post("/units/{serial:path}/customer")
+def change_customer(
+    serial: Key,
+    by: By,
+    storage: StorageOf,
+    now: Now,
+    *,
+    name: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
+    address: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+) -> RedirectResponse:
+    """Records for whom the unit is calibrated."""
+    set_customer(storage, serial, Customer(name.strip(), address.strip()), now, who=by)
+    return RedirectResponse(f"/units/{quote(serial)}#papers", SEE_OTHER)

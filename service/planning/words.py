@@ -1,0 +1,401 @@
+"""What a session still lacks, in words."""
+
+from collections.abc import Callable
+from itertools import groupby
+
+import numpy as np
+
+from estimator.causes import CATALOGUE
+from estimator.message import joined, say, say_count
+from estimator.planning import Judged, Missing, Plan
+from estimator.readiness import Disturbance, Outlook, Readiness, State
+from estimator.readiness.faults import Fault, FaultKind
+from estimator.readiness.results import Kind
+from estimator.results import PARAMETERS
+from estimator.session import GYROSCOPE
+from service.diagnosis.words.diagnosis import BlindCauses, SeenCause, blind_causes, seen_causes
+from service.kit.measures import ARCSEC, MEASURES, MINUS, THIN, deviation_measure, in_measure, number
+
+MOST = 12
+"""Angles that are named; the rest are counted."""
+
+
+def missing_in_words(found: Missing) -> tuple[str, ...]:
+    """A sentence how far it is, then one a run or a line a direction, then what is open until then."""
+    if found.is_complete:
+        return (say("Complete: {done} positions, and every parameter is observed.", done=found.done),)
+    to_come = len(found.settings) or len(found.directions)
+    done = found.done
+    lines: list[str] = [
+        say_count(
+            "{n} position is done, {to_come} still to come.",
+            "{n} positions are done, {to_come} still to come.",
+            done,
+            to_come=to_come,
+        )
+    ]
+    for run, settings in groupby(found.settings, key=lambda one: one[0]):
+        angles = [f"{number(float(np.degrees(beta)), 2).rstrip('0').rstrip('.')}°" for _, beta in settings]
+        rest = say(" and {most} more", most=len(angles) - MOST) if len(angles) > MOST else ""
+        lines.append(say("{run}: β = {angles}{rest}", run=run, angles=", ".join(angles[:MOST]), rest=rest))
+    lines += [
+        say("up along {direction} in block axes", direction=_vector(direction))
+        for direction in found.directions.tolist()
+    ]
+    if found.unseen:
+        lines.append(
+            say("Until then open: {unseen} ….", unseen=joined(", ", found.unseen[:MOST]))
+            if len(found.unseen) > MOST
+            else say("Until then open: {unseen}.", unseen=joined(", ", found.unseen[:MOST]))
+        )
+    return tuple(lines)
+
+
+def _vector(direction: list[float]) -> str:
+    return f"({', '.join(f'{part:.2f}'.replace('-', MINUS) for part in direction)})"
+
+
+VERDICTS = {
+    "enough": "enough: U leaves the tolerance the share that was asked for",
+    "usable": "usable: U stays within the tolerance, but takes more than its share",
+    "undecidable": "undecidable: U exceeds the tolerance, or nothing is observed",
+    "not judged": "no tolerance was given",
+}
+"""What the verdicts of a plan mean."""
+UNSEEN = "not observable"
+OF_GYROS = frozenset(cause.identifier for cause in CATALOGUE if cause.kind == GYROSCOPE)
+"""Causes that an accelerometer cannot have."""
+
+
+def seen(plan: Plan) -> tuple[SeenCause, ...]:
+    """Causes that the plan would find, with the size from which on."""
+    return seen_causes(plan.limits, {sensor.kind for sensor in plan.schedule.sensors})
+
+
+def blind(plan: Plan) -> tuple[BlindCauses, ...]:
+    """Causes that the plan cannot see; what only gyros have is left out where there are none."""
+    has_gyros = any(s.kind == GYROSCOPE for s in plan.schedule.sensors)
+    return blind_causes([one for one in plan.limits if has_gyros or one.cause not in OF_GYROS])
+
+
+def unobserved(plan: Plan) -> str:
+    """``scale and axis of every sensor; bias of A2``: what the plan does not observe; empty where it observes all."""
+    sensors: dict[tuple[str, ...], list[str]] = {}
+    for name in PARAMETERS:
+        missing = tuple(j.sensor for j in plan.judged if j.parameter == name and j.sigma is None)
+        if missing:
+            sensors.setdefault(missing, []).append(name)
+    everyone = tuple(s.name for s in plan.schedule.sensors)
+    return joined(
+        "; ",
+        (
+            say(
+                "{parameters} of {missing}",
+                parameters=joined(" and ", parameters),
+                missing="every sensor" if missing == everyone else joined(", ", missing),
+            )
+            for missing, parameters in sensors.items()
+        ),
+    )
+
+
+def sigma_in_words(judged: Judged, coverage: float) -> str:
+    """``±2.1 µg``: the expanded uncertainty."""
+    if judged.sigma is None:
+        return UNSEEN
+    measure = MEASURES[judged.kind, judged.parameter]
+    return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}" + measure.label
+
+
+def tolerance_in_words(judged: Judged) -> str:
+    """``of 50 µg``, empty where none was given."""
+    if judged.tolerance is None:
+        return ""
+    measure = MEASURES[judged.kind, judged.parameter]
+    return say(
+        "of {tolerance}{thin}{label}",
+        tolerance=number(in_measure(judged.tolerance, measure)),
+        thin=THIN,
+        label=measure.label,
+    )
+
+
+def duration(seconds: float) -> str:
+    """``1 h 36 min``."""
+    minutes = round(seconds / 60)
+    hours, rest = divmod(minutes, 60)
+    return say("{hours} h {rest} min", hours=hours, rest=rest) if hours else say("{rest} min", rest=rest)
+
+
+def headline(plan: Plan) -> str:
+    """What the plan comes to, in a sentence."""
+    size = (
+        say("{positions} positions in both runs", positions=plan.positions)
+        if len(plan.request.runs) == 2
+        else say("{positions} positions in one run", positions=plan.positions)
+    )
+    if plan.reached is None:
+        return say("{size}, {seconds}: no tolerance was given to judge by.", size=size, seconds=duration(plan.seconds))
+    if plan.reached:
+        return say("{size}, {seconds}, reach every tolerance.", size=size, seconds=duration(plan.seconds))
+    short = [j for j in plan.judged if j.verdict in ("usable", "undecidable")]
+    names = joined(", ", dict.fromkeys(j.parameter for j in short))
+    return say(
+        "{size}, {seconds}, do not reach the tolerance of {names}.",
+        size=size,
+        seconds=duration(plan.seconds),
+        names=names,
+    )
+
+
+MINUTE = 60.0
+"""s."""
+FEW = 3
+"""Sensors that are named; the others are counted."""
+
+
+def readiness_headline(found: Readiness) -> str:
+    """The one sentence that is read across the room."""
+    match found.state:
+        case State.READY:
+            return "Ready"
+        case State.NOT_WARM if found.wait is not None:
+            return say("Wait about {wait} minutes", wait=minutes(found.wait[1]))
+        case State.NOT_WARM:
+            return "Not warm: waiting alone will not do"
+        case State.NOT_STILL:
+            return say("Not still: {found}", found=_short(found))
+        case State.TOO_EARLY if found.needed is not None:
+            return say("Too early to tell: record about {needed} minutes more", needed=minutes(found.needed))
+        case State.TOO_EARLY:
+            return "Not to be told: the sensors wander"
+    return "Nothing can be told from this record"
+
+
+def reasons(found: Readiness, kind: str) -> tuple[str, ...]:
+    """Why, and what to do, in order of weight."""
+    lines = [fault_in_words(fault) for fault in found.faults]
+    lines += [disturbance_in_words(one, kind) for one in found.disturbances]
+    if found.worst is not None:
+        lines += _of_drift(found, found.worst)
+    return tuple(lines)
+
+
+def minutes(seconds: float) -> str:
+    """Whole minutes, never none."""
+    return number(max(1.0, float(f"{seconds / MINUTE:.2g}")), 0)
+
+
+def amount(kind: str, value: float) -> str:
+    """``12 µg``: of drift."""
+    measure = deviation_measure(kind, "bias", abs(value))
+    return f"{number(float(f'{value * measure.factor:.2g}'))}{THIN}" + measure.label
+
+
+def clock(seconds: float) -> str:
+    """``3:20``, minutes and seconds into the record."""
+    whole = round(seconds)
+    return f"{whole // 60}:{whole % 60:02d}"
+
+
+def named(sensors: tuple[str, ...]) -> str:
+    """``A1, A2, A3 and 3 more``."""
+    rest = len(sensors) - FEW
+    return joined(", ", sensors[:FEW]) + (say(" and {rest} more", rest=rest) if rest > 0 else "")
+
+
+def _of_drift(found: Readiness, worst: Outlook) -> list[str]:
+    length = minutes(found.duration)
+    bound, allowed = amount(worst.kind, worst.bound), amount(worst.kind, worst.allowed)
+    by = (
+        "a quarter of the tolerance of its scale factor"
+        if worst.limit == "scale"
+        else "a quarter of the tolerance of its bias"
+    )
+    if found.state is State.READY:
+        return [
+            say(
+                "No sensor will drift by more than it may in the {length} minutes of the programme: the "
+                "most is {bound} of {name}, with 95 % probability; allowed are {allowed}, {by}.",
+                length=length,
+                bound=bound,
+                name=worst.name,
+                allowed=allowed,
+                by=by,
+            )
+        ]
+    said: list[str] = [
+        say(
+            "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
+            "allowed are {allowed}, {by}.",
+            name=worst.name,
+            bound=bound,
+            length=length,
+            allowed=allowed,
+            by=by,
+        )
+    ]
+    if found.state is State.NOT_WARM:
+        return [*said, *_of_waiting(found)]
+    if found.state is State.TOO_EARLY:
+        return [*said, *_of_telling(found, worst)]
+    return said
+
+
+def _of_waiting(found: Readiness) -> list[str]:
+    if found.wait is None:
+        return [
+            "It drifts steadily or wanders, and does not settle within eight hours: look for the cause, such as a "
+            "draught, the sun or a loose fixture, or plan a shorter programme."
+        ]
+    low, middle, high = found.wait
+    until = (
+        say("up to {high} minutes", high=minutes(high))
+        if high < float("inf")
+        else "how long at most cannot be told yet"
+    )
+    return [
+        say(
+            "It settles: wait about {middle} minutes more (at least {low}, {until}), and ask again with a new record.",
+            middle=minutes(middle),
+            low=minutes(low),
+            until=until,
+        )
+    ]
+
+
+def _of_telling(found: Readiness, worst: Outlook) -> list[str]:
+    if found.needed is not None:
+        return [
+            say(
+                "The record is too short to tell: leave the unit as it is and record about {needed} minutes more.",
+                needed=minutes(found.needed),
+            )
+        ]
+    return [
+        say(
+            "No length of record would tell: {name} wanders by {kind} in the time of the programme "
+            "by itself. Plan a shorter programme, or have the sensor looked at.",
+            name=worst.name,
+            kind=amount(worst.kind, worst.wander),
+        )
+    ]
+
+
+def _short(found: Readiness) -> str:
+    one = next(own for own in found.disturbances if not own.passed)
+    return SHORT[one.kind](one)
+
+
+SHORT: dict[Kind, Callable[[Disturbance], str]] = {
+    Kind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
+    Kind.BURST: lambda one: say("it shook at {start}", start=clock(one.start)),
+    Kind.SHAKING: lambda one: "it shakes all the time",
+    Kind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
+    Kind.CREEP: lambda one: "the fixture creeps",
+}
+"""What disturbs, in a few words."""
+
+
+def disturbance_in_words(one: Disturbance, kind: str) -> str:
+    """What happened, when, to whom, and what to do."""
+    who, size = named(one.sensors), amount(kind, one.size)
+    after = "; what came after it is judged alone." if one.passed else ". Leave it alone and record anew."
+    match one.kind:
+        case Kind.STEP:
+            return say(
+                "{who} changed by {size} between {start} and {stop}: somebody touched it{after}",
+                who=who,
+                size=size,
+                start=clock(one.start),
+                stop=clock(one.stop),
+                after=after,
+            )
+        case Kind.BURST:
+            return say(
+                "{who} shook by {size} rms from {start} to {stop}{after}",
+                who=who,
+                size=size,
+                start=clock(one.start),
+                stop=clock(one.stop),
+                after=after,
+            )
+        case Kind.SHAKING:
+            return say(
+                "{who} shake by {size} rms all the time: a quadratic term within its tolerance would "
+                "turn that into more than the drift allowed. Find what vibrates, or decouple the stand "
+                "from it.",
+                who=who,
+                size=size,
+            )
+        case Kind.CLIPPED:
+            share = number(float(f"{100 * one.size:.2g}"))
+            return say(
+                "{who} stands at the end of its range for {share} % of the samples: set a larger range, "
+                "or stop what vibrates.",
+                who=who,
+                share=share,
+            )
+    turn = number(float(f"{one.size * ARCSEC.factor:.2g}"))
+    return say(
+        "All accelerometers drift as if the block turned, by {turn} arcsec over the programme: "
+        "the fixture creeps. Tighten the mounting, let the stand's locks settle, and record anew.",
+        turn=turn,
+    )
+
+
+def fault_in_words(fault: Fault) -> str:
+    """What is wrong with the record, and what to do."""
+    who = named(fault.sensors)
+    match fault.kind:
+        case FaultKind.NO_TIME:
+            return "The rows have no times: add time_s, or sample_rate_hz for a raw log."
+        case FaultKind.CLOCK_BACK:
+            return say(
+                "The clock goes back at row {amount}: it was restarted. Record anew, or cut the file there.",
+                amount=f"{fault.amount:.0f}",
+            )
+        case FaultKind.CLOCK_STANDS:
+            return "The clock stands still over most rows: check time_s."
+        case FaultKind.NOT_FINITE:
+            return say(
+                "Row {amount} holds a reading that is no number: take the row out.", amount=f"{fault.amount:.0f}"
+            )
+        case FaultKind.FEW:
+            return say(
+                "{amount} readings are too few to tell drift from noise: record at least twelve in one position.",
+                amount=f"{fault.amount:.0f}",
+            )
+        case FaultKind.POSITIONS:
+            return say(
+                "The rows stand in {amount} positions: leave the block in one, and read it again and again.",
+                amount=f"{fault.amount:.0f}",
+            )
+        case FaultKind.STUCK:
+            return say(
+                "One and the same reading throughout: {who}. That is a dead channel and no rest; check "
+                "power and cables.",
+                who=who,
+            )
+        case FaultKind.COARSE:
+            return say(
+                "One step of the readings is larger than the drift allowed: {who}. Average more samples, "
+                "with more digits.",
+                who=who,
+            )
+        case FaultKind.UNITS:
+            return say(
+                "At rest the accelerometers should show 1 g and show {amount} g: check nominal_scale, "
+                "nominal_offset and reading_unit.",
+                amount=number(float(f"{fault.amount:.3g}")),
+            )
+        case FaultKind.TURNING:
+            return say("The block turns, or the units are wrong: {who}. Let it rest, or check nominal_scale.", who=who)
+        case FaultKind.NOT_JUDGED:
+            return "No tolerance says how far these sensors may drift: give one."
+        case FaultKind.GAP:
+            return say(
+                "There is a gap of {amount} minutes in the record; it is judged all the same.",
+                amount=minutes(fault.amount),
+            )
+    return say("{who} is alone: a fixture that creeps cannot be told from a drift of its own.", who=who)

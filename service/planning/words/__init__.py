@@ -1,1 +1,0 @@
-"""Sentences on plans and measurements to come."""

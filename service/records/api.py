@@ -1,0 +1,176 @@
+"""States of records over HTTP."""
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, ConfigDict, Field
+
+from estimator.message import say
+from service.errors import ConflictError
+from service.flags.api import Handling
+from service.judging.records import said
+from service.judging.store import Derivations
+from service.kit.arriving_files import Replaced
+from service.people.admission import PersonOf
+from service.records.changes import accept_session, choose_reference, set_check, withdraw_service, withdraw_session
+from service.records.dependencies import ReceptionOf
+from service.records.event_schemas import NewCheck
+from service.records.supersede import successor_of, supersede_session
+from service.sessions.schemas import ReceiptAnswer, SaidSession, said_session
+from service.sessions.states import RecordKind, RecordState, StateChange, Step
+from service.sessions.states_store import States
+from service.sessions.store import Sessions
+from service.units.records import Service
+from service.units.store import Units
+from service.uploads.correct import correct_session
+from service.uploads.receive import deriving
+from service.web.dependencies import Now, Reading
+from service.web.fields import Name, Number, Reason, Serial, SessionId, Text
+from service.web.problem_document import errors
+
+
+class StateList(BaseModel):
+    """The life of a session."""
+
+    session: str = Field(description="Its id.")
+    state: RecordState = Field(description="What it is now. Only an accepted session tells of its unit.")
+    states: tuple[StateChange, ...] = Field(description="Oldest first; empty where it was accepted and remained so.")
+
+
+class Correcting(BaseModel):
+    """Who has a questioned session's file put right."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"by": "K. Ito"}})
+
+    by: Name = Field(description="Who says so.")
+
+
+class Superseding(BaseModel):
+    """Which session stands for another one, who says so and why."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {"by": "K. Ito", "why": "alpha mistyped", "superseded_by": "3f9a0c5be1d24786aa10"}
+        },
+    )
+
+    by: Name = Field(description="Who says so.")
+    why: Reason = Field(description="Why; what was wrong.")
+    superseded_by: Text | None = Field(
+        default=None,
+        description="The session that counts from now on. It can be left out where only one was uploaded later of the "
+        "same unit, programme and date.",
+    )
+
+
+class NewReference(BaseModel):
+    """The session that an engineer chooses as the reference of its epoch."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {"session": "3f9a0c5be1d24786aa10", "by": "K. Ito", "why": "the first one was measured warm"}
+        },
+    )
+
+    session: Text = Field(description="Its id; it must be accepted and give an uncertainty.")
+    by: Name = Field(description="Who chooses and approves it.")
+    why: Reason = Field(description="Why.")
+
+
+class DerivationSchema(BaseModel):
+    """How far what is known of a unit follows its records."""
+
+    unit: str = Field(description="Serial number of the unit.")
+    sessions: int = Field(description="Its accepted sessions.")
+    waiting: int = Field(description="Those that are still to be judged again after a change of its records.")
+
+
+router = APIRouter()
+REFUSALS = errors(400, 404, 409, 422)
+"""What may come instead of the changed record."""
+
+
+@router.get("/sessions/{id}/states", responses=errors(404, 422), tags=["sessions"])
+def read_states(id: SessionId, store: Reading) -> StateList:
+    """What became of a session since it was received: by whom, when and why."""
+    session = Sessions(store).get(id)
+    lines = States(store).of(RecordKind.SESSION, id)
+    return StateList(session=id, state=session.state, states=lines)
+
+
+@router.post("/sessions/{id}/withdraw", responses=REFUSALS, tags=["sessions"])
+def withdraw(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
+    """Take a session back. It stays readable, and nothing that is known of its unit rests on it any more."""
+    step = Step(person.signs(handling.by), now, handling.why)
+    session, _ = withdraw_session(reception.storage, deriving(reception, now), id, step)
+    reception.ring()
+    return said_session(session)
+
+
+@router.post("/sessions/{id}/accept", responses=REFUSALS, tags=["sessions"])
+def accept(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
+    """Say that a session counts that was questioned, withdrawn or superseded."""
+    step = Step(person.signs(handling.by), now, handling.why)
+    session, _ = accept_session(reception.storage, deriving(reception, now), id, step)
+    reception.ring()
+    return said_session(session)
+
+
+@router.put("/sessions/{id}/check", responses=errors(400, 404, 422), tags=["sessions"])
+def mark_check(id: SessionId, new: NewCheck, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
+    """Say that a session is only a check, or a calibration after all; its unit's dates are worked out again."""
+    step = Step(person.signs(new.by), now, new.why)
+    session = set_check(reception.storage, deriving(reception, now), id, step, is_check=new.is_check)
+    reception.ring()
+    return said_session(session)
+
+
+@router.post("/sessions/{id}/correct", responses=REFUSALS, tags=["sessions"])
+def correct(
+    id: SessionId, given: Correcting, request: Request, reception: ReceptionOf, now: Now, person: PersonOf
+) -> ReceiptAnswer:
+    """Make a corrected file of a questioned session's, with what would put it right, and let it stand for it."""
+    receipt = correct_session(reception, id, person.signs(given.by), now)
+    url = str(request.url_for("read_session", id=receipt.id))
+    return ReceiptAnswer(**said(receipt), url=url)
+
+
+@router.post("/sessions/{id}/supersede", responses=REFUSALS, tags=["sessions"])
+def supersede(id: SessionId, given: Superseding, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
+    """Say that another stored session supersedes this one: a corrected file, of another unit or date."""
+    by = given.superseded_by or successor_of(reception.storage, id)
+    replaced = Replaced(id, person.signs(given.by), given.why)
+    session, _ = supersede_session(reception.storage, deriving(reception, now), replaced, by)
+    reception.ring()
+    return said_session(session)
+
+
+@router.post("/units/{serial:path}/reference", responses=REFUSALS, tags=["units"])
+def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
+    """Choose and approve the session that all others of its epoch are judged against."""
+    with reception.storage.database.reading() as store:
+        owner = Sessions(store).get(new.session).unit
+    if owner != serial:
+        raise ConflictError(
+            say("Session {session} is of {owner}, not of {serial}.", session=new.session, owner=owner, serial=serial)
+        )
+    step = Step(person.signs(new.by), now, new.why)
+    session, _ = choose_reference(reception.storage, deriving(reception, now), new.session, step)
+    reception.ring()
+    return said_session(session)
+
+
+@router.get("/units/{serial:path}/derivation", responses=errors(404, 422), tags=["units"])
+def read_derivation(serial: Serial, store: Reading) -> DerivationSchema:
+    """How many sessions of the unit are still to be judged again after a change of its records."""
+    counted = Derivations(store).counted(Units(store).key(serial))
+    return DerivationSchema(unit=serial, sessions=len(counted), waiting=Derivations(store).waiting_of(serial))
+
+
+@router.post("/services/{id}/withdraw", responses=REFUSALS, tags=["units"])
+def withdraw_break(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> Service:
+    """Take a service back. It stays on record and is no break any more."""
+    step = Step(person.signs(handling.by), now, handling.why)
+    service, _ = withdraw_service(reception.storage, deriving(reception, now), id, step)
+    reception.ring()
+    return service

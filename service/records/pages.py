@@ -1,0 +1,142 @@
+"""The forms of records and services."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+from urllib.parse import quote
+
+from fastapi import APIRouter, Form
+from fastapi.responses import RedirectResponse
+from pydantic import AfterValidator
+
+from service.kit.arriving_files import Replaced
+from service.kit.moments import in_utc
+from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, Number, StorageOf, Why
+from service.records.changes import (
+    accept_session,
+    choose_reference,
+    record_service,
+    set_check,
+    set_stage,
+    withdraw_service,
+    withdraw_session,
+)
+from service.records.dependencies import ReceptionOf
+from service.records.supersede import supersede_session
+from service.records.unit_changes import add_note, withdraw_note
+from service.sessions.states import Step
+from service.units.records import NewService
+from service.uploads.correct import correct_session
+from service.uploads.receive import deriving
+from service.web.dependencies import Now
+from service.web.fields import NO_NUL
+
+router = APIRouter(include_in_schema=False)
+
+
+@router.post("/sessions/{id}/withdraw")
+def withdraw(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A session is taken back."""
+    withdraw_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
+    return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/accept")
+def accept(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A session counts."""
+    accept_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
+    return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/check")
+def mark_check(
+    id: Key, by: By, why: Why, reception: ReceptionOf, now: Now, *, is_check: Annotated[bool, Form()] = False
+) -> RedirectResponse:
+    """A session is only a check, or a calibration after all."""
+    set_check(reception.storage, deriving(reception, now), id, Step(by, now, why), is_check=is_check)
+    reception.ring()
+    return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/correct")
+def correct(id: Key, by: By, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A corrected file is made of a questioned session's and stands for it."""
+    return RedirectResponse(f"/sessions/{correct_session(reception, id, by, now).id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/stand")
+def stand(
+    id: Key, session: Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)], by: By, why: Why,
+    reception: ReceptionOf, now: Now,
+) -> RedirectResponse:  # fmt: skip
+    """A session stands for another one of the same moment."""
+    supersede_session(reception.storage, deriving(reception, now), Replaced(session, by, why), id)
+    reception.ring()
+    return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/reference")
+def choose(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A session is chosen as the reference of its epoch."""
+    choose_reference(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
+    return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/services/{id}/withdraw")
+def withdraw_break(id: Number, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A service is taken back."""
+    service, _ = withdraw_service(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
+    return RedirectResponse(f"/units/{quote(service.unit)}#events", SEE_OTHER)
+
+
+At = Annotated[Annotated[datetime, AfterValidator(in_utc)] | None, Form()]
+"""A time in UTC; left empty it is now."""
+Kind = Annotated[Literal["adjustment", "repair", "sensor-swap", "reference", "service"], Form()]
+
+
+@router.post("/units/{serial:path}/services")
+def add_service(
+    serial: Key,
+    kind: Kind,
+    by: By,
+    reception: ReceptionOf,
+    now: Now,
+    *,
+    at: At = None,
+    sensor: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
+    note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+) -> RedirectResponse:
+    """Records what was done to the unit."""
+    new, k = NewService(kind, at or now, note, by, sensor), reception.coverage_factor
+    record_service(reception.storage, serial, new, now, coverage_factor=k)
+    reception.ring()
+    return _unit(serial, "events")
+
+
+@router.post("/units/{serial:path}/notes")
+def write_note(serial: Key, text: Why, by: By, storage: StorageOf, now: Now, *, at: At = None) -> RedirectResponse:
+    """Keeps a remark."""
+    add_note(storage, serial, text, at=at or now, who=by, now=now)
+    return _unit(serial, "events")
+
+
+@router.post("/notes/{id}/withdraw")
+def withdraw_note_form(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
+    """A remark no longer holds."""
+    return _unit(withdraw_note(storage, id, by, why, now).unit, "events")
+
+
+@router.post("/sessions/{id}/stage")
+def mark_session(
+    id: Key, stage: Annotated[Literal["as-found", "as-left", "neither"], Form()], by: By, storage: StorageOf, now: Now
+) -> RedirectResponse:
+    """The session shows its unit as found, as left, or neither."""
+    set_stage(storage, id, None if stage == "neither" else stage, by, now)
+    return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
+
+
+def _unit(serial: str, place: str) -> RedirectResponse:
+    return RedirectResponse(f"/units/{quote(serial)}#{place}", SEE_OTHER)

@@ -1,0 +1,331 @@
+"""Charts by Altair: one specification a kind of chart, drawn once for every panel with that panel's data.
+
+A page carries the specification and the data as JSON; the browser joins and draws them. Colours are the page's
+own style variables, so that charts follow light, dark and print.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from math import isfinite, sqrt
+from typing import Any
+
+import altair as alt
+import numpy as np
+
+from estimator.message import say
+from estimator.results import Calibration, Residuals
+from estimator.session import Array
+from service.kit.measures import THIN, Measure, decimals, deviation_measure, number
+from service.sessions.words.conditions import Condition
+
+DATA_FORM = "points"
+"""Name of the main data set of every specification."""
+UNIT, LEFT, RIGHT, LOW, HIGH = "{unit}", "{left}", "{right}", "{low}", "{high}"
+"""Blanks of a specification: the unit of y, and the ranges of x and y."""
+
+AIR = 0.06
+"""Share of a range that is left empty above and below, so that no mark is cut."""
+CONFIG: dict[str, Any] = {
+    "background": "transparent",
+    "font": "system-ui, sans-serif",
+    "view": {"stroke": "var(--line)", "fill": "transparent"},
+    "mark": {"aria": False},  # the table beside it says the same, and better, than hundreds of marks read aloud
+    "axis": {
+        "domain": False,
+        "grid": True,
+        "gridColor": "var(--grid)",
+        "tickColor": "var(--line)",
+        "tickSize": 4,
+        "labelColor": "var(--muted)",
+        "labelFontSize": 11,
+        "labelPadding": 4,
+        "titleColor": "var(--muted)",
+        "titleFontSize": 11,
+        "titleFontWeight": "normal",
+    },
+    "axisX": {"grid": False},
+}
+"""The look of every chart, in the style variables of the pages."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One small chart: its heading, what it shows in words, and its data."""
+
+    title: str
+    description: str
+    condition: Condition | None
+    """The verdict to show beside the heading; None where nothing is judged."""
+    datasets: dict[str, list[dict[str, Any]]]
+
+
+@dataclass(frozen=True)
+class ChartSet:
+    """Panels that share one specification, and with it their scales."""
+
+    name: str
+    heading: str
+    spec: dict[str, Any]
+    panels: tuple[Panel, ...]
+
+
+def specification(layers: list[alt.Chart], height: int) -> dict[str, Any]:
+    """Layers as Vega-Lite that fills the width of its place."""
+    chart = alt.layer(*layers).properties(width="container", height=height)
+    return {**chart.to_dict(), "config": CONFIG, "autosize": {"type": "fit-x", "contains": "padding"}}
+
+
+def filled(part: Any, values: Mapping[str, Any]) -> Any:
+    """A specification with its blanks filled in: Altair takes long to make one, so each kind is made once."""
+    if isinstance(part, dict):
+        return {key: filled(value, values) for key, value in part.items()}
+    if isinstance(part, list):
+        return [filled(value, values) for value in part]
+    return values.get(part, part) if isinstance(part, str) else part
+
+
+def padded(low: float, high: float) -> list[float]:
+    """A range with a little air above and below."""
+    air = AIR * (high - low) or 1.0
+    return [low - air, high + air]
+
+
+HEIGHT = 130
+"""Pixels: three rows of panels fit on a screen."""
+ROUNDING = 1e-12
+"""m/s² or rad/s: a ten-millionth of a µg (°/h) is what doubles leave of a fit that meets every reading."""
+RUNS = ("direct", "flipped")
+"""Of a two-axis stand; a session without runs is drawn as the first."""
+BETA, ORDER = "beta", "order"
+"""Names of the ways that every session with a stand, and every session, can be looked at."""
+BETA_RANGE, BETA_TICKS = [-12, 372], [0, 90, 180, 270, 360]
+"""Degrees: a full turn with room for the marks at its ends."""
+SHAPES = alt.Scale(domain=RUNS, range=["circle", "triangle-up"])
+"""Runs differ by shape, not by colour alone."""
+
+
+@dataclass(frozen=True)
+class Across:
+    """What residuals are drawn against."""
+
+    name: str
+    heading: str
+    title: str
+    """Of the axis, with its unit."""
+    values: Array
+    """One a row of the session, shape (rows,), in the unit of the title: °, h, °C, or the row's number."""
+
+
+def by_angle(residuals: Residuals) -> Across | None:
+    """By β, 0 to 360°; None where the session had no stand."""
+    if residuals.beta is None:
+        return None
+    return Across(BETA, "By the angle β of the head", "β, °", np.degrees(residuals.beta) % 360)
+
+
+def in_order(residuals: Residuals) -> Across:
+    """By the row's number, from 1."""
+    return Across(ORDER, "In the order measured", "row", np.arange(1.0, len(residuals.value) + 1))
+
+
+def ticks(name: str) -> dict[str, Any]:
+    """Of the axis that residuals are drawn against."""
+    return {"values": BETA_TICKS} if name == BETA else {"tickCount": 5}
+
+
+def zero_line() -> alt.Chart:
+    """Where measured and simulated agree."""
+    chart: alt.Chart = (
+        alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
+    )
+    return chart
+
+
+def largest_edge(value: Array, *sigmas: Array) -> float:
+    """The largest |residual| or 2σ of some sensors, all (rows, sensors), m/s² or rad/s; 0 without any but rounding."""
+    edges = np.abs(np.stack([value, *(2 * sigma for sigma in sigmas)]))
+    found = float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
+    return 0.0 if found < ROUNDING else found
+
+
+def scatter_in_words(size: float, measure: Measure) -> str:
+    """A root mean square, m/s² or rad/s, in a measure; 0 where it is rounding, as without degrees of freedom."""
+    shown = size * measure.factor
+    return "0" if size < ROUNDING else number(shown, decimals(shown))
+
+
+WIDER = 1.01
+"""Times by which the noise found must be larger to be drawn of its own: less is not told apart by eye."""
+DASHES = [4, 3]
+"""Pixels drawn and left out of the edge of the noise that was found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """The noise of R rows of m sensors."""
+
+    stated: Array
+    """(R, m) one sigma at the input, m/s² or rad/s: as the file states it, estimated where it states none."""
+    growth: Array
+    """(m,) how many times as large the calibration reckons with, no less than 1."""
+
+    @property
+    def found(self) -> Array:
+        """(R, m) one sigma that the calibration reckons with, m/s² or rad/s."""
+        return self.stated * self.growth
+
+    @property
+    def times(self) -> float | None:
+        """How many times the noise found is the stated one, at the sensor where most; None where it is not drawn."""
+        most = float(self.growth.max(initial=1.0))
+        return most if most > WIDER else None
+
+    def edge(self, row: int, column: int, factor: float) -> float | None:
+        """2σ found of a reading, in a measure; None where it is not drawn of its own."""
+        return float(f"{2 * self.found[row, column] * factor:.4g}") if self.growth[column] > WIDER else None
+
+
+def noise_of(residuals: Residuals, calibration: Calibration) -> Noise:
+    """Stated as of some residuals, found as of a calibration of the same session.
+
+    The median over a sensor's rows, because readings that take no part are given a sigma beyond all bounds.
+    """
+    stated, own = _stated(residuals), _stated(calibration.residuals)
+    factor = calibration.fit.covariance_factor
+    if calibration.residuals.enlarged_by is None or not isfinite(factor):
+        return Noise(stated, np.ones(stated.shape[1]))
+    known = np.isfinite(stated) & np.isfinite(own) & (stated > 0)
+    ratio = np.divide(own, stated, out=np.ones_like(stated), where=known)
+    return Noise(stated, np.maximum(1.0, np.median(ratio, axis=0) * sqrt(max(factor, 1.0))))
+
+
+def _stated(residuals: Residuals) -> Array:
+    return np.asarray(residuals.sigma / (residuals.enlarged_by or 1.0))
+
+
+def edges(base: alt.Chart, scale: alt.Scale, colour: str) -> list[alt.Chart]:
+    """Dashed lines at both edges of the noise found; ``base`` has x and, in its data, ``found``."""
+    drawn = base.transform_filter("isValid(datum.found)").transform_calculate(opposite="-datum.found")
+    line = drawn.mark_line(color=colour, strokeDash=DASHES, strokeWidth=1)
+    return [line.encode(y=alt.Y(f"{name}:Q", scale=scale), detail="run:N") for name in ("found", "opposite")]
+
+
+RESIDUAL, BAND = "{residual}", "{band}"
+"""Blanks: the names of the tooltip's numbers, with their unit."""
+SHADES = {BETA: 0.07, ORDER: 0.13}
+"""Opacity of the bands, ±2σ of the stated noise: by the angle both runs lie on each other."""
+
+
+def residual_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
+    """One set a kind of sensor and way of looking: by β where the session had a stand, and in order."""
+    kinds = dict.fromkeys(s.kind for s in calibration.sensors)
+    return tuple(
+        _chart_set(calibration, kind, across, several=len(kinds) > 1)
+        for across in _ways(calibration.residuals)
+        for kind in kinds
+        if _columns(calibration, kind)
+    )
+
+
+def _columns(calibration: Calibration, kind: str) -> list[int]:
+    """The sensors of a kind that have residuals."""
+    value = calibration.residuals.value
+    return [i for i, s in enumerate(calibration.sensors) if s.kind == kind and np.isfinite(value[:, i]).any()]
+
+
+def _ways(residuals: Residuals) -> tuple[Across, ...]:
+    angle, order = by_angle(residuals), in_order(residuals)
+    return (order,) if angle is None else (angle, order)
+
+
+def _chart_set(calibration: Calibration, kind: str, across: Across, several: bool) -> ChartSet:
+    columns = _columns(calibration, kind)
+    residuals = calibration.residuals
+    noise = noise_of(residuals, calibration)
+    largest = largest_edge(residuals.value[:, columns], noise.stated[:, columns], noise.found[:, columns])
+    unit = deviation_measure(kind, "bias", largest)
+    return ChartSet(
+        name=f"residuals-{kind}-{across.name}",
+        heading=say("{heading}, {kind}", heading=across.heading, kind=f"{kind}s") if several else across.heading,
+        spec=_filled(across, unit, largest * unit.factor, wider=noise.times is not None),
+        panels=tuple(_panel(calibration, i, across, unit) for i in columns),
+    )
+
+
+def _panel(calibration: Calibration, column: int, across: Across, unit: Measure) -> Panel:
+    residuals = calibration.residuals
+    noise = noise_of(residuals, calibration)
+    value, sigma = residuals.value[:, column], noise.stated[:, column]
+    outside = (
+        say(", {np} of {value} outside ±2σ", np=np.sum(np.abs(value) > 2 * sigma), value=len(value))
+        if np.isfinite(sigma).any()
+        else ""
+    )
+    rms = scatter_in_words(float(np.sqrt(np.nanmean(value**2))), unit)
+    return Panel(
+        title=calibration.sensors[column].name,
+        description=say("rms {rms}{thin}{label}{outside}", rms=rms, thin=THIN, label=unit.label, outside=outside),
+        condition=None,
+        datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
+    )
+
+
+def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit: Measure) -> list[dict[str, Any]]:
+    flipped = np.zeros(len(residuals.value), bool) if residuals.flipped is None else residuals.flipped
+    return [
+        {
+            "x": float(f"{x:.6g}"),
+            "y": float(f"{y * unit.factor:.5g}"),
+            "band": float(f"{2 * s * unit.factor:.5g}") if np.isfinite(s) else 0.0,
+            "found": noise.edge(row - 1, column, unit.factor),
+            "run": RUNS[int(turned)],
+            "row": row,
+        }
+        for row, (x, y, s, turned) in enumerate(
+            zip(across.values, residuals.value[:, column], noise.stated[:, column], flipped, strict=True),
+            1,
+        )
+        if np.isfinite(y)
+    ]
+
+
+def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> dict[str, Any]:
+    left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
+    low, high = padded(-largest, largest)
+    ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
+    texts = {
+        UNIT: unit.label,
+        RESIDUAL: say("residual, {label}", label=unit.label),
+        BAND: say("2σ stated, {label}", label=unit.label),
+    }
+    found: dict[str, Any] = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
+    return found
+
+
+@cache
+def _spec(name: str, title: str, *, wider: bool) -> dict[str, Any]:
+    """With blanks for the unit and the ranges; ``wider``: with the edges of the noise found."""
+    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
+    y_scale = alt.Scale(domain=[LOW, HIGH])
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=SHADES[name])
+    shades = band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N")
+    found = edges(base, y_scale, "var(--accent)") if wider else []
+    return specification([shades, *found, zero_line(), _marks(base, y)], HEIGHT)
+
+
+def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
+    chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
+        y=y,
+        color=alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"])),
+        shape=alt.Shape("run:N", legend=None, scale=SHAPES),
+        tooltip=[
+            alt.Tooltip("row:Q", title="row"),
+            alt.Tooltip("run:N", title="run"),
+            alt.Tooltip("y:Q", title=RESIDUAL),
+            alt.Tooltip("band:Q", title=BAND),
+        ],
+    )
+    return chart

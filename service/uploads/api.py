@@ -1,0 +1,268 @@
+"""Uploads over HTTP: what came in, previews of layouts, templates, large files acknowledged early.
+
+Whoever does not ask, and whoever sends a small file or one that is there already, gets the answer that they always got.
+"""
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, Field, TypeAdapter
+
+from estimator.message import say
+from service.errors import NotFoundError
+from service.jobs.records import Job, JobKind, under_way
+from service.jobs.store import Jobs
+from service.kit.arriving_files import SentFile, held
+from service.kit.limits import in_force
+from service.kit.person import Person
+from service.languages.language import asked
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.planning.pattern import pattern
+from service.planning.question import PlanQuestion
+from service.records.reception import Reception
+from service.sessions.records import StoredSession
+from service.sessions.schemas import SaidSession, said_session
+from service.sessions.store import Sessions
+from service.storage.queries import Store
+from service.uploads.preview import felt_length, first_rows, preview
+from service.uploads.received import REQUEST_BODY, FileOf
+from service.uploads.records import Arrival, ArrivalQuery, Refusal, job_number, refusal_number
+from service.uploads.store import Arrivals
+from service.uploads.take_in import is_long
+from service.uploads.template import session_template
+from service.web.dependencies import Now, Reading
+from service.web.fields import Limit, Text
+from service.web.files import BINARY, XLSX, as_file
+from service.web.problem_document import Fault, errors, faults
+from service.work.api import JobAnswer, job_answer
+from service.work.dependencies import JobDeskOf
+from service.work.job_desk import JobDesk
+
+
+class UploadSchema(BaseModel):
+    """One file that came in: it was stored as a session, or refused and nothing of it stored, or a job works on it."""
+
+    id: str = Field(description="The session's id, or `r` and the number of the refusal, or `j` and that of its job.")
+    at: datetime = Field(description="When it came, UTC.")
+    filename: str = Field(description="What the file was called.")
+    sha256: str = Field(description="SHA-256 of its bytes.")
+    size: int = Field(description="Bytes.")
+    stored: bool = Field(description="Whether it became a session.")
+    session: SaidSession | None = Field(description="The session that it became.")
+    problems: list[Fault] = Field(description="Why it was refused: every fault with its place.")
+    job: str = Field(default="", description="Address of the job that works, or worked, on it.")
+
+
+def job_upload_schema(job: Job, session: StoredSession | None, refusal: Refusal | None) -> UploadSchema:
+    """An upload that a job works on, with what it became where that is known."""
+    own = f"/api/v1/jobs/{job.id}"
+    if session is not None or refusal is not None:
+        came = Arrival(job.asked_at, session, refusal)
+        return upload_schema(came).model_copy(update={"job": own})
+    assert job.sent is not None
+    return UploadSchema(
+        id=under_way(job.id), at=job.asked_at, filename=job.subject, sha256=job.sent.sha256, size=job.sent.size,
+        stored=False, session=None, problems=[], job=own,
+    )  # fmt: skip
+
+
+class UploadPage(BaseModel):
+    """Uploads, newest first."""
+
+    under_way: list[UploadSchema] = Field(
+        description="What came in and a job still works on: all of it where the list begins, none where it goes on, or "
+        "where `refused` ones are asked for."
+    )
+    uploads: list[UploadSchema] = Field(description="What came in and was stored or refused.")
+    next_after: str | None = Field(description="The list goes on with `after` this; null at its end.")
+
+
+def upload_schema(arrival: Arrival) -> UploadSchema:
+    """An upload as the API tells of it."""
+    file: Refusal | StoredSession | None = arrival.refusal or arrival.session
+    assert file is not None, "an arrival is one of the two"
+    problems = () if arrival.refusal is None else arrival.refusal.problems
+    return UploadSchema(
+        id=arrival.name,
+        at=arrival.at,
+        filename=file.filename,
+        sha256=file.sha256,
+        size=file.size,
+        stored=arrival.session is not None,
+        session=None if arrival.session is None else said_session(arrival.session),
+        problems=faults(problems),
+    )
+
+
+router = APIRouter(prefix="/uploads", tags=["sessions"])
+FileName = Annotated[Text | None, Query(alias="q", description="Part of the file's name.")]
+Refused = Annotated[bool, Query(description="Only those that were refused.")]
+UploadId = Annotated[
+    Text, Path(description="A session's id, or `r` and the number of a refusal, or `j` and that of a job.")
+]
+After = Annotated[
+    Text | None, Query(description="The list goes on after this upload: `next_after` of the last answer.")
+]
+
+
+@router.get("", responses=errors(422))
+def list_uploads(
+    store: Reading, text: FileName = None, refused: Refused = False, after: After = None, limit: Limit = 100
+) -> UploadPage:
+    """Every file that came in, newest first, and what became of it; those that a job still works on apart."""
+    refusal = refusal_number(after or "")
+    session = after if refusal is None else None
+    wanted = ArrivalQuery(text, refused, after_session=session, after_refusal=refusal, limit=limit + 1)
+    jobs = () if after or refused else Jobs(store).open_uploads(text)
+    found = Arrivals(store).page(wanted)  # after the jobs: a file that ends meanwhile is in both, not in neither
+    shown = found[:limit]
+    return UploadPage(
+        under_way=[job_upload_schema(job, None, None) for job in jobs],
+        uploads=[upload_schema(one) for one in shown],
+        next_after=shown[-1].name if len(found) > limit else None,
+    )
+
+
+@router.get("/{id}", responses=errors(404, 422))
+def read_upload(id: UploadId, store: Reading) -> UploadSchema:
+    """What became of one file; of a refused one every fault with its place."""
+    refusal, job = refusal_number(id), job_number(id)
+    if job is not None:
+        return _by_job(store, job)
+    if refusal is not None:
+        refused = Arrivals(store).refusal(refusal)
+        return upload_schema(Arrival(refused.at, None, refused))
+    session = Sessions(store).get(id)
+    return upload_schema(Arrival(session.uploaded_at, session, None))
+
+
+def _by_job(store: Store, number: int) -> UploadSchema:
+    job = Jobs(store).get(number)
+    if job.kind is not JobKind.UPLOAD:
+        raise NotFoundError(say("Job {number} takes in no upload.", number=number))
+    session = Sessions(store).get(job.session) if job.session else None
+    return job_upload_schema(job, session, None if job.refusal is None else Arrivals(store).refusal(job.refusal))
+
+
+PREFER, ASYNC = "Prefer", "respond-async"
+"""Header and preference of RFC 7240."""
+ACCEPTED = 202
+JSON = TypeAdapter(JobAnswer)
+
+
+@dataclass(frozen=True)
+class Later:
+    """How one request wants to be answered."""
+
+    is_asked_for: bool
+    longer_than: int
+    desk: JobDesk
+    person: Person
+
+    def is_for(self, file: SentFile, reception: Reception) -> bool:
+        """Whether this file is worked on later."""
+        return self.is_asked_for and is_long(reception.storage, file, self.longer_than)
+
+    def accepted(self, file: SentFile, reception: Reception) -> JSONResponse:
+        """The job, with its address; what becomes of the upload is told there too."""
+        job = self.desk.take_in(reception, file, self.person)
+        headers = {"Location": f"/api/v1/jobs/{job.id}", "Preference-Applied": ASYNC}
+        return JSONResponse(JSON.dump_python(job_answer(job), mode="json"), ACCEPTED, headers)
+
+
+def _later(request: Request, desk: JobDeskOf, person: PersonOf) -> Later:
+    asked = ",".join(request.headers.getlist(PREFER)).lower().split(",")
+    is_asked = any(one.split(";")[0].strip() == ASYNC for one in asked)
+    return Later(is_asked, in_force().later, desk, person)
+
+
+LaterOf = Annotated[Later, Depends(_later)]
+"""Whether the sender wants a large file to be worked on later, and how it is then answered."""
+
+
+class LayoutColumn(BaseModel):
+    """One column as it stands in the file."""
+
+    heading: str = Field(description="As it stands, joined where there are two rows of headings.")
+    cells: list[str] = Field(description="The first ones.")
+    numeric: bool = Field(description="Whether most of its cells are numbers.")
+    empty: bool = Field(description="Whether no cell says anything.")
+    words: list[str] = Field(description="The different texts of a column with few of them.")
+
+
+class PreviewSchema(BaseModel):
+    """A table under a mapping; correct the mapping and send it again, or with the file to `POST /sessions`."""
+
+    mapping: dict[str, Any] = Field(description="imu-mapping/1, complete as it is to be sent.")
+    remembered: bool = Field(description="Whether it is that of an earlier file with the same headings.")
+    fingerprint: str = Field(description="SHA-256 of the headings.")
+    rows: int = Field(description="Of the file.")
+    sheets: list[str] = Field(description="Of a workbook.")
+    columns: list[LayoutColumn] = Field(description="Of the file, in its order.")
+    problems: list[Fault] = Field(description="What is missing or cannot be read yet; empty when it can be stored.")
+    first_rows: list[dict[str, float | str]] = Field(
+        description="As they will be read, SI: angles in rad, sensors in m/s² or rad/s."
+    )
+    felt: float | None = Field(
+        description="Length of the first row's vector by the nominal axes: about 9.8 m/s² at rest."
+    )
+
+
+layouts_router = APIRouter(prefix="/layouts", tags=["sessions"])
+Unit = Annotated[Text, Query(description="Whose last session says what the file does not.")]
+UnitType = Annotated[Text, Query(description="The last session of this stored type says it.")]
+
+
+@layouts_router.post("/preview", responses=errors(400, 413, 422), openapi_extra=REQUEST_BODY)
+def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type: UnitType = "") -> PreviewSchema:
+    """How a table of one's own layout is understood, or with `mapping` would be read. Nothing is stored."""
+    found = preview(
+        storage, held(file.content), file.filename, mapping=file.mapping, unit=unit.strip(), unit_type=unit_type.strip()
+    )
+    seen, session = found.seen, found.session
+    return PreviewSchema(
+        mapping=found.mapping,
+        remembered=found.remembered,
+        fingerprint=found.fingerprint,
+        rows=seen["rows"],
+        sheets=list(seen["sheets"]),
+        columns=[LayoutColumn.model_validate(column) for column in seen["columns"]],
+        problems=faults(found.problems),
+        first_rows=[] if session is None else first_rows(session),
+        felt=None if session is None else felt_length(session),
+    )
+
+
+templates_router = APIRouter(tags=["sessions"])
+TemplateUnit = Annotated[Text, Query(description="Made like the last session of this serial number, where it has one.")]
+TemplateType = Annotated[Text, Query(description="Made for this stored type, like the last session of its units.")]
+Kind = Annotated[Literal["accelerometer", "gyroscope"], Query(description="Without a unit and a type: of the sensors.")]
+Sensors = Annotated[int, Query(ge=3, le=12, description="Without a unit and a type: how many.")]
+
+
+@templates_router.get(
+    "/session-template", responses={200: {"content": {XLSX: BINARY}}, **errors(404, 422)}, response_class=Response
+)
+def read_template(
+    request: Request,
+    storage: StorageOf,
+    now: Now,
+    *,
+    unit: TemplateUnit = "",
+    unit_type: TemplateType = "",
+    kind: Kind = "accelerometer",
+    sensors: Sensors = 6,
+) -> Response:
+    """A workbook to fill in and upload as it is: sensors, stand and schedule are there, with units and choices. In the
+    language of `?lang=`, or of Accept-Language."""
+    block = PlanQuestion.model_validate({"kind": kind, "sensors": sensors})
+    like = pattern(storage, unit.strip(), unit_type.strip(), block)
+    name = unit.strip() or unit_type.strip() or f"{sensors}-{kind}s"
+    language = asked(request.scope)
+    made = as_file(session_template(like, now, language), XLSX, f"session-{name}.xlsx")
+    made.headers["Content-Language"] = language.value
+    return made

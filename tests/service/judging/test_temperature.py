@@ -1,0 +1,43 @@
+"""A verdict across more °C than a unit's sessions cover says so wherever it stands."""
+
+import json
+
+from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.made_sessions import session_bytes, session_id
+
+SAYS = "it was measured at 35 °C, 11 °C above its reference and earlier sessions (20–24 °C)"
+AGAIN = "measure again at about 20 °C, or calibrate over temperature"
+
+
+def at(celsius: float, month: int, *, moved: float = 0.0) -> bytes:
+    """A session at a temperature; A3's bias is moved by some µg."""
+    document = json.loads(session_bytes(seed=month, month=month, a3_moved=moved, m=4))
+    document["table"]["temperature_c"] = [celsius] * len(document["table"]["A1"])
+    return json.dumps(document).encode()
+
+
+SESSIONS = (at(20.0, 1), at(24.0, 2), at(35.0, 3, moved=90.0))
+"""A reference, a sound session as seasons change, and a warm one of which A3 reads otherwise."""
+
+
+def plain(text: str) -> str:
+    """Without spaces that do not break."""
+    return text.replace("\u00a0", " ").replace("\u202f", " ")
+
+
+def test_it_is_said_with_the_verdict_and_no_replacement_is_advised(holding: Holding) -> None:
+    client = holding(*SESSIONS, diagnosed=True)
+    _, sound, warm = (client.get(f"/api/v1/sessions/{session_id(s)}").json() for s in SESSIONS)
+    assert (sound["verdict"], sound["reservations"]) == ("pass", [])
+    assert warm["verdict"] == "fail"
+    (found,) = [r for r in warm["reservations"] if r["kind"] == "temperature"]
+    assert plain(found["text"]).startswith(SAYS)
+    assert plain(found["advice"]) == AGAIN
+    assert plain(client.get("/api/v1/units/BA-017/usable").json()["reservation"]).startswith(f"I{SAYS[1:]}")
+    diagnosis = client.get(f"/api/v1/sessions/{warm['id']}/diagnosis").json()
+    (drift,) = [f for f in diagnosis["findings"] if f["cause"] == "sensor-drift"]
+    assert (drift["sensors"], drift["alternatives"]) == (["A3"], ["bias-temperature"])
+    pages = [client.get(path).text for path in (f"/sessions/{warm['id']}", "/units/BA-017", "/flags")]
+    assert SAYS in plain(pages[0])
+    assert "replacement" not in "".join(pages)

@@ -1,0 +1,102 @@
+"""From uploads to what drifts or has jumped: flags of their own, what is needed next, and what a type teaches."""
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from service.flags.records import Matter
+from service.flags.store import FlagQuery, Flags
+from service.outlook.reading import outlook_of
+from service.outlook.records import Action, ParameterTrend, UnitOutlook
+from service.sessions.store import Sessions
+from service.storage import Storage
+from service.work.watch import relearn
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.dated import upload_and_date
+from tests.service.made_sessions import MICRO_G, session_bytes
+from tests.service.recordings import recording_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+
+
+def measure(storage: Storage, moved: dict[int, float], unit: str = "BA-017") -> None:
+    """Sessions by month of 2026, with how far A3's bias has moved, µg; 50 are allowed."""
+    for month, micro_g in moved.items():
+        upload_and_date(storage, session_bytes(seed=month, month=month, a3_moved=micro_g, unit=unit), "a.json", NOW)
+
+
+def outlook(storage: Storage, unit: str = "BA-017") -> UnitOutlook:
+    with storage.database.reading() as store:
+        return outlook_of(store, unit, NOW)
+
+
+def a3_bias(storage: Storage) -> ParameterTrend:
+    return next(t for t in outlook(storage).trends if (t.sensor, t.parameter) == ("A3", "bias"))
+
+
+def flags(storage: Storage) -> dict[Matter, str]:
+    with storage.database.reading() as store:
+        return {flag.matter: flag.summary for flag in Flags(store).page(FlagQuery("BA-017"))}
+
+
+def test_a_jump_within_the_tolerance_has_a_flag_of_its_own(storage: Storage) -> None:
+    measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 25.0, 6: 25.0})
+    (change,) = a3_bias(storage).changes
+    assert (change.kind, change.after.month, change.before.month) == ("jump", 4, 5)
+    assert change.size == pytest.approx(25 * MICRO_G, abs=3 * change.sigma)
+    assert list(flags(storage)) == [Matter.JUMP]
+    assert flags(storage)[Matter.JUMP].startswith("A3 bias has jumped between 1 Apr 2026 and 1 May 2026 by +")
+
+
+def test_a_drift_within_the_tolerance_is_flagged_with_its_beginning(storage: Storage) -> None:
+    measure(storage, {1: 0.0, 3: 6.0, 5: 12.0, 7: 18.0, 9: 24.0, 10: 27.0})
+    assert list(flags(storage)) == [Matter.DRIFT]
+    assert flags(storage)[Matter.DRIFT].startswith("A3 bias has been drifting since 1 Jan 2026 by +")
+
+
+def test_nothing_is_flagged_where_nothing_happens(storage: Storage) -> None:
+    measure(storage, dict.fromkeys(range(1, 7), 0.0))
+    assert flags(storage) == {}
+
+
+def test_a_unit_found_unfit_needs_a_hand_and_no_date(storage: Storage) -> None:
+    measure(storage, {1: 0.0, 3: 90.0})
+    found = outlook(storage)
+    assert (found.action, found.due, found.overdue) == (Action.NOW, None, False)
+    assert "adjust, repair or withdraw it" in found.reason
+
+
+def test_an_undecided_session_is_repeated_with_what_to_measure(storage: Storage) -> None:
+    upload_and_date(storage, session_bytes(month=1), "a.json", NOW)
+    sigmas = dict.fromkeys(("theta_x", "theta_y", "alpha", "beta"), 600.0)
+    coarse = {"id": "S-2", "alpha_deg": 40.0, "sigma_arcsec": sigmas}
+    upload_and_date(storage, session_bytes(seed=2, month=2, stand=coarse), "b.json", NOW)
+    found = outlook(storage)
+    assert (found.action, found.due) == (Action.REPEAT, None)
+    assert "measure" in found.reason
+
+
+def test_a_recording_in_service_that_finds_a_unit_unfit_leaves_it_no_date(storage: Storage) -> None:
+    measure(storage, {1: 0.0, 3: 0.0})
+    upload_and_date(storage, recording_bytes(a3_moved=130.0), "flight.json", NOW)
+    found = outlook(storage)
+    assert (found.action, found.due) == (Action.NOW, None)
+    assert found.reason.startswith("Found out of tolerance on 1 May 2026")
+
+
+def test_a_fleet_does_not_depend_on_the_order_in_which_its_sessions_came(storage: Storage) -> None:
+    """Another unit of the type tells later what was not known when the first was looked at."""
+    measure(storage, {1: 0.0, 3: 0.0, 5: 0.0})
+    alone = outlook(storage)
+    measure(storage, {1: 0.0, 3: 10.0, 5: 25.0}, unit="BA-018")
+    assert relearn(storage, NOW) == 1
+    together = outlook(storage)
+    assert together.learned_from == 2 * alone.learned_from
+    assert together.risk != alone.risk
+    assert relearn(storage, NOW + timedelta(hours=1)) == 0
+
+
+def test_the_temperature_of_a_session_is_kept(storage: Storage) -> None:
+    id = upload_and_date(storage, session_bytes(), "a.json", NOW).id
+    with storage.database.reading() as store:
+        assert Sessions(store).get(id).temperature == 21.0

@@ -1,0 +1,48 @@
+"""What a unit's page draws: its newest sessions, whole."""
+
+from datetime import UTC, datetime
+
+import pytest
+
+from service.papers.session_report import recent_history
+from service.sessions.records import HistoryPoint
+from service.storage import Storage
+from service.uploads.receive import upload
+from tests.builders import ARCSEC
+from tests.service.made_sessions import session_bytes
+from tests.service.stands.test_stands import measured_on
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+POINTS = 24
+"""Of one session with six sensors."""
+
+
+@pytest.fixture
+def measured(storage: Storage) -> Storage:
+    """A unit with three sessions, the latest uploaded first."""
+    for month in (7, 3, 5):
+        upload(storage, session_bytes(seed=month, month=month), "session.json", NOW)
+    return storage
+
+
+@pytest.mark.parametrize(("most", "months"), [(3 * POINTS, [3, 5, 7]), (3 * POINTS - 1, [5, 7]), (POINTS, [7])])
+def test_the_newest_sessions_that_fit_are_taken_whole(measured: Storage, most: int, months: list[int]) -> None:
+    with measured.database.reading() as store:
+        found = recent_history(store, "BA-017", most)
+    assert [point.at.month for point in found] == [month for month in months for _ in range(POINTS)]
+
+
+def axis_of(storage: Storage, *, raw: bool) -> list[HistoryPoint]:
+    with storage.database.reading() as store:
+        return [p for p in recent_history(store, "BA-1", 1000, raw=raw) if (p.sensor, p.parameter) == ("A1", "axis")]
+
+
+def test_an_axis_is_shown_as_it_is_judged_and_as_it_was_measured_on_demand(storage: Storage) -> None:
+    """A block that turned by 15 arcsec between two sessions."""
+    for month, seed in ((3, 1), (7, 2)):
+        upload(storage, measured_on("S2", "BA-1", month, seed), "a.json", NOW)
+    judged, measured = (axis_of(storage, raw=raw)[-1] for raw in (False, True))
+    assert (judged.value or 0) / ARCSEC < 3 < 8 < (measured.value or 0) / ARCSEC
+    assert (judged.value, measured.value) == (judged.deviation, measured.deviation)
+    assert (judged.expanded or 0) < (measured.expanded or 0)
+    assert judged.verdict is measured.verdict

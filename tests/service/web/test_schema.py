@@ -1,0 +1,104 @@
+"""The service keeps its own description: generated requests, no 5xx, answers that match."""
+
+from collections.abc import Iterator
+from contextlib import nullcontext, suppress
+
+import httpx
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis.errors import Unsatisfiable
+from schemathesis import GenerationMode
+
+from tests.conftest import StockOf
+from tests.databases import ENGINES
+from tests.patience import LONG
+from tests.service.made_sessions import session_bytes
+from tests.serving import serving
+
+EXAMPLES = {GenerationMode.POSITIVE: 4, GenerationMode.NEGATIVE: 2}
+"""Of each call; docs/security/http.md has what thousands of requests came to."""
+FEWER = {"/api/v1/plan": 2}
+"""A plan takes a second or more."""
+
+
+@pytest.fixture(scope="module")
+def address(request: pytest.FixtureRequest, stock_of: StockOf) -> Iterator[str]:
+    """A service with two sessions of one unit."""
+    stock = stock_of(request.getfixturevalue(request.param))
+    with stock.holding(session_bytes(), session_bytes(seed=2, month=4)) as settings, serving(settings) as url:
+        yield url
+
+
+@pytest.fixture(scope="module")
+def description(address: str) -> schemathesis.BaseSchema:
+    """What the service says of itself."""
+    return schemathesis.openapi.from_url(f"{address}/openapi.json", timeout=LONG)
+
+
+@pytest.mark.parametrize(
+    ("address", "mode"),
+    [
+        *((engine, GenerationMode.POSITIVE) for engine in ENGINES),
+        ("sqlite", GenerationMode.NEGATIVE),  # is refused before the database is asked
+    ],
+    indirect=["address"],
+)
+def test_generated_requests_are_answered_as_described(
+    description: schemathesis.BaseSchema, mode: GenerationMode
+) -> None:
+    """Requests that keep the description, and requests that break it wherever it can be broken."""
+    operations = [found.ok() for found in description.get_all_operations()]
+    assert len(operations) > 15
+    for operation in operations if mode is GenerationMode.POSITIVE else asking_for_more(operations):
+        # Where nothing is asked for, nothing can be broken.
+        with suppress(Unsatisfiable) if mode is GenerationMode.NEGATIVE else nullcontext():
+            assert_conforming(operation, mode)
+
+
+def asking_for_more(operations: list[schemathesis.APIOperation]) -> Iterator[schemathesis.APIOperation]:
+    """Those with a body, or with a parameter that none before them has: what is declared once is broken once."""
+    known: set[str] = set()
+    for operation in operations:
+        asked = {repr(parameter.definition) for parameter in operation.iter_parameters()}
+        if operation.body or asked - known:
+            yield operation
+        known |= asked
+
+
+def assert_conforming(operation: schemathesis.APIOperation, mode: GenerationMode) -> None:
+    """Sends generated requests and holds every answer to the description."""
+
+    @settings(
+        max_examples=FEWER.get(operation.path, EXAMPLES[mode]),
+        derandomize=True,
+        deadline=None,
+        database=None,
+        phases=[Phase.explicit, Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(case=operation.as_strategy(generation_mode=mode))
+    def conforms(case: schemathesis.Case) -> None:
+        # What a schema cannot say of a session file, a unit that exists or a time in the past is refused with 4xx.
+        case.call_and_validate(excluded_checks=[schemathesis.checks.positive_data_acceptance], timeout=LONG)
+
+    conforms()
+
+
+@pytest.mark.parametrize("address", ["sqlite"], indirect=True)
+def test_every_field_and_parameter_is_described(address: str) -> None:
+    found = httpx.get(f"{address}/openapi.json").json()
+    bare = [
+        f"{name}.{field}"
+        for name, model in found["components"]["schemas"].items()
+        for field, spec in model.get("properties", {}).items()
+        if "description" not in spec and "$ref" not in spec
+    ]
+    bare += [
+        f"{path} {parameter['name']}"
+        for path, operations in found["paths"].items()
+        for operation in operations.values()
+        for parameter in operation.get("parameters", [])
+        if "description" not in parameter
+    ]
+    assert bare == []
