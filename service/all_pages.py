@@ -17,8 +17,9 @@ from service.pages.stand import pages as stands
 from service.pages.type import pages as types
 from service.pages.unit import remarks
 from service.papers import pages as papers
-from service.people import account_pages, admin_pages, oidc_pages
+from service.people import account_pages, admin_pages
 from service.people.admission import ADMITTED
+from service.people.oidc import pages as oidc_pages
 from service.planning import pages as plan_pages
 from service.planning import readiness_pages as before_pages
 from service.records import pages as records

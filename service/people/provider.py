@@ -19,7 +19,7 @@ from service.errors import ServiceError
 from service.kit.person import Role
 from service.settings import Settings
 
-ROOM = "service.people.oidc"
+ROOM = "service.people.oidc.protocol"
 WITHOUT = "A provider to sign in at is set, but a library is missing: {fault}. Run pip install 'imu-health[oidc]'."
 EVERYBODY = "*"
 """Stands for every value of the claim, and for none."""

@@ -44,14 +44,14 @@ ESTIMATOR_LAYERS = (
 HOMES = {
     "sqlalchemy": r"service\.storage\b|service\.\w+\.(\w+_)?(store|tables)$|migrations\b",
     "alembic": r"service\.storage\b|migrations\b",
-    "fastapi": r"service\.(web|pages|app|all_pages|all_api)\b|service\.\w+\.(\w+_)?(api|pages|dependencies|admission)$"
-    r"|service\.uploads\.(received$|layout\b)|service\.papers\.onboard\.api$",
+    "fastapi": r"service\.(web|pages|app|all_pages|all_api)\b|service(\.\w+)+\.(\w+_)?(api|pages|dependencies)$"
+    r"|service\.people\.admission$|service\.uploads\.(received$|layout\b)",
     "starlette": r"service\.(web|pages|all_pages)\b|service\.people\.admission$|service\.uploads\.(received$|layout\b)",
     "typer": r"service\.(cli|commands)\b",
     "pyhanko": r"service\.papers\.seal\b",
     "signxml": r"service\.papers\.seal\b",
     "cryptography": r"service\.papers\.seal\b",
-    "joserfc": r"service\.people\.oidc$",
+    "joserfc": r"service\.people\.oidc\.protocol$",
     "pyulog": r"service\.ingest\.logs\.ulog$",
     "mcap": r"service\.ingest\.logs\.mcap_file$",
     "rosbags": r"service\.ingest\.logs\.ros$",

@@ -40,7 +40,7 @@ class Part:
     """An optional part."""
 
     places: tuple[str, ...]
-    """Its folder or files."""
+    """Its folder."""
     registered: Mapping[str, str] = field(default_factory=dict)
     """By file: the name under which it is registered there, which stands in an import and in a tuple."""
 
@@ -48,9 +48,7 @@ class Part:
 PARTS = {
     "seal": Part(("service/papers/seal",)),
     "exports": Part(("service/papers/onboard",), {"service/all_api.py": "onboard"}),
-    "provider": Part(
-        ("service/people/oidc.py", "service/people/oidc_pages.py"), {"service/all_pages.py": "oidc_pages"}
-    ),
+    "provider": Part(("service/people/oidc",), {"service/all_pages.py": "oidc_pages"}),
 }
 
 
