@@ -43,11 +43,9 @@ def missing_in_words(found: Missing) -> tuple[str, ...]:
         for direction in found.directions.tolist()
     ]
     if found.unseen:
-        lines.append(
-            say("Until then open: {unseen} ….", unseen=joined(", ", found.unseen[:MOST]))
-            if len(found.unseen) > MOST
-            else say("Until then open: {unseen}.", unseen=joined(", ", found.unseen[:MOST]))
-        )
+        unseen, is_more = joined(", ", found.unseen[:MOST]), len(found.unseen) > MOST
+        template = "Until then open: {unseen} …." if is_more else "Until then open: {unseen}."
+        lines.append(say(template, unseen=unseen))
     return tuple(lines)
 
 
