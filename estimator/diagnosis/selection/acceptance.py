@@ -32,8 +32,8 @@ def accepted(start: SearchState) -> SearchState:
     claims, state = doubted(start), None
     if not claims or shared_event(start):
         state = accepted_against_course(start)
-        if not claims or any(f.event for f in state.detections):
-            claims = doubted(state)
+        doubts = doubted(state)
+        claims = claims if claims and (doubts or not any(f.event for f in state.detections)) else doubts
     rival = under_free_scale(start, claims) if claims else None
     return without_names_of_tails(
         without_names_in_no_noise(confirmed(start, rival or state or accepted_against_course(start)))

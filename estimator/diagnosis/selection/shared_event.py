@@ -191,9 +191,10 @@ def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
 
 
 def without_formula(start: SearchState) -> list[Course]:
-    """The likeliest smooth course that no formula gives, of all sensors; none in a block of one."""
+    """The likeliest smooth course that no formula gives, of all sensors; none in a block of one, nor in noise that what
+    it leaves must tell."""
     residuals, setting, m = start.residuals, start.baseline.setting, start.sensor_count
-    if m < 2:
+    if m < 2 or start.baseline.unstated.any():
         return []
     found, cause = FreeCourse.of(wanderings(residuals)[1].trace, residuals.z, m), SharedCourse()
     nonlinear = tuple(found.waves.tolist())

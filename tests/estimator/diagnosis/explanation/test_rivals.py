@@ -49,6 +49,6 @@ def test_scatter_in_excess_may_be_something_else(doubtful: bool) -> None:
 
 def test_no_measurement_is_proposed_where_the_rival_absorbs_everything() -> None:
     state = named(("cubic-nonlinearity",), "cubic-nonlinearity", 1.0)
-    (found,) = state.found
+    (found,) = state.detections
     (same,) = separations(state, found, [found.best])
     assert (same.measurement, same.then) == ("", None)
