@@ -32,12 +32,16 @@ def accepted(start: SearchState) -> SearchState:
     claims, state = doubted(start), None
     if not claims or shared_event(start):
         state = accepted_against_course(start)
-        if not claims or any(f.event for f in state.detections):
-            claims = doubted(state)
+        claims = doubted(state) if not claims or explains_scatter(state) else claims
     rival = under_free_scale(start, claims) if claims else None
     return without_names_of_tails(
         without_names_in_no_noise(confirmed(start, rival or state or accepted_against_course(start)))
     )
+
+
+def explains_scatter(state: SearchState) -> bool:
+    """Whether a course that sensors share stands, and nothing is left that scatters otherwise than stated."""
+    return len([f for f in state.detections if f.event]) > 1 and not (state.scatter or state.structures)
 
 
 def confirmed(start: SearchState, state: SearchState) -> SearchState:

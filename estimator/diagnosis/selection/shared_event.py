@@ -191,9 +191,10 @@ def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
 
 
 def without_formula(start: SearchState) -> list[Course]:
-    """The likeliest smooth course that no formula gives, of all sensors; none in a block of one."""
+    """The likeliest smooth course that no formula gives, of all sensors; none in a block of one, nor in noise that what
+    it leaves must tell."""
     residuals, setting, m = start.residuals, start.baseline.setting, start.sensor_count
-    if m < 2:
+    if m < 2 or start.baseline.unstated.any():
         return []
     found, cause = FreeCourse.of(wanderings(residuals)[1].trace, residuals.z, m), SharedCourse()
     nonlinear = tuple(found.waves.tolist())
@@ -346,14 +347,19 @@ def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
 
 def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
     """Whether something else is likelier than a course that sensors share: zeros that wander, each by itself, or the
-    whole block turned at one moment. Zeros that wander are a misfortune more at least; beside them a course must be
-    plain."""
+    whole block turned at one moment.
+
+    Zeros that wander are a misfortune more at least, but where a course has no formula or the noise is not known, which
+    lets many things pass for a course. Beside zeros that wander a course must be plain.
+    """
     unit, price = unit_traces(followed.course), float(np.log(places_of(start, followed.course)))
     alone = log_mean(log_marginal(start.residuals, unit, SIZES)) - price
     wandering, beside = log_beside_wandering(start.residuals, unit, SIZES)
     if log_turning(start.residuals, SIZES) > max(alone, beside - price):
         return True
-    return alone < wandering - FURTHER and beside - price - SURE < wandering
+    has_formula = not isinstance(followed.course.traces.cause, SharedCourse)
+    margin = FURTHER if has_formula and not start.baseline.unstated.any() else 0.0
+    return alone < wandering - margin and beside - price - SURE < wandering
 
 
 def ranked(start: SearchState, followed: Followed, event: Sequence[Scored]) -> tuple[Detection, ...]:

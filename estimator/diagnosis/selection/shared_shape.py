@@ -12,11 +12,11 @@ one column more for all sensors together, so that ψ has an uncertainty and ever
 Against it every sensor may have a shape of its own, each of those that are tried as likely beforehand as for all. With
 T_i(ψ) what a sensor's own trace explains beside those of the others at ψ̂, they share one shape where
 
-    ln mean_ψ exp ½[T(ψ) − T(ψ̂)] − Σ_i ln mean_ψ exp ½[T_i(ψ) − T_i(ψ̂)] > −ln 19,
+    ln mean_ψ exp ½w[T(ψ) − T(ψ̂)] − Σ_i ln mean_ψ exp ½w[T_i(ψ) − T_i(ψ̂)] > −ln 19,        w = g/(1 + g)
 
-the ln of the Bayes factor: below it they are surely apart, and about zero the session does not tell, so that one
-misfortune is likelier than many. No share of the sensors decides, and no strong few: a weak one that fits ill speaks
-against it as loudly as it can.
+with sizes N(0, g): the ln of the Bayes factor. Below that bound they are surely apart, and about zero the session does
+not tell, so that one misfortune is likelier than many. No share of the sensors decides, and no strong few: a weak one
+that fits ill speaks against it as loudly as it can.
 """
 
 from collections.abc import Sequence
@@ -122,14 +122,15 @@ def powers(z: Array, traces: Array, beside: Array) -> Array:
 
 
 def log_shared(together: Array, shared: float, apart: Sequence[Array], own: Sequence[float]) -> float:
-    """ln Bayes factor of one shape for all against one for each.
+    """ln Bayes factor of one shape for all against one for each, sizes being N(0, g) with g as the sensors show it.
 
     ``together`` (S,) T of all at every shape, ``shared`` at that which all have; ``apart``, ``own``: T_i, the same of
     every sensor.
     """
-    each = [_log_mean_half(values - known) for values, known in zip(apart, own, strict=True)]
-    return _log_mean_half(together - shared) - sum(each)
+    g = max(float(np.mean(own)) - 1.0, 1.0)
+    each = [_log_mean(0.5 * g / (1 + g) * (values - known)) for values, known in zip(apart, own, strict=True)]
+    return _log_mean(0.5 * g / (1 + g) * (together - shared)) - sum(each)
 
 
-def _log_mean_half(values: Array) -> float:
-    return float(logsumexp(0.5 * values) - np.log(len(values)))
+def _log_mean(values: Array) -> float:
+    return float(logsumexp(values) - np.log(len(values)))

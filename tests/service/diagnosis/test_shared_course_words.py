@@ -1,0 +1,31 @@
+"""A shared course in words: its one shape with U, and those that follow it faintly."""
+
+from dataclasses import replace
+
+from estimator.diagnosis.results import Shared
+from service.diagnosis.words.amplitudes import more_of, shape_of
+from service.kit.measures import HARD, THIN
+from tests.service.findings import JUMP
+
+WARM = replace(
+    JUMP,
+    cause="warm-up",
+    nonlinear_each=({"s": 690.0},) * 2,
+    shared=Shared("some", {"s": 690.0}, {"s": 20.0}, ("A4",), (2e-5,), (1e-5,), "A1", (), (), ()),
+)
+
+
+def test_the_time_constant_has_its_uncertainty() -> None:
+    assert shape_of(WARM) == f"time constant 690{HARD}±{HARD}40{THIN}s"
+
+
+def test_a_row_has_none() -> None:
+    assert WARM.shared is not None
+    jump = replace(WARM, cause="bias-jump", shared=replace(WARM.shared, shape={"row": 14.0}, shape_sigma={}))
+    assert shape_of(jump) == "from row 14"
+
+
+def test_who_follows_faintly_is_told_with_its_size() -> None:
+    [size] = more_of(WARM)
+    assert size.startswith("A4: 2.0")
+    assert more_of(JUMP) == ()
