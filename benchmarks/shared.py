@@ -20,6 +20,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, ncx2
 
+from benchmarks.details import in_full, publish
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import diagnose, read_session
@@ -180,7 +181,7 @@ def courses(answers: Sequence[Answer]) -> str:
         for b in (STAND, TWELVE)
     ]
     right = [(b.name, *(rate([a.right for a in of(answers, SHARED, c, b)]) for c in COURSES)) for b in BLOCKS]
-    return (
+    return in_full(
         "## One finding, by course\n\n"
         + table(("block", *COURSES), rows)
         + "\n\nUnder its own name; a slow room may pass for settling or a ramp, and one of these for the other:\n\n"
@@ -204,7 +205,7 @@ def main() -> None:
             answers.append(answer)
             print(f"\r{len(answers)}/{len(work)}", end="", file=sys.stderr)
     text = page(answers, f"python -m benchmarks.shared --sessions {options.sessions} --seed {options.seed}")
-    options.out.write_text(text, encoding="utf-8")
+    publish(text, options.out)
     print(f"\n{text}")
 
 
