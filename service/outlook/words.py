@@ -52,6 +52,15 @@ def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
     )
 
 
+CHANGED = {
+    "jump": "{what} has jumped between {after} and {before} by {moved}; {allowed} are allowed.",
+    "drift": "{what} has been drifting since {after} by {moved}; {allowed} are allowed.",
+    "aging": "{what} is aging since {after}, by {moved} in the first year and slower from then on; "
+    "{allowed} are allowed.",
+    "walk": "{what} has moved since {after}, at no steady rate; by {moved} so far; {allowed} are allowed.",
+}
+
+
 def changes_of(trend: ParameterTrend) -> tuple[str, ...]:
     """One sentence a change that chance does not explain; the temperature's last."""
     warm = trend.temperature
@@ -61,22 +70,15 @@ def changes_of(trend: ParameterTrend) -> tuple[str, ...]:
 
 def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
     """``A3 bias has jumped between 2 Mar 2026 and 4 May 2026 by +40 ± 3 µg; 50 µg are allowed.``"""
-    allowed = say("{kind} are allowed", kind=in_words(trend.kind, trend.parameter, trend.tolerance))
-    after, before = day_of(change.after), day_of(change.before)
-    moved = _sized(trend, change.size, change.sigma)
-    says = {
-        "jump": say("has jumped between {after} and {before} by {moved}", after=after, before=before, moved=moved),
-        "drift": say(
-            "has been drifting since {after} by {trend}",
-            after=after,
-            trend=_sized(trend, change.size, change.sigma, "{rate} a year"),
-        ),
-        "aging": say(
-            "is aging since {after}, by {moved} in the first year and slower from then on", after=after, moved=moved
-        ),
-        "walk": say("has moved since {after}, at no steady rate; by {moved} so far", after=after, moved=moved),
-    }
-    return say("{trend} {says}; {allowed}.", trend=place_of(trend), says=says[change.kind], allowed=allowed)
+    rate = _sized(trend, change.size, change.sigma, "{rate} a year")
+    return say(
+        CHANGED[change.kind],
+        what=place_of(trend),
+        after=day_of(change.after),
+        before=day_of(change.before),
+        moved=rate if change.kind == "drift" else _sized(trend, change.size, change.sigma),
+        allowed=in_words(trend.kind, trend.parameter, trend.tolerance),
+    )
 
 
 def place_of(trend: ParameterTrend) -> str:

@@ -50,20 +50,15 @@ from estimator.significance import family_wise, p_value
 
 SCREEN = 0.01
 """p-value of the best course, all courses together, below which it is looked at closely; it names nothing."""
-
 CLOSEST = 3
 """Courses that are looked at closely by either measure: next to the best one others may explain almost as much."""
-
 OVERLAP = 1e-4
 """Least eigenvalue of the correlation of traces that counts as a direction: below it amplitudes would cancel."""
-
 ONE_ROW = 0.7
 """Share of a shape's energy that one row may hold, as the first does of a block that settles within three: more is
 something that befell the row."""
-
 MOST = 1e15
 """Shapes and sets of sensors that are counted: nothing that was chosen among more is believed."""
-
 RULED_OUT = 20.0
 """ln evidence by which a rival of a course is out of the question: no list shows a share of 1e-9."""
 
