@@ -11,8 +11,9 @@ from service.diagnosis.records import Diagnosed, StoredDiagnosis
 from service.diagnosis.tables import DiagnosisRow
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE
 from service.sessions.decision import Verdict
-from service.sessions.doubt import Reservation, reservations_from_list, reservations_to_list
+from service.sessions.doubt import Reservation
 from service.sessions.records import DiagnosisState, DiagnosisSummary
+from service.sessions.reservation_document import reservations_from_list, reservations_to_list
 from service.sessions.tables import SessionRow
 from service.storage.queries import Queries
 

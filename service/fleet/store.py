@@ -33,8 +33,9 @@ from service.outlook.tables import OutlookRow
 from service.queue.records import WorkKind
 from service.queue.tables import WorkRow
 from service.sessions.decision import Verdict
-from service.sessions.doubt import Reservations, reservations_from_list
+from service.sessions.doubt import Reservations
 from service.sessions.records import DiagnosisState, StoredSession
+from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.store import is_waiting, session_record, session_rows

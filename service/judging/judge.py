@@ -17,7 +17,7 @@ from service.kit.lock_order import outside_writing
 from service.models.records import MovedParameter, MovedVerdict
 from service.sessions.decision import Decision, Judged, Opening, Verdict
 from service.sessions.records import ParameterValue, StoredSession
-from service.sessions.words.conditions import too_few
+from service.sessions.words.advice import too_few
 from service.types.records import UnitType
 from service.types.rules import tolerances_of
 

@@ -19,7 +19,7 @@ from service.judging.store import Derivations
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.records import PARAMETERS
 from service.sessions.store import Sessions
-from service.sessions.words.conditions import too_few
+from service.sessions.words.advice import too_few
 from service.storage.queries import Store
 from service.units.store import Services, Units, epoch
 

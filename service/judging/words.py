@@ -25,7 +25,8 @@ from service.kit.measures import (
 )
 from service.sessions.decision import Decision, Opening, Verdict, worst_of
 from service.sessions.doubt import Reservations
-from service.sessions.words.conditions import Condition, but, condition_of, left_open
+from service.sessions.words.advice import left_open
+from service.sessions.words.conditions import Condition, but, condition_of
 
 REPEAT = "repeat the session"
 CORRECT = "correct the file and upload it again"

@@ -26,7 +26,7 @@ from service.sessions.records import StoredSession
 from service.sessions.states import RecordKind, RecordState, Step
 from service.sessions.states_store import States
 from service.sessions.store import NOT_JUDGED, Sessions
-from service.sessions.words.conditions import too_few
+from service.sessions.words.advice import too_few
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.queries import Store

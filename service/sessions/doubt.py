@@ -1,14 +1,12 @@
 """Why a session cannot be as its file says, what would correct it, and what a verdict is reserved for."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 from estimator.message import joined, say
 from service.kit.answer import answer
 from service.sessions.decision import Verdict
-from service.storage.json_text import STORED
 
 
 class Remedy(StrEnum):
@@ -149,13 +147,3 @@ class Reservation:
 
 Reservations = tuple[Reservation, ...] | None
 """Of a verdict; None while causes are still being looked for."""
-
-
-def reservations_to_list(reservations: Sequence[Reservation]) -> list[dict[str, Any]] | None:
-    """Every reservation, or None where there are none."""
-    return STORED.written(list(reservations)) or None
-
-
-def reservations_from_list(diagnosed: str | None, entries: list[Any] | None) -> Reservations:
-    """What `reservations_to_list` wrote; None where no diagnosis is stored yet."""
-    return None if diagnosed is None else tuple(STORED.read(Reservation, entry) for entry in entries or ())

@@ -15,8 +15,8 @@ from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
 from service.kit.arriving_files import DEMONSTRATION
 from service.sessions.decision import Decision, Verdict
-from service.sessions.doubt import reservations_from_list
 from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionQuery, StoredSession
+from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow

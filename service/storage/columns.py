@@ -56,9 +56,9 @@ class Sentence(TypeDecorator[str]):
     _HEAD = '{"message":'
 
     def process_bind_param(self, value: str | None, dialect: Dialect) -> str | None:
-        """A text that begins as a message does is kept as the only part of one."""
-        if value is None or not (isinstance(value, Message) or value.startswith(self._HEAD)):
-            return value
+        """A text that begins as a message does is kept as the only part of one; nothing said is an empty text."""
+        if not value or not (isinstance(value, Message) or value.startswith(self._HEAD)):
+            return None if value is None else str.__str__(value)
         message = value if isinstance(value, Message) else say("{text}", text=value)
         return _line(as_document(message))
 

@@ -17,7 +17,7 @@ from service.diagnosis.words.causes import ONE_NOT_KNOWN, at_once_with, cause_na
 from service.diagnosis.words.findings import UNEXPLAINED, headline_of, told, what_to_do_about
 from service.kit.measures import THIN, leading_kind, number
 from service.sessions.records import DiagnosisState
-from service.sessions.words.conditions import too_few
+from service.sessions.words.advice import too_few
 from service.sessions.words.noise import but_wrong_errors, wrong_errors
 
 NOT_APPLICABLE = (

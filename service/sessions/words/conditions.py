@@ -3,10 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from estimator.message import joined, say, say_count
-from estimator.results import Calibration
-from estimator.session import ACCELEROMETER
-from service.kit.measures import day_of, number
+from estimator.message import joined, say
+from service.kit.measures import day_of
 from service.sessions.decision import Verdict
 from service.sessions.doubt import DoubtKind as Doubt
 from service.sessions.doubt import Reservation, Reservations
@@ -162,49 +160,3 @@ def _advice(told: Sequence[Reservation]) -> tuple[str, ...]:
         told = [one for one in told if one.kind is Doubt.RECORD]
     advice = tuple(dict.fromkeys(one.advice for one in told))
     return tuple(one for one in advice if not any(one in other for other in advice if other != one))
-
-
-def what_to_add(calibration: Calibration) -> str:
-    """The rows that would tell what a session leaves open."""
-    flipped, add = calibration.residuals.flipped, calibration.fit.add
-    if flipped is not None and len(set(flipped)) == 1:
-        return "measure the same positions in the other run too"
-    if not add:
-        return "more or other positions would tell it"
-    up = joined(", ", (f"({', '.join(number(x, 2) for x in direction)})" for direction in add))
-    return say_count(
-        "add {n} still orientation with up, in block axes, along {up}",
-        "add {n} still orientations with up, in block axes, along {up}",
-        len(add),
-        up=up,
-    )
-
-
-def too_few(calibration: Calibration) -> str:
-    """That the session gives no uncertainty, and what to add; empty where it gives one."""
-    add = calibration.fit.positions_to_add
-    if not add:
-        return ""
-    return say(
-        "Too few positions to give an uncertainty: add {add}, or state the standard errors of "
-        "the readings. The parameters take all that the readings tell, and nothing is left to "
-        "estimate the noise by.",
-        add=add,
-    )
-
-
-def left_open(calibration: Calibration) -> str:
-    """What a calibration does not show of its accelerometers, and what to add; empty where it shows all it must."""
-    needed = ("scale", "bias", "axis")
-    felt = [s for s in calibration.sensors if s.kind == ACCELEROMETER and set(needed) <= set(s.observable)]
-    blind = [s.name for s in felt if not all(s.observable[name] for name in needed)]
-    if not blind or calibration.parity is not None:
-        return ""
-    missing = [name for name in needed if any(not s.observable[name] for s in felt)]
-    who = "every accelerometer" if len(blind) == len(felt) else joined(", ", blind)
-    return say(
-        "It does not show {missing} of {who}: {calibration}.",
-        missing=joined(", ", missing),
-        who=who,
-        calibration=what_to_add(calibration),
-    )

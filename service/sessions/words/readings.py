@@ -21,7 +21,7 @@ from service.kit.measures import (
     signed,
     value_measure,
 )
-from service.sessions.words.conditions import too_few, what_to_add
+from service.sessions.words.advice import too_few, what_to_add
 
 UNLIKELY = 0.001
 """Probability of χ² below which the model does not explain the readings: the calibration's own bound."""
