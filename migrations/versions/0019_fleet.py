@@ -94,9 +94,14 @@ def _outlooks() -> None:
             return
         for unit, document in rows:
             written = document if isinstance(document, dict) else json.loads(document)
-            values = {"reason": written["reason"], "rates": [_rate(trend) for trend in written["trends"]]}
+            values = {"reason": _text(written["reason"]), "rates": [_rate(trend) for trend in written["trends"]]}
             connection.execute(sa.update(table).where(table.c.unit_id == unit).values(**values))
         last = rows[-1][0]
+
+
+def _text(sentence: str | dict[str, object]) -> str:
+    """As a later version keeps a sentence in its column: with its parts, if it had been there before."""
+    return sentence if isinstance(sentence, str) else json.dumps(sentence, ensure_ascii=False, separators=(",", ":"))
 
 
 def _conditions() -> None:

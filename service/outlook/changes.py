@@ -14,7 +14,7 @@ from service.outlook.rules.forecast import Past, forecast
 from service.outlook.rules.histories import Histories, histories
 from service.outlook.store import Outlooks, unpacked
 from service.sessions.store import Sessions
-from service.sessions.words.readings import motions_in_words
+from service.sessions.words.motion import motions_in_words
 from service.storage.queries import Store
 from service.types.store import UnitTypes
 from service.units.store import Services, Units

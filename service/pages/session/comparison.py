@@ -33,7 +33,7 @@ from service.sessions.records import ALL_PARAMETERS, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.sessions.words.conditions import Condition, condition_of
-from service.sessions.words.readings import MotionLine, motions_in_words
+from service.sessions.words.motion import MotionLine, motions_in_words
 from service.storage.queries import Store
 from service.types.store import UnitTypes
 from service.units.records import Service

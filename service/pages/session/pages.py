@@ -39,14 +39,8 @@ from service.sessions.lines import ResidualTable, residual_table
 from service.sessions.records import ALL_PARAMETERS, DiagnosisSummary, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import MEANINGS, STATES, Condition, condition_of, state_in_words
-from service.sessions.words.readings import (
-    FitWords,
-    MotionLine,
-    bands_in_words,
-    combination_in_words,
-    fit_in_words,
-    motions_in_words,
-)
+from service.sessions.words.motion import MotionLine, motions_in_words
+from service.sessions.words.readings import FitWords, bands_in_words, combination_in_words, fit_in_words
 
 NOTHING_KNOWN = Remedies()
 """Of a session that counts."""

@@ -14,7 +14,8 @@ from service.papers.records import Issue, Meaning, Signature
 from service.papers.words import BOUND, STATES, done_by, moment_of
 from service.sessions.decision import nominal_factor_of
 from service.sessions.words.conditions import CONDITIONS, Condition, but, condition_of
-from service.sessions.words.readings import FitWords, combination_in_words, fit_in_words, motions_in_words
+from service.sessions.words.motion import motions_in_words
+from service.sessions.words.readings import FitWords, combination_in_words, fit_in_words
 
 MEASURED = "Measured by"
 """Signed by hand: whoever measured need not have an account."""

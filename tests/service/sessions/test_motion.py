@@ -4,7 +4,7 @@ import numpy as np
 
 from estimator.health.common_motion import CommonMotion
 from estimator.results import ARCSEC
-from service.sessions.words.readings import motions_in_words
+from service.sessions.words.motion import motions_in_words
 
 NAMES = tuple(f"A{i}" for i in range(1, 7))
 TURNED = CommonMotion(

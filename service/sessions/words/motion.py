@@ -1,0 +1,126 @@
+"""Step: what all sensors of a block did together since the reference, in plain sentences."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from estimator.health.common_motion import AXES, SEPARATED, UNCLEAR, CommonMotion
+from estimator.message import joined, say
+from estimator.wording import few
+from service.kit.measures import COARSE_MEASURES, DEGREE, Measure, deviation_measure, measured, number, signed
+
+SIGNIFICANT = 0.01
+"""Chance of saying so of a block that did not move."""
+JUDGED = "The sensors are judged without it."
+NEARLY = 0.94
+"""Cosine of 20°: a turn this near to an axis of the block is named after it."""
+
+
+@dataclass(frozen=True)
+class MotionLine:
+    """One sentence, and whether it asks for attention."""
+
+    tone: str
+    text: str
+
+
+def motions_in_words(
+    motions: Sequence[CommonMotion], coverage: float, since: str = "since the reference"
+) -> tuple[MotionLine, ...]:
+    """One sentence for each quantity that there is something to say of."""
+    several = len({motion.kind for motion in motions}) > 1
+    of = {motion.kind: say(" of the {kind}s", kind=motion.kind) if several else "" for motion in motions}
+    lines = [_line(motion, coverage, of[motion.kind], since) for motion in motions]
+    return tuple(line for line in lines if line is not None)
+
+
+def is_significant(motion: CommonMotion) -> bool:
+    """Whether the block moved as a whole, beyond what noise does once in a hundred sessions."""
+    return motion.state == SEPARATED and motion.p_value is not None and motion.p_value < SIGNIFICANT
+
+
+def _line(motion: CommonMotion, coverage: float, whose: str, since: str) -> MotionLine | None:
+    if motion.state != SEPARATED:
+        return MotionLine("none", _undivided(motion, whose))
+    if is_significant(motion):
+        return MotionLine("undecidable", joined("", (_together(motion, coverage, whose, since), _alone(motion))))
+    return None
+
+
+def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> str:
+    if motion.quantity == AXES:
+        size = measured(motion.size, coverage * motion.sigma, _turn_measure(motion))
+        return say(
+            "The whole block{whose} turned by {size} about {motion} {since}: it sits "
+            "otherwise, or the stand has turned. {judged}",
+            whose=whose,
+            size=size,
+            motion=_about(motion),
+            since=since,
+            judged=JUDGED,
+        )
+    size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
+    cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
+    return say(
+        "All scale factors{whose} changed together by {size} {since}: that is of {cause}. {judged}",
+        whose=whose,
+        size=size,
+        since=since,
+        cause=cause,
+        judged=JUDGED,
+    )
+
+
+def _turn_measure(motion: CommonMotion) -> Measure:
+    """Of a block that was mounted otherwise, degrees."""
+    if motion.size >= DEGREE:
+        return COARSE_MEASURES[motion.kind, "axis"]
+    return deviation_measure(motion.kind, "axis", motion.size)
+
+
+def _about(motion: CommonMotion) -> str:
+    """The block's axis that the turn is about, or the direction."""
+    direction = [component / motion.size for component in motion.value]
+    largest = max(range(3), key=lambda i: abs(direction[i]))
+    if abs(direction[largest]) > NEARLY:
+        return f"{'−' if direction[largest] < 0 else ''}{'XYZ'[largest]}"
+    return "(" + ", ".join(number(component, 2) for component in direction) + ")"
+
+
+def _alone(motion: CommonMotion) -> str:
+    """Who did not move with the others."""
+    if not motion.left_out:
+        return ""
+    what = "input axis" if motion.quantity == AXES else "scale factor"
+    *others, last = motion.left_out
+    if not others:
+        return say(" Beside that, the {what} of {last} moved on its own.", what=what, last=last)
+    several = "input axes" if motion.quantity == AXES else "scale factors"
+    return say(
+        " Beside that, the {several} of {others} and {last} moved on their own.",
+        several=several,
+        others=joined(", ", others),
+        last=last,
+    )
+
+
+def _undivided(motion: CommonMotion, whose: str) -> str:
+    turn = (
+        say("a turn of the whole block{whose}", whose=whose)
+        if motion.quantity == AXES
+        else say("a change of all scale factors{whose}", whose=whose)
+    )
+    one = "a change of one sensor"
+    judged = "every sensor is judged on its whole change"
+    if motion.state == UNCLEAR:
+        return say(
+            "The sensors do not agree on {turn}, and it cannot be told which of them moved: {judged}.",
+            turn=turn,
+            judged=judged,
+        )
+    return say(
+        "{sensors} to tell {turn} from {one}: {judged}.",
+        sensors=few(len(motion.sensors), "sensor"),
+        turn=turn,
+        one=one,
+        judged=judged,
+    )
