@@ -8,6 +8,8 @@ Revision: 0019, after 0018
 """
 
 import json
+import re
+from typing import Any
 
 import sqlalchemy as sa
 from alembic import op
@@ -99,9 +101,13 @@ def _outlooks() -> None:
         last = rows[-1][0]
 
 
-def _text(sentence: str | dict[str, object]) -> str:
-    """As a later version keeps a sentence in its column: with its parts, if it had been there before."""
-    return sentence if isinstance(sentence, str) else json.dumps(sentence, ensure_ascii=False, separators=(",", ":"))
+def _text(sentence: str | dict[str, Any]) -> str:
+    """In English, where a later version that had been here before keeps a sentence with its parts."""
+    if isinstance(sentence, str):
+        return sentence
+    parts = {name: _text(part) for name, part in sentence.get("parts", {}).items()}
+    template = sentence["message"] if sentence.get("number") in (None, 1) else sentence["many"]
+    return re.sub(r"\{(\w+)\}", lambda place: parts.get(place[1], place[0]), template)
 
 
 def _conditions() -> None:

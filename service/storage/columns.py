@@ -17,6 +17,8 @@ IS_AT_WORK = "ended_at IS NULL"
 IS_FAILED = "state = 'failed'"
 """Rows of flags, of deliveries, of sessions, of jobs and of diagnoses that are looked for all the time: few of many, so
 each has an index of its own."""
+PARTS = "\x1f"
+"""Between the English of a stored message and its parts; no text that people write has it."""
 BYTES = BigInteger().with_variant(Integer(), "sqlite")
 """Size of a file: of 2 GiB too. SQLite's integers have 64 bits anyway."""
 
@@ -49,24 +51,25 @@ class UtcDateTime(TypeDecorator[datetime]):
 
 
 class Sentence(TypeDecorator[str]):
-    """A text that may be a message, which is kept as JSON with its parts; all others are kept as they are."""
+    """A text that may be a message: its English, and behind a separator its parts as JSON; all others are kept as they
+    are. Whoever reads the database by other means finds the English first, and the views have nothing else."""
 
     impl = String
     cache_ok = True
-    _HEAD = '{"message":'
 
     def process_bind_param(self, value: str | None, dialect: Dialect) -> str | None:
-        """A text that begins as a message does is kept as the only part of one; nothing said is an empty text."""
-        if not value or not (isinstance(value, Message) or value.startswith(self._HEAD)):
+        """A text that has the separator is kept as the only part of a message; nothing said is an empty text."""
+        if not value or not (isinstance(value, Message) or PARTS in value):
             return None if value is None else str.__str__(value)
         message = value if isinstance(value, Message) else say("{text}", text=value)
-        return _line(as_document(message))
+        return message.replace(PARTS, " ") + PARTS + _line(as_document(message))
 
     def process_result_value(self, value: str | None, dialect: Dialect) -> str | None:
         """The message with its parts; what an earlier release kept is a plain text."""
-        if value is None or not value.startswith(self._HEAD):
+        _, has_parts, parts = (value or "").partition(PARTS)
+        if not has_parts:
             return value
-        message: str = with_messages(json.loads(value))
+        message: str = with_messages(json.loads(parts))
         return message
 
 
@@ -80,8 +83,8 @@ class LongSentence(Sentence):
 def is_made_of(sentence: ColumnElement[str] | InstrumentedAttribute[str], template: str) -> ColumnElement[bool]:
     """Whether a stored sentence is one of a template, which an earlier release kept as a plain text."""
     stored = type_coerce(sentence, String)
-    as_message = _line({"message": template}).removesuffix("}")
-    return stored.startswith(as_message, autoescape=True) | stored.startswith(PLACE.split(template)[0], autoescape=True)
+    as_message = PARTS + _line({"message": template}).removesuffix("}")
+    return stored.contains(as_message, autoescape=True) | stored.startswith(PLACE.split(template)[0], autoescape=True)
 
 
 def _line(document: Any) -> str:

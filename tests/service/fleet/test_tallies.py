@@ -1,6 +1,7 @@
 """What is kept of the fleet as a whole is what its records say, however they came and went."""
 
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import text
 
@@ -11,6 +12,7 @@ from service.queue.store import WorkQueue
 from service.records.changes import withdraw_session
 from service.records.diagnose import diagnose
 from service.storage import Storage
+from service.storage.columns import PARTS
 from service.storage.schema import downgrade, upgrade
 from service.units.store import Units
 from tests.service.dated import upload_and_date
@@ -75,11 +77,16 @@ def test_a_store_from_before_is_counted_when_it_is_brought_up_to_date(storage: S
     fill(storage)
     kept = answers(storage, KEPT)
     rates = {"rates": "SELECT unit_id, CAST(rates AS TEXT), reason FROM outlooks ORDER BY 1"}
-    before = answers(storage, rates)
+    before = in_english(answers(storage, rates)["rates"])
     storage.database.close()
     downgrade(store_url, "0018")
     upgrade(store_url)
     assert answers(storage, KEPT) == kept
-    assert answers(storage, rates) == before
+    assert in_english(answers(storage, rates)["rates"]) == before
     with storage.database.reading() as store:
         assert WorkQueue(store, WorkKind.SUMMARY).count()
+
+
+def in_english(rows: list[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
+    """Without the parts of the sentence, which an earlier schema does not keep."""
+    return [(*values, reason.partition(PARTS)[0]) for *values, reason in rows]

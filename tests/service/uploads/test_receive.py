@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from sqlalchemy import Connection, event, func, select, text
 
+from estimator.errors import Problem
 from service.diagnosis.store import Diagnoses
 from service.errors import AwayError, NoSpaceError, RefusedError
 from service.kit.arriving_files import SentFile
@@ -25,6 +26,7 @@ from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, S
 from service.settings import Settings
 from service.storage import Files, Storage
 from service.storage.audit import AuditRow
+from service.storage.json_text import STORED
 from service.units.tables import UnitRow
 from service.uploads.receive import receive, receive_all, upload
 from service.uploads.tables import RefusalRow
@@ -83,7 +85,7 @@ def test_a_refusal_is_recorded_with_its_problems_and_nothing_else_is(storage: St
     with storage.database.engine.connect() as connection:
         row = connection.execute(select(RefusalRow.filename, RefusalRow.size, RefusalRow.problems)).one()
     assert (row.filename, row.size) == ("bad.json", 26)
-    assert [p["message"] for p in row.problems] == [p.message for p in caught.value.problems]
+    assert [STORED.read(Problem, p) for p in row.problems] == list(caught.value.problems)
     assert counts(storage)[:5] == [0] * 5
     assert not storage.files.folder.exists()
 
