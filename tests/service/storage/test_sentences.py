@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import pytest
 from sqlalchemy import Column, Connection, Integer, MetaData, Table, create_engine, select, text
 
-from estimator.message import Message, say, say_count
+from estimator.message import Message, joined, say, say_count
 from service.languages.catalogue import catalogue_of
 from service.languages.language import Language
-from service.storage.columns import Sentence, is_made_of
+from service.storage.columns import PARTS, Sentence, is_made_of
 from service.storage.json_text import STORED
 
 KEPT = Table("kept", MetaData(), Column("id", Integer, primary_key=True), Column("said", Sentence))
@@ -43,9 +43,16 @@ def test_a_message_read_from_a_document_says_the_same_in_russian() -> None:
     assert russian.say(STORED.read(str, STORED.written(said))) == russian.say(said)
 
 
-@pytest.mark.parametrize("said", ["Plain.", "", '{"message":"{x}","parts":{"x":"Fit"}}', '{"message":', "{}"])
+@pytest.mark.parametrize("said", ["Plain.", "", '{"message":"{x}","parts":{"x":"Fit"}}', '{"message":', "{}", "a\x1fb"])
 def test_a_plain_text_is_read_as_it_was_written(connection: Connection, said: str) -> None:
     assert kept(connection, said) == said
+
+
+@pytest.mark.parametrize("said", [say(GONE, stand="ODG-1"), joined("; ", [])])
+def test_who_reads_the_database_finds_the_english_first(connection: Connection, said: Message) -> None:
+    connection.execute(KEPT.insert().values(said=said))
+    raw: str = connection.scalars(text("SELECT said FROM kept")).one()
+    assert raw.partition(PARTS)[0] == said
 
 
 def test_a_sentence_of_an_older_release_is_shown_as_it_was_stored(connection: Connection) -> None:
