@@ -1,7 +1,7 @@
 """``python -m benchmarks.shared --sessions 12 --seed 1`` writes docs/diagnosis/shared.md.
 
-Courses that several sensors share, drawn by code that the estimator does not share: told as one, and nothing else; and
-what must not be told so.
+Courses that several sensors share, drawn by code that the estimator does not share, where one finding and nothing else is
+right; and sessions where a shared course would be wrong.
 """
 
 import argparse
@@ -31,7 +31,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "shared.md"
 STRENGTH = 14.0
 """Of all sensors together, standard errors."""
 EACH = 12.0
-"""Of every sensor, of what each has to itself."""
+"""Of every sensor, of its independent drift."""
 LEVEL = 0.003
 """Family-wise level of the diagnosis, and that of the oracle's one test."""
 POWER = 0.95
@@ -153,7 +153,7 @@ def targets(answers: Sequence[Answer]) -> str:
         ("the same, under its own name", "", rate([a.right for a in shared])),
         ("the time constant within U (k = 2)", "93–97 %", rate([abs(z) < 2 for z in known])),
         ("a sensor named that does not follow, of such sessions", "≤ 5 %", rate([a.bystanders > 0 for a in shared])),
-        ("drifts of each its own: one course claimed", "≤ 1 %", rate([a.shared for a in of(answers, APART)])),
+        ("independent drifts: one course claimed", "≤ 1 %", rate([a.shared for a in of(answers, APART)])),
         ("sound sessions: a name", "≤ 1 %", rate([a.named for a in of(answers, SOUND)])),
     ]
     for times in TIMES:
@@ -174,7 +174,7 @@ def slower(answers: Sequence[Answer]) -> str:
 
 
 def courses(answers: Sequence[Answer]) -> str:
-    """One finding that names the course, by block and course; what each has to itself, by kind."""
+    """One finding that names the course, by block and course; independent drifts, by kind."""
     rows = [(b.name, *(rate([a.one for a in of(answers, SHARED, c, b)]) for c in COURSES)) for b in BLOCKS]
     own = [
         (b.name, *(rate([a.shared for a in of(answers, APART, c, b)]) for c in (WALKS, RAMPS, ROOM)))
@@ -186,7 +186,7 @@ def courses(answers: Sequence[Answer]) -> str:
         + table(("block", *COURSES), rows)
         + "\n\nUnder its own name; a slow room may pass for settling or a ramp, and one of these for the other:\n\n"
         + table(("block", *COURSES), right)
-        + f"\n\n## Each its own, strength {EACH:g} each: one course claimed\n\n"
+        + f"\n\n## Independent drifts, strength {EACH:g} each: one course claimed\n\n"
         + table(("block", "walks", "ramps from a row of its own", "a room of its own"), own)
     )
 

@@ -1,6 +1,6 @@
 """A course that nobody recorded and several sensors share: the temperature of a room, a supply that wanders.
 
-No single sensor can be told to have it, for of one a course without a formula is whatever it reads. Of several it is
+It cannot be named on one sensor alone: there a course without a formula is whatever the sensor reads. Of several it is
 their one course, smooth over the session, with a size each. Its shape is a sum of the leading waves of an integrated
 random walk (of the covariance s²(3t − s)/6, s ≤ t; Rasmussen & Williams 2006, 6.3.1), each as large as the walk has it.
 """

@@ -90,7 +90,7 @@ class Shared(
     shape: dict[str, float]
     """The shape parameters that all have, by unit, rows counted from 1."""
     shape_sigma: dict[str, float]
-    """Of those that are continuous, where the session tells them."""
+    """Of those that are continuous, where the session determines them."""
     more: tuple[str, ...]
     """Sensors that follow it below what can be named of one alone."""
     more_amplitude: tuple[float, ...]

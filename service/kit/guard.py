@@ -68,11 +68,8 @@ def kept(keep: Callable[[str], None]) -> Iterator[None]:
     """A piece of work whose failure is kept with its reason, and then goes its way."""
     try:
         yield
-    except FORESEEN as fault:
-        keep(str(fault))
-        raise
-    except Exception:  # whatever it was is kept as failed work, and raised again
-        keep(AT_FAULT)
+    except Exception as fault:  # any failure at all is kept with the work that failed, and raised again
+        keep(str(fault) if isinstance(fault, FORESEEN) else AT_FAULT)
         raise
 
 

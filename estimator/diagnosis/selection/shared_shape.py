@@ -37,7 +37,7 @@ APART = float(-np.log(19))
 """ln Bayes factor below which each sensor surely has a shape of its own."""
 
 VAGUE = 2.0
-"""Sigmas of its own below which no size is known once ψ is free: then the session does not tell ψ."""
+"""Sigmas of its own below which no size is known once ψ is free: then the session does not determine ψ."""
 
 
 def at(cause: SensorCause, setting: Setting, sensors: Sequence[int], nonlinear: tuple[float, ...]) -> list[Shape]:

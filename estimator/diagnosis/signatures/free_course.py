@@ -26,7 +26,7 @@ SIZES = 4.0 ** np.arange(1, 9, 2)
 """g: mean square sizes that are tried, the likeliest of which is taken."""
 
 TURNS = 12
-"""Of the regressions by turns; two courses that are told apart at all part by a factor each turn."""
+"""Of the regressions by turns; two courses that can be distinguished at all separate by a factor each turn."""
 
 MOST = 30.0
 """ln n at most: beyond it no course is believed, and n would no longer be a number."""

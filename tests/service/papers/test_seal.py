@@ -164,8 +164,8 @@ def test_one_changed_word_of_an_xml_is_noticed(key_file: Path, said: bytes, othe
     assert not is_signed(dcc.replace(said, other, 1))
 
 
-# The seal is verified above by a package; this is the same by a program that shares no code with it and that no
-# package brings, by the very command of the page.
+# The seal is verified above by a Python package; this verifies it by an independent program, with the command that the
+# page gives. The program comes with the system and not with pip, so a machine may lack it.
 @pytest.mark.skipif(shutil.which("xmlsec1") is None, reason="needs xmlsec1: apt-get install xmlsec1")
 @pytest.mark.parametrize(("written", "holds"), [(b">pass<", True), (b">fail<", False)])
 def test_xmlsec1_checks_an_xml_as_the_page_says(key_file: Path, tmp_path: Path, written: bytes, holds: bool) -> None:
