@@ -1,7 +1,7 @@
 """``python -m benchmarks.shared --sessions 12 --seed 1`` writes docs/diagnosis/shared.md.
 
-Courses that several sensors share, drawn by code that the estimator does not share, where one finding and nothing else is
-right; and sessions where a shared course would be wrong.
+Courses that several sensors share, drawn by code that the estimator does not share: one finding and nothing else is
+right. Beside them, sessions where a shared course would be wrong.
 """
 
 import argparse
