@@ -3,7 +3,6 @@
 Revision: 0033, after 0032
 """
 
-import sqlalchemy as sa
 from alembic import op
 
 revision = "0033"
@@ -33,7 +32,9 @@ SENTENCES = (
     ("outlooks", "reason"),
     ("work", "failed"),
 )
-"""Columns of sentences, but those of lines that nobody may change."""
+"""Columns of sentences."""
+APPEND_ONLY = (("record_states", "why"), ("reference_choices", "why"), ("notices", "text"))
+"""The same in tables whose lines nobody may change; only this change of the schema may."""
 UNITS = """
 CREATE VIEW health_units AS
 SELECT u.serial AS unit, t.name AS unit_type, u.lot AS lot, u.simulated AS simulated,
@@ -89,8 +90,33 @@ def downgrade() -> None:
     """Sentences stay in English: what was there before knows nothing of parts."""
     english = ENGLISH[op.get_context().dialect.name]
     for table, column in SENTENCES:
-        op.execute(sa.text(f"UPDATE {table} SET {column} = {english.format(column)}"))  # noqa: S608 - our own tables
+        _shorten(table, column, english)
+    for table, column in APPEND_ONLY:
+        _unlock(table)
+        _shorten(table, column, english)
+        _lock(table)
     _rewrite("{0}")
+
+
+def _shorten(table: str, column: str, english: str) -> None:
+    op.execute(f"UPDATE {table} SET {column} = {english.format(column)}")  # noqa: S608 - our own tables
+
+
+def _unlock(table: str) -> None:
+    if op.get_context().dialect.name == "postgresql":
+        op.execute(f"ALTER TABLE {table} DISABLE TRIGGER {table}_append_only")
+    else:
+        op.execute(f"DROP TRIGGER {table}_no_update")
+
+
+def _lock(table: str) -> None:
+    if op.get_context().dialect.name == "postgresql":
+        op.execute(f"ALTER TABLE {table} ENABLE TRIGGER {table}_append_only")
+    else:
+        op.execute(
+            f"CREATE TRIGGER {table}_no_update BEFORE UPDATE ON {table} "
+            f"BEGIN SELECT RAISE(ABORT, '{table} is append-only'); END"
+        )
 
 
 def _rewrite(english: str) -> None:

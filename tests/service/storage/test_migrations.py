@@ -21,6 +21,7 @@ from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.sessions.store import Sessions
 from service.storage import Storage
+from service.storage.columns import PARTS
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, head_revision, stored_revision, upgrade
 from service.storage.tables import Base
@@ -122,6 +123,23 @@ def test_what_waits_is_carried_over_with_why_it_failed(store_url: str, storage: 
         assert Failures(store).listed(now, 10) == listed
     assert len(places) == 3
     assert len(listed) == 2
+
+
+@pytest.mark.parametrize("question", ["SELECT reason FROM sessions", "SELECT text FROM notices"])
+def test_an_earlier_schema_has_every_sentence_in_english(store_url: str, storage: Storage, question: str) -> None:
+    for content in FAILED:
+        upload(storage, content, "a.json", datetime(2026, 11, 21, tzinfo=UTC))
+    storage.database.close()
+    engine = open_engine(store_url)
+    with engine.connect() as connection:
+        kept = connection.scalars(text(question)).all()
+    assert any(PARTS in sentence for sentence in kept)
+    downgrade(store_url, "0032")
+    with engine.connect() as connection:
+        assert connection.scalars(text(question)).all() == [sentence.partition(PARTS)[0] for sentence in kept]
+    with engine.begin() as connection, pytest.raises(DatabaseError, match="append-only"):
+        connection.execute(text("UPDATE notices SET text = 'another'"))
+    engine.dispose()
 
 
 def test_jobs_messages_and_recomputations_wait_across_a_change_of_the_schema(store_url: str, storage: Storage) -> None:
