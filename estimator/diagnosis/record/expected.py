@@ -39,7 +39,7 @@ Cells = tuple[int, Array]
 
 
 HALVED = 12
-"""Accelerometers from which on each half of them, two triads, says by itself whether it fits."""
+"""Accelerometers, of whom each half (two triads) can be tested alone."""
 
 
 @dataclass(frozen=True, eq=False)

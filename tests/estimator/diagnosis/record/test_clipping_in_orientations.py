@@ -7,6 +7,7 @@ from estimator import Diagnosis, diagnose, read_session
 from estimator.calibration.calibrate import averaged
 from estimator.causes import CATALOGUE
 from estimator.diagnosis.record.clipping import unclipped
+from estimator.diagnosis.record.expected import unexplained_in_halves
 from tests.builders import Array, Document, arbitrary_orientations, raw_log, true_sensors
 
 SCALE = 0.12
@@ -104,3 +105,23 @@ def test_samples_at_the_end_of_the_range_are_counted_row_by_row() -> None:
     assert share[order[-1]] == 1.0
     assert 0.3 < share[order[-3]] < 0.7
     assert np.all(share[order[:-6]] == 0.0)
+
+
+def test_of_many_sensors_one_clipped_far_beyond_is_still_found() -> None:
+    document = measured(12, 3)
+    clipped(document, "A2", 2, 1.0)
+    session = read_session(document)
+    assert not unexplained_in_halves(session)
+    assert ("saturation", ("A2",)) in named(diagnose(session))
+
+
+def test_where_neither_half_fits_no_single_sensor_is_at_fault() -> None:
+    document = measured(12, 4)
+    for sensor in ("A1", "A2", "A5", "A6"):  # two of each half
+        document["table"][sensor] = [u + 0.02 * SCALE * k for k, u in enumerate(document["table"][sensor])]
+    assert unexplained_in_halves(read_session(document))
+
+
+@pytest.mark.parametrize("m", [6, 12])
+def test_sensors_that_fit_are_unexplained_in_no_half(m: int) -> None:
+    assert not unexplained_in_halves(read_session(measured(m, 5)))
