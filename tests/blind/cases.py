@@ -36,6 +36,17 @@ def draw_case(kind: str, seed: tuple[int, ...], cause: str | None = None, longes
     raise UnhideableError(f"{kind} {cause} {seed}")
 
 
+def draw_at(strength: float, seed: tuple[int, ...], cause: str, longest: int = LONGEST) -> Case:
+    """A case of one effect of one strength, without other sessions."""
+    for attempt in range(TRIES):
+        draw = Draw("-".join(map(str, seed)), np.random.default_rng([*seed, attempt]), longest)
+        try:
+            return _hidden(draw, "weak", cause, (0.99 * strength, 1.01 * strength), alone=True)
+        except UnhideableError:
+            continue
+    raise UnhideableError(f"{strength} {cause} {seed}")
+
+
 def draw_target(rng: np.random.Generator, between: tuple[float, float] = (WEAKEST * 1.01, STRONGEST)) -> float:
     """Strength, log-uniform."""
     return float(np.exp(rng.uniform(*np.log(between))))
@@ -80,13 +91,13 @@ def _left_out(draw: Draw, cause: str | None) -> Case:
     return _hidden(draw, LEFT_OUT, cause, (0.99 * STRONGEST, STRONGEST))
 
 
-def _hidden(draw: Draw, kind: str, cause: str | None, strengths: tuple[float, float]) -> Case:
+def _hidden(draw: Draw, kind: str, cause: str | None, strengths: tuple[float, float], *, alone: bool = False) -> Case:
     rng = draw.rng
     cause = cause or str(rng.choice(list(CATALOGUE)))
     hidden = CATALOGUE[cause]
     session = _session(draw, hidden.needs, [cause])
     between = hidden.scope == HISTORY
-    earlier = _history(draw, session, 1.0 if "history" in hidden.needs else 0.4)
+    earlier = [] if alone else _history(draw, session, 1.0 if "history" in hidden.needs else 0.4)
     lens = Lens(session, _outside_root(session, earlier) if between else None)
     vague = ENTRY_FACTOR if between and not earlier else 1.0
     effect, strength = at_strength(lens, draw_effect(session, cause, rng), vague * draw_target(rng, strengths))

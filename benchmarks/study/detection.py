@@ -1,0 +1,260 @@
+"""``python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 1`` writes docs/diagnosis/detection.md.
+
+How faint an effect may be and still be found, by the diagnosis and by its rivals, on the same sessions and at equal
+false alarms: every rival's threshold is the one that 1 % of the same sound sessions pass.
+
+Theory
+------
+Let a shape with q amplitudes explain T of the residual's energy, χ² with q degrees of freedom where nothing acts. Of
+an effect whose strength is s and whose direction nobody knows, the likelihood ratio averaged over directions is
+
+    Λ(T; s) = exp(−s²/2) ₀F₁(; q/2; s²T/4)
+
+and its mean over the generator's own prior (causes alike, the places and shapes of each alike) is the most powerful
+test there is on average over that prior (Neyman and Pearson): no method that is not told the cause can find more.
+"""
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from scipy.special import gammaln, ive, logsumexp
+
+from benchmarks.details import publish
+from benchmarks.study.rates import rate
+from benchmarks.study.report import table
+from estimator import diagnose, read_session
+from estimator.causes.catalogue import CATALOGUE as KNOWN
+from estimator.diagnosis.diagnose import initial_state, put_right
+from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.signatures.scores import Scores, scores
+from estimator.session import Array
+from tests.blind.case import Case
+from tests.blind.cases import draw_at, draw_case
+from tests.blind.catalogue import CATALOGUE, DISCRETE, HISTORY
+from tests.blind.hide import UnhideableError
+from tests.blind.score import score
+
+PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "detection.md"
+STRENGTHS = (4.0, 5.0, 6.0, 8.0)
+ALARMS = 0.01
+NONLINEAR = ("saturation", "excess-noise")
+"""They add no shape of a free size."""
+HIDDEN = tuple(c for c, h in CATALOGUE.items() if c not in DISCRETE | {*NONLINEAR} and h.scope != HISTORY)
+NEVER = -1e3
+"""ln likelihood ratio of what a session cannot show."""
+CUTS = np.geomspace(0.02, 8.0, 80)
+"""Thresholds tried, in standard errors: terms that resemble one another share an effect, so that each is small."""
+RIDGE = 0.05
+"""Of the sparse regression, as PySINDy's default."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """One session to look at; without a strength it is sound."""
+
+    seed: tuple[int, ...]
+    strength: float = 0.0
+    cause: str = ""
+
+
+@dataclass(frozen=True)
+class Look:
+    """What each method says of one session: the larger, the surer that something acts."""
+
+    cause: str
+    strength: float
+    named: bool
+    """The diagnosis gives a name."""
+    listed: bool
+    """The right one, first or among the alternatives."""
+    told: dict[str, float]
+    """−ln p of the family of each cause: a matched subspace that is told the cause, not the sensor."""
+    whole: float
+    """−ln p of the whole catalogue, Bonferroni."""
+    limit: dict[float, float]
+    """ln Λ under the generator's prior, for each strength."""
+    sparse: float
+    """Largest threshold at which sequentially thresholded least squares keeps a term."""
+    energy: float
+    """−ln p of the residuals' χ²: no shape is looked for."""
+
+
+def tasks(sessions: int, sound: int, seed: int) -> Iterator[Task]:
+    """Every strength with the causes in turn, and the sound sessions."""
+    for strength in STRENGTHS:
+        yield from (Task((seed, int(strength), k), strength, HIDDEN[k % len(HIDDEN)]) for k in range(sessions))
+    yield from (Task((seed, 0, k)) for k in range(sound))
+
+
+def drawn(task: Task) -> Case:
+    """The session, without others of its unit."""
+    return draw_at(task.strength, task.seed, task.cause) if task.cause else draw_case("none", task.seed)
+
+
+def perform(task: Task) -> Look | None:
+    """None where no session drawn can hold the effect."""
+    try:
+        case = drawn(task)
+    except UnhideableError:
+        return None
+    session = read_session(case.session)
+    state = initial_state(put_right(session, (), KNOWN).right, (), KNOWN)
+    found = diagnose(session).to_dict()
+    seen = scores(state.residuals, state.traces, state.attributed())
+    p_values = family_p_values(state, seen)
+    return Look(
+        task.cause,
+        task.strength,
+        bool(found["findings"]),
+        bool(case.truths) and score(case, found, 0.0).listed,
+        {cause: -float(np.log(p)) for cause, p in p_values.items()},
+        -float(np.log(min(p_values.values(), default=1.0) * state.families)),
+        {s: likelihood_ratio(state, seen, s) for s in STRENGTHS},
+        sparse_threshold(state),
+        energy(state),
+    )
+
+
+def places(state: SearchState) -> dict[str, int]:
+    """How many visible shapes each cause has."""
+    counted: dict[str, int] = {}
+    for traces in state.traces:
+        counted[traces.cause.identifier] = counted.get(traces.cause.identifier, 0) + max(traces.places, 1)
+    return counted
+
+
+def causes_of(state: SearchState, seen: Scores) -> Array:
+    """(k,) str, the cause of every scored shape."""
+    return np.array([state.traces[c].cause.identifier for c in seen.cause], dtype=object)
+
+
+def family_p_values(state: SearchState, seen: Scores) -> dict[str, float]:
+    """Of each cause: the least p-value of its shapes, times their number."""
+    cause, counted = causes_of(state, seen), places(state)
+    least = {c: float(seen.p_value[cause == c].min(initial=1.0)) for c in counted}
+    return {c: max(min(p * counted[c], 1.0), 1e-300) for c, p in least.items()}
+
+
+def likelihood_ratio(state: SearchState, seen: Scores, strength: float) -> float:
+    """ln Λ averaged over causes, and over the shapes of each."""
+    cause, counted = causes_of(state, seen), places(state)
+    ratio = log_likelihood_ratio(seen.statistic, seen.freedom, strength)
+    each = [float(logsumexp(ratio[cause == c])) - np.log(n) for c, n in counted.items() if (cause == c).any()]
+    return float(logsumexp(each)) - np.log(len(each)) if each else NEVER
+
+
+def log_likelihood_ratio(statistic: Array, freedom: Array, strength: float) -> Array:
+    """(k,) ln Λ(T; s); NEVER where a shape has no amplitude."""
+    x, order = strength * np.sqrt(np.maximum(statistic, 1e-12)), np.maximum(freedom, 1) / 2 - 1
+    bessel = np.log(ive(order, x)) + x
+    return np.where(freedom > 0, gammaln(order + 1) + order * np.log(2 / x) + bessel - strength**2 / 2, NEVER)
+
+
+def sparse_threshold(state: SearchState) -> float:
+    """Sequentially thresholded least squares (Brunton et al. 2016, appendix B) over all shapes at once."""
+    library = np.concatenate([t.columns.swapaxes(0, 1).reshape(len(state.residuals.z), -1) for t in state.traces], 1)
+    norms = np.linalg.norm(library, axis=0)
+    library = library[:, norms > 0] / norms[norms > 0]
+    return max((cut for cut in CUTS if _kept(library, state.residuals.z, cut)), default=0.0)
+
+
+def _kept(library: Array, z: Array, cut: float) -> bool:
+    """Whether a term stays at a threshold, in standard errors."""
+    chosen = np.arange(library.shape[1])
+    while len(chosen):
+        some = library[:, chosen]
+        value = some.T @ np.linalg.solve(some @ some.T + RIDGE * np.eye(len(z)), z)
+        keep = np.abs(value) >= cut
+        if keep.all():
+            return True
+        chosen = chosen[keep]
+    return False
+
+
+def energy(state: SearchState) -> float:
+    """How far the χ² of the residuals lies above its mean, in standard deviations."""
+    z, freedom = state.residuals.z, float(state.residuals.row_freedom.sum())
+    return float((z @ z - freedom) / np.sqrt(2 * freedom))
+
+
+METHODS: tuple[tuple[str, Callable[[Look, float], float]], ...] = (
+    ("exhaustive Bayes with the generator's prior: the limit", lambda look, s: look.limit[s]),
+    ("matched subspaces of the whole catalogue", lambda look, s: look.whole),
+    ("parity space: likelihood ratio of one step of one sensor", lambda look, s: look.told.get("bias-jump", 0.0)),
+    ("sparse regression (STLSQ) over all shapes", lambda look, s: look.sparse),
+    ("χ² of the residuals", lambda look, s: look.energy),
+)
+
+
+def page(looks: list[Look], command: str) -> str:
+    """Markdown."""
+    sound = [look for look in looks if not look.cause]
+    hidden = {s: [look for look in looks if look.cause and look.strength == s] for s in STRENGTHS}
+    rows: list[tuple[object, ...]] = [
+        (
+            "the diagnosis: any name",
+            rate([k.named for k in sound]),
+            *(rate([k.named for k in h]) for h in hidden.values()),
+        ),
+        ("the diagnosis: the right name, first or listed", "", *(rate([k.listed for k in h]) for h in hidden.values())),
+    ]
+    for name, method in METHODS:
+        cells = [_passed(sound, seen, lambda look, m=method, s=s: m(look, s)) for s, seen in hidden.items()]
+        rows.append((name, "1 %", *cells))
+    rows.append(("matched subspace that is *told the cause*", "1 %", *(_told(sound, h) for h in hidden.values())))
+    head = ("method", "sound sessions", *(f"strength {s:g}" for s in STRENGTHS))
+    return (
+        f"# How faint an effect is still found\n\n{len(looks)} simulated sessions, made by `{command}`. "
+        "Every method sees the same sessions; each rival has the threshold that 1 % of the same sound sessions pass. "
+        "Strength: see [the study](study.md). Intervals: 95 % (Wilson).\n\n"
+        f"{table(head, rows)}\n\n"
+        "The last line is told which cause acts, so that it looks for one family of shapes where all others look for "
+        f"{len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody who "
+        "measures can avoid.\n"
+    )
+
+
+def _passed(sound: list[Look], hidden: list[Look], statistic: Callable[[Look], float]) -> str:
+    threshold = float(np.quantile([statistic(look) for look in sound], 1 - ALARMS, method="higher"))
+    return str(rate([statistic(look) > threshold for look in hidden]))
+
+
+def _told(sound: list[Look], hidden: list[Look]) -> str:
+    """The threshold is of all causes' families in all sound sessions: each is told one of them."""
+    every = [value for look in sound for value in look.told.values()]
+    threshold = float(np.quantile(every, 1 - ALARMS, method="higher"))
+    return str(rate([look.told.get(look.cause, 0.0) > threshold for look in hidden]))
+
+
+def main() -> None:
+    """Look at all sessions and write the page."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.study.detection", description=__doc__)
+    parser.add_argument("--sessions", type=int, default=84, help="of each strength")
+    parser.add_argument("--sound", type=int, default=400)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--out", type=Path, default=PAGE)
+    options = parser.parse_args()
+    work, looks = list(tasks(options.sessions, options.sound, options.seed)), list[Look]()
+    with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
+        for k, look in enumerate(pool.map(perform, work, chunksize=2), 1):
+            looks += [look] if look else []
+            print(f"\r{k}/{len(work)}", end="", file=sys.stderr)
+    print(file=sys.stderr)
+    given = f"--sessions {options.sessions} --sound {options.sound} --seed {options.seed}"
+    text = page(looks, f"python -m benchmarks.study.detection {given}")
+    publish(text, options.out)
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
