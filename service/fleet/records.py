@@ -9,6 +9,7 @@ from pydantic import computed_field
 from estimator.message import joined
 from service.groups.records import FoundTogether
 from service.kit.answer import answer
+from service.kit.listing import ListQuery
 from service.sessions.decision import Verdict
 from service.sessions.states import Questioned
 from service.stands.records import StandCondition
@@ -28,14 +29,12 @@ class Order(StrEnum):
 
 
 @dataclass(frozen=True)
-class FleetQuery:
-    """Which units are wanted."""
+class FleetQuery(ListQuery):
+    """Which units are wanted, and after or before which serial number."""
 
     verdict: Verdict | None = None
     text: str | None = None
     """Part of the serial number or of the type's name, small and capital letters alike."""
-    offset: int = 0
-    limit: int = 100
     reserved: bool | None = None
     """Whether the verdict is said with a reservation; None where either will do."""
     due_before: datetime | None = None
@@ -50,11 +49,6 @@ class FleetQuery:
     unfit: bool = False
     """Only units that somebody must act on: unfit, probably unfit, or undecided."""
     order: Order = Order.CONDITION
-    backwards: bool = False
-    after: str | None = None
-    """The unit that the list goes on after; one that is not there begins the list anew."""
-    before: str | None = None
-    """The unit that it ends before."""
 
 
 @dataclass(frozen=True)

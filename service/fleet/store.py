@@ -26,7 +26,7 @@ from service.flags.tables import FlagRow
 from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
 from service.fleet.records import NOT_KNOWN, FleetChoices, FleetQuery, Tally
 from service.fleet.tables import ConditionRow, FleetTallyRow
-from service.fleet.wanted_store import Summaries, beyond, keys, matching
+from service.fleet.wanted_store import UNITS
 from service.models.records import Scope
 from service.outlook.store import outlook_of
 from service.outlook.tables import OutlookRow
@@ -127,25 +127,10 @@ class Fleet(Queries):
 
     def units(self, wanted: FleetQuery) -> tuple[UnitSummary, ...]:
         """The wanted units, worst first; one more query where the list goes on from a unit."""
-        place = self._place(wanted)
-        if place is None:
-            wanted = replace(wanted, after=None, before=None)
-        chosen = matching(_summaries().with_only_columns(UnitRow.id, maintain_column_froms=True), wanted)
-        if place is not None:
-            chosen = chosen.where(beyond(wanted, place))
-        ids = chosen.offset(wanted.offset).limit(wanted.limit).subquery()
-        query = _summaries().join(ids, ids.c.id == UnitRow.id).order_by(*(key.order for key in keys(wanted)))
-        found = tuple(_summary(row) for row in self._session.execute(query))
-        return found if wanted.before is None else found[::-1]
-
-    def _place(self, wanted: FleetQuery) -> Sequence[Any] | None:
-        """What a unit that a list goes on from is ordered by."""
-        named = wanted.after if wanted.before is None else wanted.before
-        if named is None:
-            return None
-        columns = [key.column for key in keys(wanted)]
-        query = _summaries().with_only_columns(*columns, maintain_column_froms=True)
-        return self._session.execute(query.where(UnitRow.serial == named)).one_or_none()
+        page = UNITS.page(self._session, _summaries(), wanted)
+        ids = page.cut(_summaries().with_only_columns(UnitRow.id, maintain_column_froms=True)).subquery()
+        query = page.ordered(_summaries().join(ids, ids.c.id == UnitRow.id))
+        return page.forward(_summary(row) for row in self._session.execute(query))
 
     def choices(self) -> FleetChoices:
         """Types, stands and lots that there are, in one query."""
@@ -225,6 +210,7 @@ FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.reservations)
 
 _Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
 """What is still to be made of a unit."""
+Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str]
 
 
 def _summaries(*, measured: bool = True) -> Summaries:

@@ -19,7 +19,7 @@ from service.models.store import Models
 from service.outlook.reading import dated
 from service.outlook.rules.populations import fleet_standouts
 from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
-from service.pages.fleet.view import FleetAsked, FleetView
+from service.pages.fleet.view import FleetView
 from service.pages.saved import saved
 from service.pages.session.pages import session_page
 from service.pages.unit.pages import unit_page
@@ -65,10 +65,10 @@ def show_fleet(
     store: ReadingFleet,
     now: Now,
     person: PersonOf,
-    asked: Annotated[FleetAsked, Query()],
+    view: Annotated[FleetView, Query()],
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
-    view, announced = FleetView.of(asked), Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
+    announced = Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
     condition = Fleet(store).condition_at(now)
     shown = fleet_page(
         condition,

@@ -10,7 +10,7 @@ from service.fleet.records import FleetChoices
 from service.groups.sections import FoundLine
 from service.outlook.rules.populations import Standout
 from service.outlook.words import needed_now
-from service.pages.fleet.view import DUE, FIRST, ORDERS, PAGE_SIZE, FleetView
+from service.pages.fleet.view import DUE, FleetView
 from service.pages.saved import Saved
 from service.people.views import ListPage
 from service.sessions.decision import Verdict
@@ -18,6 +18,7 @@ from service.sessions.doubt import Reservations
 from service.sessions.states import Questioned
 from service.sessions.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
 from service.stands.records import StandCondition
+from service.web.list_view import Shown
 
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
@@ -82,10 +83,7 @@ class FleetPage:
     tiles: tuple[Tile, ...]
     rows: tuple[FleetRow, ...]
     total: int
-    earlier: str
-    """Address of the page before this one; empty where it is the first."""
-    later: str
-    """Address of the next page; empty where it is the last."""
+    shown: Shown[UnitSummary]
     simulated: int
     flags: str
     """How many are open on all units together, in words; empty where none is."""
@@ -103,15 +101,13 @@ class FleetPage:
     """What the list can be narrowed to."""
     dates: Mapping[str, str]
     """Choices of the next calibration's date, in words."""
-    orders: Mapping[str, str]
-    """Of the list, in words."""
     saved: Saved
     """Views of the list that were kept."""
 
     @property
     def first(self) -> int:
         """Number of the first unit on this page, counted from 1."""
-        return (self.view.page - 1) * PAGE_SIZE + 1
+        return (self.view.page - 1) * self.view.PAGE_SIZE + 1
 
     @property
     def last(self) -> int:
@@ -133,16 +129,14 @@ def fleet_page(
     choices: FleetChoices = NO_CHOICES,
     kept: Saved = NONE_SAVED,
 ) -> FleetPage:
-    """One page of units; one more than fit on it says that there are others in the direction of reading."""
-    backwards, others = bool(view.before), len(units) > PAGE_SIZE
-    shown = units[-PAGE_SIZE:] if backwards else units[:PAGE_SIZE]
+    """One page of units."""
+    shown = Shown.of(view, units, lambda unit: unit.serial)
     return FleetPage(
         view=view,
         tiles=tuple(_tile(v, condition, view) for v in reversed(condition.verdicts)),
-        rows=tuple(fleet_row(unit, now) for unit in shown),
+        rows=tuple(fleet_row(unit, now) for unit in shown.entries),
         total=condition.units,
-        earlier=_earlier(view, shown),
-        later=_later(view, shown) if backwards or others else "",
+        shown=shown,
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
         stands=tuple(stands),
@@ -154,22 +148,8 @@ def fleet_page(
         else "",
         choices=choices,
         dates=DUE,
-        orders=ORDERS,
         saved=kept,
     )
-
-
-def _earlier(view: FleetView, shown: Sequence[UnitSummary]) -> str:
-    """The first page is read from its beginning, so that nothing new is missed before it."""
-    if view.page == 1:
-        return ""
-    if view.page == 2 or not shown:
-        return view.url(**FIRST)
-    return view.url(page=view.page - 1, before=shown[0].serial, after="")
-
-
-def _later(view: FleetView, shown: Sequence[UnitSummary]) -> str:
-    return view.url(page=view.page + 1, after=shown[-1].serial, before="") if shown else ""
 
 
 def _tile(verdict: Verdict, fleet: FleetCondition, view: FleetView) -> Tile:
@@ -181,7 +161,7 @@ def _tile(verdict: Verdict, fleet: FleetCondition, view: FleetView) -> Tile:
         reserved=fleet.reserved.get(verdict, 0),
         references=fleet.references if verdict is Verdict.UNDECIDABLE else 0,
         chosen=chosen,
-        url=view.url(condition="" if chosen else condition.key, **FIRST),
+        url=view.first(condition="" if chosen else condition.key),
     )
 
 

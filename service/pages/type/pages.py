@@ -222,7 +222,7 @@ def _block(known: UnitType) -> str:
 
 def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
     return tuple(
-        TypeTile(condition_of(verdict), count, FleetView(condition=verdict.value, unit_type=name).url())
+        TypeTile(condition_of(verdict), count, FleetView(condition=verdict.value, type=name).url())
         for verdict, count in reversed(use.verdicts.items())
         if count
     )

@@ -16,6 +16,7 @@ from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.outlook.reading import outlook_of
 from service.sessions.decision import Verdict
+from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
 from service.settings import Settings
 from service.stands.health import stand_health
@@ -108,7 +109,7 @@ def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
         notes = [note.text for serial in units for note in Notes(store).of_unit(serial)]
         stages = [session.stage for session in Sessions(store).of_unit("BA-109") if session.stage]
         breaks = {serial: Services(store).of_unit(serial) for serial in units}
-        sessions = Sessions(store).page("BA-107", 0, 50)
+        sessions = Sessions(store).wanted(SessionQuery(unit="BA-107", limit=50))
         stands = stand_health(store)
         outlooks = {serial: outlook_of(store, serial, END) for serial in units}
     assert {serial: units[serial].verdict for serial in CONDITIONS} == CONDITIONS

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from service.fleet.condition import FleetCondition
 from service.pages.fleet.pages import fleet_page, margin_of
-from service.pages.fleet.view import PAGE_SIZE, FleetView
+from service.pages.fleet.view import FleetView
 from service.sessions.decision import Verdict
 from tests.service.pages.records import NOON, unit_summary
 
@@ -24,14 +24,14 @@ def test_undecided_units_tell_how_many_hold_a_reference_only() -> None:
 
 
 def test_units_are_numbered_through_the_pages() -> None:
-    units = [unit_summary(f"U{i}") for i in range(PAGE_SIZE + 1)]
+    units = [unit_summary(f"U{i}") for i in range(FleetView.PAGE_SIZE + 1)]
     page = fleet_page(CONDITION, units, FleetView(page=2), NOON)
-    assert (page.first, page.last) == (PAGE_SIZE + 1, 2 * PAGE_SIZE)
-    assert page.later
+    assert (page.first, page.last) == (FleetView.PAGE_SIZE + 1, 2 * FleetView.PAGE_SIZE)
+    assert page.shown.later
 
 
 def test_changing_the_filter_goes_back_to_the_first_page() -> None:
-    view = FleetView(text="BA 1", condition="fail", page=3)
+    view = FleetView(q="BA 1", condition="fail", page=3)
     assert view.url() == "/?q=BA+1&condition=fail&page=3"
     assert view.url(condition="pass", page=1) == "/?q=BA+1&condition=pass"
     assert FleetView().url() == "/"

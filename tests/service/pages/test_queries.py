@@ -38,7 +38,6 @@ PAGES: dict[str, tuple[int, Page]] = {
     "condition": (1, lambda store: Fleet(store).condition()),
     "history": (2, lambda store: History(store).points(Units(store).key("BA-000"), HistoryQuery())),
     "unit": (3, lambda store: unit_report(store, "BA-000", NOW)),
-    "sessions": (1, lambda store: Sessions(store).page(None, 0, 100)),
     "flags": (1, lambda store: Flags(store).page(FlagQuery())),
     "flags of a unit": (1, lambda store: Flags(store).page(FlagQuery("BA-000"))),
     "outlook": (4, lambda store: outlook_of(store, "BA-000", NOW)),
