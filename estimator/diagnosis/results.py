@@ -197,7 +197,7 @@ class Structure(Document):
 
 
 @dataclass(frozen=True)
-class Score:
+class Score(Document, optional=("rms_by_sensor",)):
     """How well a model predicts readings it has not seen."""
 
     rms: float
@@ -207,6 +207,8 @@ class Score:
     """Mean log predictive density of a reading, in units of its own sigma."""
     rms_by_kind: dict[str, float] = field(default_factory=dict)
     """The same of every kind of sensor, each in its own unit."""
+    rms_by_sensor: dict[str, dict[str, float]] | None = None
+    """The same of every sensor by name, by kind; None where it is not stated."""
 
 
 @dataclass(frozen=True)

@@ -233,6 +233,8 @@ class DiagnosisSummary:
 
     state: DiagnosisState
     summary: str
+    gain: str = ""
+    """What the named causes gain, in one sentence."""
 
 
 UNWEIGHED = "~"
