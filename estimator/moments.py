@@ -1,6 +1,9 @@
 """Moments as session files state them: ISO 8601 with an offset from UTC. Everything inside is UTC."""
 
 from datetime import UTC, datetime
+from math import ceil
+
+from estimator.message import say
 
 
 def moment(stated: str) -> datetime:
@@ -23,3 +26,18 @@ def written(at: datetime) -> str:
 def in_utc(stated: str | None) -> str | None:
     """The same moment in UTC; None where nothing is stated, which earlier versions also wrote as an empty text."""
     return written(moment(stated)) if stated else None
+
+
+MINUTE, HOUR, DAY = 60.0, 3600.0, 86_400.0
+"""s."""
+
+
+def duration(seconds: float) -> str:
+    """``39 s``, ``35 min``, ``5 h``, ``3 days``: rounded up, to two digits or so."""
+    if seconds < 2 * MINUTE:
+        return say("{seconds} s", seconds=ceil(seconds))
+    if seconds < 2 * HOUR:
+        return say("{minutes} min", minutes=ceil(seconds / MINUTE))
+    if seconds < 2 * DAY:
+        return say("{hours} h", hours=ceil(seconds / HOUR))
+    return say("{days} days", days=ceil(seconds / DAY))
