@@ -3,7 +3,7 @@
 from datetime import UTC, datetime
 from math import ceil
 
-from estimator.message import say
+from estimator.message import say, say_count
 
 
 def moment(stated: str) -> datetime:
@@ -33,11 +33,13 @@ MINUTE, HOUR, DAY = 60.0, 3600.0, 86_400.0
 
 
 def duration(seconds: float) -> str:
-    """``39 s``, ``35 min``, ``5 h``, ``3 days``: rounded up, to two digits or so."""
+    """``39 seconds``, ``35 min``, ``5 h 10 min``, ``3 days``: rounded up."""
+    minutes = ceil(seconds / MINUTE)
     if seconds < 2 * MINUTE:
-        return say("{seconds} s", seconds=ceil(seconds))
+        return say_count("{n} second", "{n} seconds", ceil(seconds))
     if seconds < 2 * HOUR:
-        return say("{minutes} min", minutes=ceil(seconds / MINUTE))
+        return say("{minutes} min", minutes=minutes)
     if seconds < 2 * DAY:
-        return say("{hours} h", hours=ceil(seconds / HOUR))
-    return say("{days} days", days=ceil(seconds / DAY))
+        hours, rest = divmod(minutes, 60)
+        return say("{hours} h {rest} min", hours=hours, rest=rest)
+    return say_count("{n} day", "{n} days", ceil(seconds / DAY))
