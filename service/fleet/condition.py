@@ -47,6 +47,8 @@ class UnitSummary:
     """1 − (|d| + U)/T of it: 1 is spotless, 0 the edge of pass, negative beyond."""
     diagnosis: str = ""
     """What the simulation gets wrong about the latest session; empty if nothing."""
+    gain: Hidden[str] = ""
+    """What naming it gains, in one sentence."""
     flags: int = 0
     """How many flags are open."""
     due: datetime | None = None

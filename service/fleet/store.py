@@ -204,7 +204,7 @@ LAST = (
     SessionRow.worst_parameter,
     SessionRow.margin,
 )
-FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.reservations)
+FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, DiagnosisRow.reservations)
 """What a line of the fleet tells of the latest session and of its diagnosis; the rest is long, and stays unread."""
 
 
@@ -280,6 +280,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         worst_parameter=last.worst_parameter,
         margin=last.margin,
         diagnosis=_diagnosis(row[4]),
+        gain="" if row[4] is None else row[4].gain_in_words or "",
         flags=condition.flags,
         due=row[5],
         lot=unit.lot,

@@ -6,6 +6,7 @@ from datetime import datetime
 
 from service.diagnosis.words.causes import cause_on
 from service.models.records import ModelRevision
+from service.models.words import gain_of
 
 
 @dataclass(frozen=True)
@@ -18,11 +19,21 @@ class AcceptedCause:
     who: str
     at: datetime
     note: str
+    gain: str
+    """What it gained, in one sentence."""
 
 
 def accepted_causes(revisions: Sequence[ModelRevision]) -> tuple[AcceptedCause, ...]:
     """Lines in the order of the revisions."""
     return tuple(
-        AcceptedCause(one.id, cause_on(one.cause, one.sensors), one.session, one.accepted_by, one.accepted_at, one.note)
+        AcceptedCause(
+            revision=one.id,
+            name=cause_on(one.cause, one.sensors),
+            session=one.session,
+            who=one.accepted_by,
+            at=one.accepted_at,
+            note=one.note,
+            gain=gain_of(one),
+        )
         for one in revisions
     )

@@ -15,6 +15,7 @@ from estimator.session import DIAGNOSED, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis, state_of
 from service.diagnosis.store import Diagnoses, inapplicable_to_dict, read_diagnosis
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
+from service.diagnosis.words.gain import concerned, gain_in_words
 from service.groups.changes import as_evidence, keep_statistics, kept_before
 from service.ingest import read_upload
 from service.ingest.checked import dated
@@ -151,6 +152,7 @@ def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
         _nothing_found(task, state_of(found), summary_of(found), now),
         found=read,
         document=document,
+        gain_in_words=gain_in_words(found.gain, concerned(found.findings)) if found.findings else "",
         verdict_after=weighed.verdict_after,
         reservations=weighed.reservations,
     )

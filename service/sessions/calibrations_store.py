@@ -82,14 +82,14 @@ class Calibrations(Queries):
         """A session, its diagnosis in one line where it is made, why the last try to make it failed, and its
         calibration in force; in one query."""
         own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
-        line = (DiagnosisRow.state, DiagnosisRow.summary, WorkRow.failed)
+        line = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, WorkRow.failed)
         query = session_rows().add_columns(*line, CalibrationRow.document).join(CalibrationRow, own)
         whole = query.outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id))
         row = self._session.execute(whole.where(SessionRow.id == id)).one_or_none()
         if row is None:
             raise NotFoundError(say("There is no session {id}.", id=repr(id)))
-        *session, state, summary, failed, document = row
-        made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary)
+        *session, state, summary, gain, failed, document = row
+        made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary, gain or "")
         return session_record(*session), made, failed or "", _read(zlib.decompress(document))
 
     def in_force(self, sessions: Iterable[str]) -> dict[str, Calibration]:

@@ -70,6 +70,8 @@ class StoredSession:
     """°C, the mean over the session; None where it was not recorded."""
     is_check: bool = False
     """Whether it is only a check, which moves no due date unless it is a reference."""
+    time_since_power_on: float | None = None
+    """Seconds from switching the unit on to the first row; null where the file does not say."""
 
 
 @dataclass(frozen=True)
@@ -226,6 +228,8 @@ class DiagnosisSummary:
 
     state: DiagnosisState
     summary: str
+    gain: str = ""
+    """What the named causes gain, in one sentence."""
 
 
 UNWEIGHED = "~"

@@ -57,8 +57,10 @@ def _as_it_is(text: str) -> str:
 
 
 DOCUMENT = dict[str, Any]
-ASKED = ("unit", "started_at", "stage", "operator", "notes")
+ASKED = ("unit", "started_at", "powered_on_at", "stage", "operator", "notes")
 """What differs from session to session, in the order in which it is asked."""
+OF_ANOTHER = ("table", "origin", "time_since_power_on_s", *ASKED)
+"""What a pattern says of itself alone."""
 MEASURED = ("time_s", "temperature_c", "vibration_m_s2")
 """Columns that are measured with the readings; what was planned of them would be untrue."""
 CHOICES = {
@@ -77,7 +79,10 @@ ROOM = 1000
 """Rows that have choices and limits: more than any session of positions."""
 MOST_SHOWN = 100
 """Rows of the example: a session of positions, or the beginning of a log."""
-EXAMPLE = {"unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "operator": "K. Ito", "notes": "after transport"}
+EXAMPLE = {
+    "unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "powered_on_at": "2026-03-01T08:20:00Z",
+    "operator": "K. Ito", "notes": "after transport",
+}  # fmt: skip
 """What the example says where it is asked."""
 AXIS_DIGITS = 10
 """After the point, of axes: 2e-5 arcsec."""
@@ -137,7 +142,7 @@ def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
 
 def _rows(document: DOCUMENT) -> Iterator[tuple[str, Any]]:
     """Keys with what is known of them, what is asked first after the format; what is filled in is measured."""
-    known = {key: value for key, value in document.items() if key not in ("table", "origin", *ASKED)}
+    known = {key: value for key, value in document.items() if key not in OF_ANOTHER}
     yield "format", known.pop("format")
     yield from ((key, "") for key in ASKED)
     yield from _flat(known, "")

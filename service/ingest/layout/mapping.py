@@ -20,7 +20,9 @@ MOST_ROW = 1_048_576
 """Of a spreadsheet."""
 LONGEST = 1000
 """Characters of a heading or a word."""
-ASKED_ANEW = ("unit", "started_at", "operator", "notes", "stage", "origin")
+ASKED_ANEW = (
+    "unit", "started_at", "powered_on_at", "time_since_power_on_s", "operator", "notes", "stage", "origin",
+)  # fmt: skip
 """Of the session; everything else is the same next time."""
 
 
