@@ -106,7 +106,9 @@ def _text_problems(session: CalibrationSession) -> list[Problem]:
 def _fault(text: str) -> str | None:
     if len(text) > LONGEST_NOTES:
         return say(
-            "is {text} characters long; at most {longest_notes} are kept", text=len(text), longest_notes=LONGEST_NOTES
+            "is {length} characters long; at most {longest_notes} are kept",
+            length=len(text),
+            longest_notes=LONGEST_NOTES,
         )
     if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
         return "holds characters that are not text (NUL or half of a pair); remove them"
@@ -122,7 +124,7 @@ def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:
         return [
             Problem(
                 "started_at",
-                say("lies in the future ({at}); check the date or the clock that wrote it", at=f"{at:%Y-%m-%d}"),
+                say("lies in the future ({date}); check the date or the clock that wrote it", date=f"{at:%Y-%m-%d}"),
             )
         ]
     return []

@@ -74,10 +74,10 @@ def _damage_refused(filename: str) -> Iterator[None]:
 def _dataset(group: h5py.Group, name: str, filename: str) -> h5py.Dataset:
     """The column of this name, when it is a plain one."""
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-        raise refusal(filename, say("is a link; {plain}", plain=PLAIN), name)
+        raise refusal(filename, say("is a link; {advice}", advice=PLAIN), name)
     item = group[name]
     if not isinstance(item, h5py.Dataset) or item.ndim != 1 or item.is_virtual or item.external:
-        raise refusal(filename, say("is not a plain column; {plain}", plain=PLAIN), name)
+        raise refusal(filename, say("is not a plain column; {advice}", advice=PLAIN), name)
     return item
 
 
@@ -86,7 +86,7 @@ def _values(name: str, column: h5py.Dataset, filename: str) -> object:
     if column.dtype.kind in "fiu":
         return np.asarray(column[()])
     if h5py.check_string_dtype(column.dtype) is None:
-        raise refusal(filename, say("is of type {dtype}; {plain}", dtype=column.dtype, plain=PLAIN), name)
+        raise refusal(filename, say("is of type {dtype}; {advice}", dtype=column.dtype, advice=PLAIN), name)
     if column.size > MOST_LABELS:
         raise refusal(
             filename,

@@ -55,7 +55,7 @@ def _frames(rows: Rows, names: list[str], filename: str) -> Iterator[pl.DataFram
             at += len(frame)
             if at * columns > most:
                 raise refusal(
-                    filename, say("has more than {most} cells, the most of a recording; split it", most=most), "table"
+                    filename, say("has more than {limit} cells, the most of a recording; split it", limit=most), "table"
                 )
             yield frame.cast(pl.Float64)
     except UNREADABLE as error:
@@ -116,9 +116,9 @@ def _whole(path: Path, filename: str) -> bytes:
         raise refusal(
             filename,
             say(
-                "has {size} bytes; but for raw logs (sample_rate_hz) at most {most} can be read",
+                "has {size} bytes; but for raw logs (sample_rate_hz) at most {limit} can be read",
                 size=f"{size:,}",
-                most=f"{most:,}",
+                limit=f"{most:,}",
             ),
         )
     return path.read_bytes()

@@ -172,7 +172,7 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
         names = [name.strip().strip('"') for name in header.decode().split(separator)]
     except UnicodeDecodeError as error:
         raise refusal(
-            filename, say("is not UTF-8 text (byte {start}); save it as UTF-8", start=error.start + 1)
+            filename, say("is not UTF-8 text (byte {position}); save it as UTF-8", position=error.start + 1)
         ) from error
     if len(set(names)) < len(names) or not all(names):
         raise refusal(filename, "has columns without a name or of the same name; names must differ", "table")
@@ -292,7 +292,7 @@ class _Scan:
                 if at * columns > most:
                     raise refusal(
                         self.filename,
-                        say("has more than {most} cells, the most of a raw log; split it", most=most),
+                        say("has more than {limit} cells, the most of a raw log; split it", limit=most),
                         "table",
                     )
                 if len(frame):

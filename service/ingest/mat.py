@@ -64,7 +64,9 @@ def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.
         raise refusal(filename, "is of a MATLAB version that is not read; save it with save(…, '-v7')")
     most = in_force().unpacked
     if _unpacked_size(content, most) > most:
-        raise refusal(filename, say("unpacks to more than {most} MiB; average or split the log", most=most // 1024**2))
+        raise refusal(
+            filename, say("unpacks to more than {limit} MiB; average or split the log", limit=most // 1024**2)
+        )
     try:
         declared = _declared(content)
         _check_declared(declared, filename, most_rows)
@@ -102,7 +104,7 @@ def _check_declared(declared: list[Declared], filename: str, most_rows: int) -> 
     if cells > most + MOST_TEXT:
         raise refusal(
             filename,
-            say("has {cells} cells; at most {most} can be read, so average or split it", cells=cells, most=most),
+            say("has {cells} cells; at most {limit} can be read, so average or split it", cells=cells, limit=most),
             "table",
         )
 

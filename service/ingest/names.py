@@ -22,7 +22,7 @@ def fault_of_name(text: str) -> str | None:
     """What is wrong with a name; None where nothing is."""
     if len(text) > LONGEST_NAME:
         return say(
-            "is {text} characters long; at most {longest_name} are kept", text=len(text), longest_name=LONGEST_NAME
+            "is {length} characters long; at most {longest_name} are kept", length=len(text), longest_name=LONGEST_NAME
         )
     if any(unicodedata.category(c) in UNSEEN for c in text):
         return "holds characters that nobody sees, such as control characters or marks of direction; remove them"

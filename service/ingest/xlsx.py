@@ -143,13 +143,13 @@ class _Part:
         if self.rows > most.rows or self.columns > most.columns or self.rows * self.columns > most.cells:
             raise TooMuchError(
                 say(
-                    "has {rows} rows × {columns} columns in a sheet; at most {cells} cells, {rows2} rows and "
-                    "{columns2} columns can be read",
+                    "has {rows} rows × {columns} columns in a sheet; at most {cell_limit} cells, {row_limit} rows and "
+                    "{column_limit} columns can be read",
                     rows=self.rows,
                     columns=self.columns,
-                    cells=most.cells,
-                    rows2=most.rows,
-                    columns2=most.columns,
+                    cell_limit=most.cells,
+                    row_limit=most.rows,
+                    column_limit=most.columns,
                 )
             )
 

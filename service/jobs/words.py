@@ -44,9 +44,9 @@ def title_of(job: Job) -> str:
 def left_in_words(left: int) -> str:
     """Why sessions of a unit keep what they had, and what helps."""
     return say(
-        "{left} left as before: the file is lost, or cannot be calibrated under the model in "
+        "{sessions} left as before: the file is lost, or cannot be calibrated under the model in "
         "force. Upload a lost file again; withdraw an accepted cause that does not fit.",
-        left=counted(left, "session"),
+        sessions=counted(left, "session"),
     )
 
 
@@ -90,7 +90,9 @@ def outcome_of(job: Job) -> str:
         if job.verdicts
         else "no verdict moved"
     )
-    return say("{recomputed} computed again, {other}.", recomputed=counted(job.recomputed, "session"), other=other)
+    return say(
+        "{recomputed} computed again, {verdicts}.", recomputed=counted(job.recomputed, "session"), verdicts=other
+    )
 
 
 def _became(job: Job) -> str:

@@ -113,11 +113,11 @@ def _evidence(strength: float, pooled: Pooled | None) -> str:
     since = since_in_words(pooled.form, pooled.since)
     fitted = "each session has a say in it" if pooled.form == "varying" else "no session fits it again"
     return say(
-        "{sessions}, {since}: {strength}. The size is theirs: {fitted}.",
+        "{sessions}, {date}: {strength}. The size is theirs: {amplitudes}.",
         sessions=over(pooled.sessions),
-        since=since,
+        date=since,
         strength=standard_errors(strength),
-        fitted=fitted,
+        amplitudes=fitted,
     )
 
 
@@ -131,10 +131,12 @@ def _unit(one: Recomputation) -> UnitRow:
     told = one.outcome
     if told is None:
         return UnitRow(one.unit, one.state.value, left_in_words(one))
-    left = say(", {left} cannot be", left=told.left) if told.left else ""
+    left = say(", {number} cannot be", number=told.left) if told.left else ""
     return UnitRow(
         one.unit,
-        say("{recomputed} of {sessions}{left}", recomputed=told.recomputed, sessions=told.sessions, left=left),
+        say(
+            "{recomputed} of {sessions}{remainder}", recomputed=told.recomputed, sessions=told.sessions, remainder=left
+        ),
         moved_in_words(told.furthest),
     )
 

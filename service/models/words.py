@@ -22,17 +22,19 @@ def progress_of(found: Sequence[Recomputation]) -> str:
     done = [one.outcome for one in found if one.outcome is not None]
     waiting = sum(one.state is Progress.WAITING for one in found)
     sessions, moved = sum(one.recomputed for one in done), sum(len(one.verdicts) for one in done)
-    units = say("{done} of {found}", done=len(done), found=_counted(len(found), "unit"))
+    units = say("{done} of {units}", done=len(done), units=_counted(len(found), "unit"))
     verdicts = (
-        say("the verdict of {moved} is another", moved=_counted(moved, "session")) if moved else "no verdict moved"
+        say("the verdict of {sessions} is another", sessions=_counted(moved, "session"))
+        if moved
+        else "no verdict moved"
     )
     still = say(" {waiting} still to come.", waiting=_counted(waiting, "unit")) if waiting else ""
     return say(
-        "{sessions} of {units} computed again: {verdicts}.{still}",
+        "{sessions} of {units} computed again: {verdicts}.{progress}",
         sessions=_counted(sessions, "session"),
         units=units,
         verdicts=verdicts,
-        still=still,
+        progress=still,
     )
 
 
@@ -55,12 +57,12 @@ def moved_in_words(moved: MovedParameter | None) -> str:
     measure = deviation_measure(moved.kind, moved.parameter, max(abs(moved.change), u))
     by, unsure = (_shown(value, measure) for value in (moved.change, u))
     return say(
-        "{parameter} of {sensor} by {by} (U{hard}={hard}{unsure})",
+        "{parameter} of {sensor} by {amplitude} (U{nbsp}={nbsp}{uncertainty})",
         parameter=PARAMETER_NAMES[moved.parameter],
         sensor=moved.sensor,
-        by=by,
-        hard=HARD,
-        unsure=unsure,
+        amplitude=by,
+        nbsp=HARD,
+        uncertainty=unsure,
     )
 
 

@@ -95,7 +95,9 @@ def _line(token: Token, now: datetime) -> TokenLine:
         else say("last used on {last_used_at}", last_used_at=f"{token.last_used_at:%Y-%m-%d}")
     )
     return TokenLine(
-        token, say("holds until {expires_at}, {used}", expires_at=f"{token.expires_at:%Y-%m-%d}", used=used), holds=True
+        token,
+        say("holds until {expires_at}, {last_use}", expires_at=f"{token.expires_at:%Y-%m-%d}", last_use=used),
+        holds=True,
     )
 
 

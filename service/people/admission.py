@@ -182,7 +182,7 @@ async def _admitted(request: Request, person: PersonOf) -> None:
     route = route_of(request.scope)
     SENDER.set(person.login or (request.client.host if request.client else ""))
     if route not in NEEDED:
-        raise ForbiddenError(say("Nobody may {route} {route2}: it has no rule.", route=route[0], route2=route[1]))
+        raise ForbiddenError(say("Nobody may {method} {path}: it has no rule.", method=route[0], path=route[1]))
     needed = NEEDED[route]
     if needed is None:
         return
@@ -194,8 +194,8 @@ async def _admitted(request: Request, person: PersonOf) -> None:
 
 def _lacking(person: Person, needed: Role) -> str:
     return say(
-        "This needs the role {needed}; {account} is {role}. Ask an administrator.",
-        needed=needed,
+        "This needs the role {needed_role}; {account} is {role}. Ask an administrator.",
+        needed_role=needed,
         account=person.account,
         role=person.role,
     )

@@ -168,10 +168,10 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
     if not person.may(new.role):
         raise ForbiddenError(
             say(
-                "{account} is {role} and cannot make a token for {role2}.",
+                "{account} is {role} and cannot make a token for {wanted_role}.",
                 account=person.account,
                 role=person.role,
-                role2=new.role,
+                wanted_role=new.role,
             )
         )
     lasts = timedelta(days=new.days)

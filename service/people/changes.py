@@ -347,10 +347,10 @@ def make_token(
         if not account.is_active or not account.role.may(role):
             raise ConflictError(
                 say(
-                    "{login} is {role} and cannot have a token for {role2}.",
+                    "{login} is {role} and cannot have a token for {wanted_role}.",
                     login=account.login,
                     role=account.role,
-                    role2=role,
+                    wanted_role=role,
                 )
             )
         new = Token(0, account.login, label.strip() or "token", role, now, now + lasts, None, None)

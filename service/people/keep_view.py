@@ -32,7 +32,9 @@ def save_view(storage: Storage, new: NewView, person: Person, who: str, now: dat
     with storage.database.writing() as store:
         known = SavedViews(store).named(new.page, owner, new.name)
         if known is None and SavedViews(store).count(new.page, owner) >= MOST:
-            raise ConflictError(say("There are {most} saved views of this list already. Remove one first.", most=MOST))
+            raise ConflictError(
+                say("There are {number} saved views of this list already. Remove one first.", number=MOST)
+            )
         view = SavedViews(store).put(new.page, owner, new.name, query=new.query, who=who, at=now)
         details = {"view": view.id, "page": view.page, "query": view.query, "shared": view.shared}
         Audit(store).write(now, who, "save view", view.name, details)

@@ -89,10 +89,10 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
         raise _refused(
             "cause",
             say(
-                "{wanted} is a matter of this one record or of what changed since earlier sessions, not "
+                "{cause} is a matter of this one record or of what changed since earlier sessions, not "
                 "a property that a model can hold; correct the record and upload it again, or act on the "
                 "unit",
-                wanted=repr(wanted),
+                cause=repr(wanted),
             ),
         )
     return (*named, *equal)[0]
@@ -133,7 +133,7 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
         found = joined(" and ", sensors)
         raise _refused(
             "scope",
-            say("is 'stand', but the cause acts on {found}; accept it for the unit or the unit type", found=found),
+            say("is 'stand', but the cause acts on {sensors}; accept it for the unit or the unit type", sensors=found),
         )
     if session.stand is None:
         raise _refused("scope", "is 'stand', but the session names no stand; accept it for the unit or the unit type")
@@ -144,7 +144,7 @@ def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
     shown = ", ".join(f.cause for f in findings) or "none"
     return _refused(
         "cause",
-        say("{wanted} is not among the causes that this session shows ({shown})", wanted=repr(wanted), shown=shown),
+        say("{cause} is not among the causes that this session shows ({known})", cause=repr(wanted), known=shown),
     )
 
 

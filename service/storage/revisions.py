@@ -11,13 +11,13 @@ def unfit(found: str | None) -> str | None:
         return None
     if found is not None and not is_known(found):
         return say(
-            "The database's schema is at {found}, which a newer version of the program made; this "
-            "one goes up to {needed}: run the newer version.",
-            found=found,
-            needed=needed,
+            "The database's schema is at {revision}, which a newer version of the program made; this "
+            "one goes up to {needed_revision}: run the newer version.",
+            revision=found,
+            needed_revision=needed,
         )
     return say(
-        "The database's schema is at {found}, this version needs {needed}: run `imu-health db upgrade`.",
-        found=found or "nothing",
-        needed=needed,
+        "The database's schema is at {revision}, this version needs {needed_revision}: run `imu-health db upgrade`.",
+        revision=found or "nothing",
+        needed_revision=needed,
     )

@@ -61,7 +61,7 @@ def refuse(
         number = Log(store).refusal(received.at, name, digest, received.size, listed)
         Audit(store).write(received.at, received.who, "refuse", digest, {"filename": name, "problems": len(listed)})
         course.refused(store, number)
-    count = "one problem" if len(listed) == 1 else say("{listed} problems", listed=len(listed))
+    count = "one problem" if len(listed) == 1 else say("{number} problems", number=len(listed))
     return RefusedError(say("{name} cannot be used: {count}. Nothing was stored.", name=name, count=count), listed)
 
 

@@ -73,8 +73,8 @@ class Arriving:
         if landing.size > most:
             raise TooLargeError(
                 say(
-                    "An upload may hold {most} bytes at a time; this one is larger. Average or split it.",
-                    most=f"{most:,}",
+                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                    limit=f"{most:,}",
                 )
             )
         if landing.is_due:
@@ -252,7 +252,7 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
         faults.append(
             Problem(
                 "why",
-                say("is {why} characters long; at most {longest_why} are kept", why=len(why), longest_why=LONGEST_WHY),
+                say("is {length} characters long; at most {limit} are kept", length=len(why), limit=LONGEST_WHY),
             )
         )
     if faults:

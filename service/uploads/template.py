@@ -246,12 +246,12 @@ def _check(sheet: Worksheet, cells: tuple[int, int, int, int], name: str, hint: 
     called = words.heading(words.key(name))
     if name in CHOICES:
         rule = {"validate": "list", "source": [words.value(name, choice) for choice in CHOICES[name]]}
-        rule["error_message"] = words.say(say("Choose one of the list for {called}.", called=called))
+        rule["error_message"] = words.say(say("Choose one of the list for {quantity}.", quantity=called))
     elif name in LIMITS:
         low, high = LIMITS[name]
         rule = {"validate": "decimal", "criteria": "between", "minimum": low, "maximum": high}
         rule["error_message"] = words.say(
-            say("{called} is a number from {low} to {high}.", called=called, low=f"{low:g}", high=f"{high:g}")
+            say("{quantity} is a number from {low} to {high}.", quantity=called, low=f"{low:g}", high=f"{high:g}")
         )
     if hint or name in CHOICES:
         shown = {"input_title": called[:32], "input_message": hint[:255], "ignore_blank": True}

@@ -130,7 +130,7 @@ def _announced(scope: Scope) -> int:
 
 def _too_large(most: int) -> Unfinished:
     return Unfinished(
-        TOO_LARGE, say("A request of this kind may hold {most} bytes; this one is larger.", most=f"{most:,}")
+        TOO_LARGE, say("A request of this kind may hold {limit} bytes; this one is larger.", limit=f"{most:,}")
     )
 
 

@@ -64,8 +64,8 @@ def limited(request: Request, most: int, *, is_form: bool) -> Request:
         if seen > longest:
             raise TooLargeError(
                 say(
-                    "An upload may hold {most} bytes at a time; this one is larger. Average or split it.",
-                    most=f"{most:,}",
+                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                    limit=f"{most:,}",
                 )
             )
         return message

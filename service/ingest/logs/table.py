@@ -89,9 +89,9 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
         raise refusal(
             filename,
             say(
-                "has an IMU with {slowest} samples a second; at least {slowest2} are needed",
-                slowest=f"{slowest:.3g}",
-                slowest2=f"{SLOWEST:g}",
+                "has an IMU with {rate} samples a second; at least {lowest_rate} are needed",
+                rate=f"{slowest:.3g}",
+                lowest_rate=f"{SLOWEST:g}",
             ),
             "table",
         )
@@ -125,7 +125,7 @@ def _left_out(streams: Sequence[Stream], sound: Sequence[Stream]) -> Iterator[st
 
 def _torn(kept: int, rows: int) -> Iterator[str]:
     if kept < rows:
-        yield say("{rows} of {rows2} rows left out: some IMU says nothing there.", rows=rows - kept, rows2=rows)
+        yield say("{number} of {rows} rows left out: some IMU says nothing there.", number=rows - kept, rows=rows)
 
 
 def _rate(stream: Stream) -> float:

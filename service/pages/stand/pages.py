@@ -213,9 +213,9 @@ def _shifts(condition: StandCondition) -> tuple[ShiftRow, ...]:
 def _shift(one: StandEvidence) -> ShiftRow:
     lasts = one.until is None
     when = (
-        say("since {since}", since=day_of(one.since))
+        say("since {date}", date=day_of(one.since))
         if one.until is None
-        else say("{since} to before {until}", since=day_of(one.since), until=day_of(one.until))
+        else say("{start} to before {end}", start=day_of(one.since), end=day_of(one.until))
     )
     word, tone = ("shifted", "conditional-fail") if lasts else ("back where it was", "conditional-pass")
     return _shift_row(one, when, word, tone)
@@ -223,12 +223,12 @@ def _shift(one: StandEvidence) -> ShiftRow:
 
 def _steady(one: StandEvidence) -> ShiftRow:
     return _shift_row(
-        one, say("most evident since {since}", since=day_of(one.since)), "steady: no more than chance", "pass"
+        one, say("most evident since {date}", date=day_of(one.since)), "steady: no more than chance", "pass"
     )
 
 
 def _shift_row(one: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
-    units = say("{agreeing} of {units}", agreeing=one.agreeing, units=one.units)
+    units = say("{number} of {units}", number=one.agreeing, units=one.units)
     return ShiftRow(kind_of_shift(one.kind, one.quantity), size_of_shift(one), when, units, word, tone)
 
 
