@@ -14,7 +14,7 @@ from service.errors import NotFoundError, RefusedError
 from service.ingest import look_at, read_upload
 from service.ingest.layout.envelope import wrapped
 from service.ingest.layout.look import fingerprint
-from service.ingest.layout.mapping import ASKED_ANEW, FORMAT, layout_of
+from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, layout_of
 from service.ingest.layout.understand import Seen, understood
 from service.ingest.layout.vocabulary import plain_label
 from service.planning.pattern import earlier
@@ -103,7 +103,7 @@ def facts_of(storage: Storage, unit: str, unit_type: str) -> dict[str, Any]:
     if like is None:
         return {}
     document = session_document(like)
-    return {key: value for key, value in document.items() if key not in ("format", "table", *ASKED_ANEW)}
+    return {key: value for key, value in document.items() if key not in ("format", "table", *PER_FILE_FIELDS)}
 
 
 def _unknown(columns: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

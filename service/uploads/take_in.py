@@ -18,7 +18,7 @@ from service.errors import (
     RefusedError,
     ServiceError,
 )
-from service.ingest.apart import heard_by
+from service.ingest.apart import reports_progress_to
 from service.ingest.checked import plain_filename
 from service.jobs.changes import Course, require_room
 from service.jobs.records import KILOBYTE, Job, JobFailure, JobKind, NewJob
@@ -157,7 +157,7 @@ def _taken_in(reception: Reception, job: Job, sent: Sent, at: _Following) -> Non
     landed = waiting_file(storage.files, sent)
     file = SentFile(job.subject, landed, **sent.stated())
     try:
-        with heard_by(at.read_on):
+        with reports_progress_to(at.read_on):
             mapped = None if file.mapping is None else receive_mapped(own, file, file.mapping, came)
             receipt = mapped or receive(own, file, came)
     except RefusedError as fault:

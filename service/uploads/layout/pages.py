@@ -7,7 +7,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 
 from estimator.errors import Problem
 from service.errors import RefusedError
-from service.ingest.layout.mapping import ASKED_ANEW
+from service.ingest.layout.mapping import PER_FILE_FIELDS
 from service.kit.arriving_files import held
 from service.people.dependencies import SEE_OTHER
 from service.planning.pattern import type_names
@@ -55,7 +55,7 @@ def _found(storage: Storage, form: LayoutForm) -> Preview:
     mapping = corrected(form)
     if mapping is not None and (form.is_other_type or form.is_other_unit):
         facts, session = facts_of(storage, form.unit, form.like), mapping["session"]
-        own = {key: session[key] for key in ASKED_ANEW if key in session}
+        own = {key: session[key] for key in PER_FILE_FIELDS if key in session}
         if form.is_other_type and facts:
             mapping = {**mapping, "session": {**facts, **own}}
         else:
