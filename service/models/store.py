@@ -207,7 +207,7 @@ class Recomputations(Queries):
         found = self._session.execute(units).all()
         rows = [{"revision": revision, "unit_id": unit, "state": Progress.WAITING} for unit, _ in found]
         self.insert_all_once(RecomputationRow, rows)
-        self._queue.ask_once((Task(revision, serial).key for _, serial in found), now)
+        self._queue.enqueue_once((Task(revision, serial).key for _, serial in found), now)
         return len(found)
 
     def waiting(self, now: datetime, limit: int) -> tuple[Task, ...]:

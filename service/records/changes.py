@@ -54,7 +54,7 @@ def change(
 ) -> None:
     """Writes down what becomes of a session, by whom and why; what follows from it is derived afterwards."""
     if state is RecordState.ACCEPTED and _was_questioned(store, session.id):
-        WorkQueue(store, WorkKind.DIAGNOSIS).ask_once(Derivations(store).forget_diagnosis(session.id), step.at)
+        WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once(Derivations(store).forget_diagnosis(session.id), step.at)
     States(store).put_session(session.id, state, superseded_by)
     States(store).add(RecordKind.SESSION, session.id, state, step, superseded_by=superseded_by, remedies=remedies)
     details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}

@@ -24,7 +24,7 @@ from service.groups.changes import tell_own
 from service.groups.records import Group, GroupShown
 from service.groups.store import read_group
 from service.groups.words import equation_of
-from service.jobs.changes import tell_job
+from service.jobs.changes import add_model_job
 from service.models.records import SCOPES, Evidence, ModelRevision, NewLasting, NewModel, Pooled, Scope
 from service.models.rules import in_force, pooled_of
 from service.models.store import Models, Recomputations
@@ -187,7 +187,7 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
             settle_accepted(store, revision, taken, now)
         tell_own(store, scope, taken.subject)
         units = Recomputations(store).ask(revision.id, scope, taken.subject, now)
-        tell_job(store, revision, units, now)
+        add_model_job(store, revision, units, now)
         details = {"revision": revision.id, "cause": new.cause, "sensors": list(taken.sensors), "units": units}
         shows = {
             "group": say("{scopes} {name}", scopes=SCOPES[group.level.value], name=group.name),
@@ -315,7 +315,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         )
         tell_own(store, known.scope, known.subject)
         if pooled_of(known) is not None:
-            tell_job(store, made, Recomputations(store).ask(made.id, known.scope, known.subject, now), now)
+            add_model_job(store, made, Recomputations(store).ask(made.id, known.scope, known.subject, now), now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
         Audit(store).write(
             now, by, "withdraw model", say("{scope} {subject}", scope=known.scope, subject=known.subject), details

@@ -18,7 +18,7 @@ from service.ingest.digest import content_digest
 from service.ingest.layout.envelope import wrapped
 from service.ingest.layout.look import fingerprint
 from service.ingest.layout.mapping import layout_of, remembered
-from service.jobs.changes import UNFOLLOWED, Course
+from service.jobs.changes import NO_HOOKS, UploadHooks
 from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
@@ -52,7 +52,7 @@ LONGEST_MESSAGE = 1000
 
 
 def refuse(
-    storage: Storage, received: Received, problems: Sequence[Problem], course: Course = UNFOLLOWED
+    storage: Storage, received: Received, problems: Sequence[Problem], course: UploadHooks = NO_HOOKS
 ) -> RefusedError:
     """Records the refusal and returns the error to raise, which holds every problem."""
     name, digest = received.filename, received.sha256
@@ -121,7 +121,7 @@ def upload(
     stated: Stated = NOTHING_STATED,
     outlook: bool = True,
     is_dated_later: bool = True,
-    course: Course = UNFOLLOWED,
+    course: UploadHooks = NO_HOOKS,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 
@@ -225,7 +225,7 @@ def _store(store: Store, way: Deriving, received: Received, ready: _Ready) -> tu
     record = _record(received, new)
     stand = Units(store).stand_key(record.stand)
     Sessions(store).add(record, unit, stand, new.checked.session.block, ready.digests)
-    WorkQueue(store, WorkKind.DIAGNOSIS).ask_once((record.id,), received.at)
+    WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once((record.id,), received.at)
     keep(store, unit, ((record, ready.made),), received.at)
     known = known_unit(store, unit, {record.id: new.calibration}, ready.foreseen.references)
     derived = _derived(way, known, record, ready, replaces)

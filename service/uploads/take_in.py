@@ -20,7 +20,7 @@ from service.errors import (
 )
 from service.ingest.apart import reports_progress_to
 from service.ingest.checked import plain_filename
-from service.jobs.changes import Course, require_room
+from service.jobs.changes import UploadHooks, require_room
 from service.jobs.records import KILOBYTE, Job, JobFailure, JobKind, NewJob
 from service.jobs.store import Jobs
 from service.kit.arriving_files import Received, Sent, SentFile
@@ -152,7 +152,7 @@ def give_up(storage: Storage, id: int, reason: str, now: datetime) -> None:
 def _taken_in(reception: Reception, job: Job, sent: Sent, at: _Following) -> None:
     storage, came = reception.storage, job.asked_at
     acting = replace(storage, database=storage.database.acting(sent.account))
-    course = Course(at.keeping, at.stored, at.refused)
+    course = UploadHooks(at.keeping, at.stored, at.refused)
     own = replace(reception, storage=acting, who=job.who, course=course)
     landed = waiting_file(storage.files, sent)
     file = SentFile(job.subject, landed, **sent.stated())

@@ -27,8 +27,8 @@ from service.storage import Files, Storage
 from service.storage.waiting import FOLDER, UNASKED
 from service.uploads import take_in as flow
 from service.uploads.take_in import ask_upload, sweep_waiting, take_in
-from service.work.kinds import MOST_TRIES_OF_A_FILE, UPLOADS
-from service.work.loop import Worker, taking_in, work_next
+from service.work.kinds import MOST_ATTEMPTS_OF_FILE, UPLOADS
+from service.work.loop import Worker, upload_maker, work_next
 from tests import builders
 from tests.databases import one_engine
 from tests.estimator.test_reading_csv import csv_of
@@ -72,7 +72,7 @@ def waiting(storage: Storage) -> list[Path]:
 def uploads(storage: Storage, settings: Settings) -> Callable[[], bool]:
     """What works on the next of them; whether there was one."""
     own = Worker(settings, storage, lambda: NOW, Metrics(), Bell())
-    return lambda: work_next(own, taking_in(own), Event(), UPLOADS)
+    return lambda: work_next(own, upload_maker(own), Event(), UPLOADS)
 
 
 @pytest.fixture
@@ -184,7 +184,7 @@ def test_one_at_which_the_program_fails_is_given_up(
     job, work = asked(storage), uploads(storage, settings)
     with monkeypatch.context() as patch:
         patch.setattr(Files, "keep", fails)
-        assert [work() for _ in range(MOST_TRIES_OF_A_FILE + 2)] == [True] * (MOST_TRIES_OF_A_FILE + 1) + [False]
+        assert [work() for _ in range(MOST_ATTEMPTS_OF_FILE + 2)] == [True] * (MOST_ATTEMPTS_OF_FILE + 1) + [False]
     assert (read(storage, job.id).state, waiting(storage)) == (JobState.FAILED, [])
 
 
