@@ -21,7 +21,7 @@ from service.settings import VERSION, Settings
 from service.web import guard
 from service.web.application import Application
 from service.web.headers import HeadAsGet
-from service.web.measured import Measured
+from service.web.measured import RequestLog
 from service.work.job_desk import JobDesk
 from service.work.loop import Worker, take_in_waiting, work_in_background
 from service.work.readers import GroupReader, Reader
@@ -61,7 +61,7 @@ def create_app(
     guard(app, settings)
     all_pages.mount(app)
     app.add_middleware(HeadAsGet)
-    app.add_middleware(Measured, metrics=application.metrics)
+    app.add_middleware(RequestLog, metrics=application.metrics)
     return app
 
 

@@ -17,7 +17,7 @@ from service.settings import Settings
 from service.storage import Files
 from service.storage.audit import Audit
 from service.storage.backup import Restored, restore, verified, write_backup
-from service.storage.backup.manifest import Doors, Manifest
+from service.storage.backup.manifest import Manifest, RevokedAccess
 from service.storage.losses import Loss, losses
 from service.storage.schema import downgrade, head_revision, upgrade
 
@@ -139,7 +139,7 @@ def restore_backup(
     restored = restore(file, settings.database, settings.files, now, revoke_tokens=revoke_tokens)
     _write_down(settings.database, restored, now)
     typer.echo(f"Restored {_contents(restored.manifest)}.")
-    _say_who_is_in(restored.doors)
+    _say_who_is_in(restored.access)
 
 
 def _write_down(url: str, restored: Restored, now: datetime) -> None:
@@ -148,19 +148,19 @@ def _write_down(url: str, restored: Restored, now: datetime) -> None:
         return
     database = open_database(url)
     with database.writing() as store:
-        details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.doors)}
+        details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.access)}
         Audit(store).write(now, WHO, "restore", "backup", details)
     database.close()
 
 
-def _say_who_is_in(doors: Doors) -> None:
-    if doors.browsers:
-        say(f"{counted(doors.browsers, 'signed-in browser')} {'was' if doors.browsers == 1 else 'were'} signed out.")
-    if doors.tokens and doors.revoked:
-        say(f"{counted(doors.tokens, 'token')} {'was' if doors.tokens == 1 else 'were'} revoked: make new ones.")
-    elif doors.tokens:
+def _say_who_is_in(access: RevokedAccess) -> None:
+    if access.browsers:
+        say(f"{counted(access.browsers, 'signed-in browser')} {'was' if access.browsers == 1 else 'were'} signed out.")
+    if access.tokens and access.revoked:
+        say(f"{counted(access.tokens, 'token')} {'was' if access.tokens == 1 else 'were'} revoked: make new ones.")
+    elif access.tokens:
         say(
-            f"{counted(doors.tokens, 'token')} {'holds' if doors.tokens == 1 else 'hold'} again, revoked since the "
+            f"{counted(access.tokens, 'token')} {'holds' if access.tokens == 1 else 'hold'} again, revoked since the "
             "backup or not: look at `imu-health token list`. --revoke-tokens would have revoked them all."
         )
 

@@ -105,21 +105,10 @@ def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], t
 
 def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
     """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
-    temperature, difference, earlier = _degrees(now), _degrees(abs(outside)), _between(*covered)
-    if outside > 0:
-        away = say(
-            "it was measured at {temperature}, {difference} above its reference and earlier sessions ({earlier})",
-            temperature=temperature,
-            difference=difference,
-            earlier=earlier,
-        )
-    else:
-        away = say(
-            "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})",
-            temperature=temperature,
-            difference=difference,
-            earlier=earlier,
-        )
+    parts = {"temperature": _degrees(now), "difference": _degrees(abs(outside)), "earlier": _between(*covered)}
+    above = "it was measured at {temperature}, {difference} above its reference and earlier sessions ({earlier})"
+    below = "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})"
+    away = say(above if outside > 0 else below, **parts)
     if worth:
         return say("{difference}, and the temperature alone may be worth {effect}", difference=away, effect=worth)
     return say("{difference}, and the temperature alone can make or hide a change", difference=away)
@@ -163,11 +152,9 @@ ALL_PASS = "Every parameter is within its tolerance by more than U; closest to i
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
     """A verdict as it is said wherever it stands: ``Fit, but the zero of A2 jumps once: repeat the session``."""
-    return (
-        say("{verdict}{reservations}", verdict=condition.word, reservations=but(reservations))
-        if reservations != ()
-        else condition.word
-    )
+    if reservations == ():
+        return condition.word
+    return say("{verdict}{reservations}", verdict=condition.word, reservations=but(reservations))
 
 
 def unit_in_words(unit: UnitSummary) -> str:
@@ -297,9 +284,7 @@ def recording_in_words(result: ParityResult, decisions: tuple[Decision, ...]) ->
     if not unseen:
         allowed = ", with what motion does allowed for" if result.moving else ""
         return say(
-            "{result}{tolerance}: a change as large as any tolerance would have been seen.",
-            result=SAME,
-            tolerance=allowed,
+            "{result}{limit}: a change as large as any tolerance would have been seen.", result=SAME, limit=allowed
         )
     return (
         say("{result}.", result=found)

@@ -24,14 +24,13 @@ def missing_in_words(found: Missing) -> tuple[str, ...]:
     """A sentence how far it is, then one a run or a line a direction, then what is open until then."""
     if found.is_complete:
         return (say("Complete: {done} positions, and every parameter is observed.", done=found.done),)
-    to_come = len(found.settings) or len(found.directions)
     done = found.done
     lines: list[str] = [
         say_count(
             "{n} position is done, {remaining} still to come.",
             "{n} positions are done, {remaining} still to come.",
             done,
-            remaining=to_come,
+            remaining=len(found.settings) or len(found.directions),
         )
     ]
     for run, settings in groupby(found.settings, key=lambda one: one[0]):
@@ -389,7 +388,7 @@ def fault_in_words(fault: Fault) -> str:
             )
         case FaultKind.TURNING:
             return say(
-                "The block turns, or the units are wrong: {sensors}. Let it rest, or check nominal_scale.", sensors=who
+                "The block turns, or the units are wrong: {name}. Let it rest, or check nominal_scale.", name=who
             )
         case FaultKind.NOT_JUDGED:
             return "No tolerance says how far these sensors may drift: give one."

@@ -25,7 +25,7 @@ from service.people.dependencies import StorageOf
 from service.records.unit_changes import Attaching
 from service.sessions.schema import SESSION_FILE
 from service.storage.landing import Landing, Landings
-from service.web.dependencies import PlaceOf, limited
+from service.web.dependencies import UploadSlotOf, limited
 from service.web.fields import LongText, Text
 
 MOST_FIELDS = 10
@@ -113,13 +113,13 @@ class _Form(MultiPartParser):
             self._current_part.file = LandedFile(self._arriving, given.filename, given.headers)
 
 
-async def _arriving(request: Request, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+async def _arriving(request: Request, storage: StorageOf, _: UploadSlotOf) -> AsyncIterator[Arriving]:
     most = in_force()
     with storage.files.arriving() as place:
         yield Arriving(request, place, most.whole, most.log)
 
 
-async def _attaching(request: Request, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+async def _attaching(request: Request, storage: StorageOf, _: UploadSlotOf) -> AsyncIterator[Arriving]:
     most = in_force().attached
     with storage.files.arriving() as place:
         yield Arriving(request, place, most, most)

@@ -32,7 +32,7 @@ from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.files import content_hash
 from service.storage.queries import Store
-from service.storage.waiting import drop_unasked, drop_waiting, put_waiting, waiting_file
+from service.storage.waiting import drop_orphaned, drop_waiting, put_waiting, waiting_file
 from service.uploads.receive import receive, receive_mapped, refuse
 
 FINAL = (NotFoundError, ConflictError, ForbiddenError, DamagedError)
@@ -178,4 +178,4 @@ def sweep_waiting(storage: Storage, now: datetime) -> None:
     """Removes files that no job waits for."""
     with storage.database.reading() as store:
         places = Jobs(store).places()
-    drop_unasked(storage.files, places, now)
+    drop_orphaned(storage.files, places, now)

@@ -23,7 +23,7 @@ from service.people.dependencies import StorageOf
 from service.storage.aside import aside, set_aside
 from service.storage.files import Files
 from service.uploads.preview import is_sensor
-from service.web.dependencies import Now, PlaceOf, limited
+from service.web.dependencies import Now, UploadSlotOf, limited
 
 MOST_CARRIED = 4 * 1024 * 1024
 """Bytes of a file that a page itself carries until it is confirmed; a larger one is set aside for who sent it."""
@@ -77,7 +77,7 @@ class LayoutForm:
         return self.unit != self.fields.get("was_unit", "")
 
 
-async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now, _: PlaceOf) -> LayoutForm:
+async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now, _: UploadSlotOf) -> LayoutForm:
     most = int(in_force().whole * INFLATION)
     body = limited(request, most, is_form=True)
     async with body.form(max_files=1, max_fields=MOST_FIELDS, max_part_size=most) as form:

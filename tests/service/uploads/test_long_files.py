@@ -24,7 +24,7 @@ from service.records.reception import Reception
 from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Files, Storage
-from service.storage.waiting import FOLDER, UNASKED
+from service.storage.waiting import FOLDER, JOB_DELAY
 from service.uploads import take_in as flow
 from service.uploads.take_in import ask_upload, sweep_waiting, take_in
 from service.work.kinds import MOST_ATTEMPTS_OF_FILE, UPLOADS
@@ -202,7 +202,7 @@ def test_what_no_job_waits_for_is_swept_after_an_hour(storage: Storage) -> None:
     asked(storage)
     lost = storage.files.folder / FOLDER / "lost"
     lost.write_bytes(b"1")
-    later = datetime.now(UTC) + UNASKED
+    later = datetime.now(UTC) + JOB_DELAY
     for now in (later - timedelta(minutes=1), later + timedelta(minutes=1)):
         sweep_waiting(storage, now)
         assert lost.exists() == (now < later)
