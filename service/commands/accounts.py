@@ -132,7 +132,7 @@ def add_token(
     """Make a token for an account and print its secret, which is not shown again."""
     with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
         lasts = timedelta(days=days)
-        made, secret = make_token(storage, login, label, role, _now(), lasts=lasts, who=WHO)
+        made, secret = make_token(storage, login, label, role, _now(), lifetime=lasts, who=WHO)
     say(f"Token {made.id} for {made.login}, {made.role}, until {made.expires_at:%Y-%m-%d}:")
     typer.echo(secret)
 

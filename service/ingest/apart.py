@@ -183,14 +183,14 @@ def turn() -> Iterator[None]:
         yield
 
 
-def _read_again_if_server_ended(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
+def _read_again_if_server_ended(job: str, content: bytes | Path, filename: str, limit: Limits) -> Any:
     """Reads once more where the fork server itself was ended from outside: the file is not to blame."""
     try:
-        return _read(job, content, filename, most)
+        return _read(job, content, filename, limit)
     except PROCESS_ENDED as error:
         if isinstance(error, SessionError) or not _server.has_ended():
             raise
-    return _read(job, content, filename, most)
+    return _read(job, content, filename, limit)
 
 
 def _read(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:

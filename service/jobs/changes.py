@@ -52,10 +52,10 @@ def require_room(store: Store) -> None:
 def add_model_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
     """Adds a job for the recomputation of units under a changed model."""
     if units:
-        own = NewJob(
+        new = NewJob(
             JobKind.MODEL, changed.accepted_by, scope=changed.scope, subject=changed.subject, revision=changed.id
         )
-        Jobs(store).add(own, units, now)
+        Jobs(store).add(new, units, now)
 
 
 def _pieces(store: Store, new: NewJob) -> int:
@@ -107,8 +107,8 @@ def file_of(files: Files, job: Job) -> bytes:
 def drop_expired(storage: Storage, now: datetime) -> None:
     """Removes files of jobs whose retention time is over."""
     with storage.database.reading() as store:
-        outlived = Jobs(store).outlived(now)
-    for id in outlived:
+        expired = Jobs(store).outlived(now)
+    for id in expired:
         drop_made(storage.files, id)
         with storage.database.writing() as store:
             Jobs(store).forget_file(id)

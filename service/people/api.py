@@ -175,7 +175,7 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
             )
         )
     lasts = timedelta(days=new.days)
-    token, secret = make_token(storage, person.login, new.label, new.role, now, lasts=lasts, who=person.name)
+    token, secret = make_token(storage, person.login, new.label, new.role, now, lifetime=lasts, who=person.name)
     return MadeToken(**vars(token), secret=secret)
 
 

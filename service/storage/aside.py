@@ -97,10 +97,10 @@ def _age(path: Path) -> float:
 def _access(path: Path) -> tuple[float, int]:
     """Time of the last access and size; zeros where another request has just removed it."""
     try:
-        found = path.stat()
+        status = path.stat()
     except FileNotFoundError:
         return 0.0, 0
-    return found.st_mtime, found.st_size
+    return status.st_mtime, status.st_size
 
 
 def _touch(path: Path, now: datetime) -> None:

@@ -26,8 +26,8 @@ def _settings(request: Request) -> Settings:
 
 async def _slot(request: Request) -> AsyncIterator[None]:
     """Slot of a large upload, from before its first byte until it has been processed."""
-    own = application_of(request)
-    with own.places.one_for(request.headers.get("content-length", ""), in_force().in_flight):
+    application = application_of(request)
+    with application.places.one_for(request.headers.get("content-length", ""), in_force().in_flight):
         yield
 
 

@@ -35,13 +35,13 @@ def _covering(media: str) -> tuple[str, str, str]:
 
 def _weights(header: str) -> dict[str, float]:
     """Media types with their weights (RFC 9110, 12.5.1); an invalid weight is ignored."""
-    found = {}
+    weights = {}
     for part in header.split(","):
         media, _, rest = part.partition(";")
         weight = rest.strip().removeprefix("q=") or "1"
         if weight.replace(".", "", 1).isdecimal():
-            found[media.strip().lower()] = float(weight)
-    return found
+            weights[media.strip().lower()] = float(weight)
+    return weights
 
 
 TIME = pl.Datetime("us", "UTC")

@@ -60,10 +60,10 @@ class ProblemAnswer(JSONResponse):
 
 def _translated(content: Mapping[str, Any], say: Callable[[str], str]) -> dict[str, Any]:
     """A problem with translated sentences; its keys and fields stay."""
-    told = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
-    if "problems" in told:
-        told["problems"] = [one | {"message": say(one["message"])} for one in told["problems"]]
-    return told
+    translated = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
+    if "problems" in translated:
+        translated["problems"] = [one | {"message": say(one["message"])} for one in translated["problems"]]
+    return translated
 
 
 def problem(

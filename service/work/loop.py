@@ -128,24 +128,24 @@ def _make(worker: Worker, make: Make, stop: Event, kind: Kind, key: str) -> None
             _after_failure(worker, kind, key, failure)
 
 
-def _after_failure(worker: Worker, kind: Kind, one: str, failure: Failure) -> None:
+def _after_failure(worker: Worker, kind: Kind, key: str, failure: Failure) -> None:
     """A foreseen failure passes, and the work is attempted without limit; after any other a few times."""
-    log.warning(kind.name, of=one, reason=failure.reason)
+    log.warning(kind.name, of=key, reason=failure.reason)
     worker.metrics.count_fault(kind.name, failure.fault)
     with worker.storage.database.writing() as store:
         queue = kind.queue(store)
-        queue.record_failure(one, failure.reason)
+        queue.record_failure(key, failure.reason)
         if failure.is_foreseen:
-            queue.put_off(one, worker.clock() + kind.put_off)
+            queue.put_off(key, worker.clock() + kind.put_off)
         else:
-            queue.give_back(one, worker.clock())
+            queue.give_back(key, worker.clock())
 
 
 def upload_maker(worker: Worker) -> Make:
     """Function that processes an upload."""
     k = worker.settings.coverage_factor
     reception = Reception(worker.storage, k, worker.metrics, worker.bell.ring, is_dated_later=True)
-    return lambda _, id, now, still: _taken_in(lambda tick: take_in(reception, int(id), now, tick), id, still)
+    return lambda _, id, now, keep_going: _taken_in(lambda tick: take_in(reception, int(id), now, tick), id, keep_going)
 
 
 def _taken_in(work: Callable[[Callable[[], None]], None], id: str, keep_going: KeepGoing) -> Failure | None:
@@ -165,19 +165,19 @@ def _taken_in(work: Callable[[Callable[[], None]], None], id: str, keep_going: K
 
 
 @contextmanager
-def _lease_extended(still: KeepGoing) -> Iterator[None]:
+def _lease_extended(keep_going: KeepGoing) -> Iterator[None]:
     """Extends the lease while a file is read."""
     done = Event()
 
-    def say() -> None:
+    def extend() -> None:
         while not done.wait(UPLOAD_EXTENSION_SECONDS):
             with suppress(*FORESEEN):
-                still()
+                keep_going()
 
-    teller = Thread(target=say, name="claim of an upload", daemon=True)
-    teller.start()
+    thread = Thread(target=extend, name="claim of an upload", daemon=True)
+    thread.start()
     try:
         yield
     finally:
         done.set()
-        teller.join()
+        thread.join()

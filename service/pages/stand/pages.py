@@ -24,7 +24,7 @@ from service.models.rules import in_force
 from service.models.sections import AcceptedCause, accepted_causes
 from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, flags_in_words, fleet_row
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
 from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.store import Sessions
@@ -237,7 +237,7 @@ def _seating(condition: StandCondition) -> tuple[tuple[str, str], ...]:
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Said = Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)]
+Said = Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]
 Day = Annotated[date, Form()]
 
 

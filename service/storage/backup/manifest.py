@@ -158,14 +158,14 @@ class RevokedAccess:
 
 def revoke_access(connection: Connection, now: datetime, *, revoke: bool) -> RevokedAccess:
     """Signs out browsers, ends links, and revokes tokens if wanted, within the transaction that restores."""
-    known = set(inspect(connection).get_table_names())
-    if not {"tokens", "sign_ins", "sign_in_links"} <= known:
+    table_names = set(inspect(connection).get_table_names())
+    if not {"tokens", "sign_ins", "sign_in_links"} <= table_names:
         return RevokedAccess()
     browsers = connection.scalar(select(func.count()).select_from(SignInRow).where(SignInRow.expires_at > now)) or 0
-    for row in (SignInRow, SignInLinkRow, *((AttemptRow,) if "attempts" in known else ())):
+    for row in (SignInRow, SignInLinkRow, *((AttemptRow,) if "attempts" in table_names else ())):
         connection.execute(delete(row))
-    held = TokenRow.revoked_at.is_(None), TokenRow.expires_at > now
-    tokens = connection.scalar(select(func.count()).select_from(TokenRow).where(*held)) or 0
+    valid = TokenRow.revoked_at.is_(None), TokenRow.expires_at > now
+    tokens = connection.scalar(select(func.count()).select_from(TokenRow).where(*valid)) or 0
     if revoke:
-        connection.execute(update(TokenRow).where(*held).values(revoked_at=now))
+        connection.execute(update(TokenRow).where(*valid).values(revoked_at=now))
     return RevokedAccess(browsers, tokens, revoke)

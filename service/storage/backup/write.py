@@ -51,9 +51,9 @@ def write_backup(url: str, files: Files, target: Path, now: datetime) -> Manifes
 def _snapshot(url: str) -> Iterator[Connection]:
     """A read transaction with a consistent snapshot of all tables."""
     engine = open_engine(url, PATIENT)
-    still = {} if engine.name == "sqlite" else {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
+    options = {} if engine.name == "sqlite" else {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
     try:
-        with database_faults(), engine.connect().execution_options(**still) as connection:
+        with database_faults(), engine.connect().execution_options(**options) as connection:
             yield connection
     finally:
         engine.dispose()
