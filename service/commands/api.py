@@ -93,9 +93,8 @@ def attach_files(
             form = {subject: to, "by": by, "text": text}
             answer = client.answer("POST", "/attachments", files={"file": (file.name, file.read_bytes())}, data=form)
             attachment = answer.json()
-            screen().print(
-                f"[bold]{escape(attachment['unit'])}[/]  attachment {attachment['id']}  {escape(attachment['filename'])}"
-            )
+            unit, name = escape(attachment["unit"]), escape(attachment["filename"])
+            screen().print(f"[bold]{unit}[/]  attachment {attachment['id']}  {name}")
 
 
 def write_note(
