@@ -12,7 +12,7 @@ from service.flags.store import FlagQuery, Flags
 from service.kit.person import Person
 from service.people.store import Accounts
 from service.storage.queries import Store
-from service.web.list_view import ListView, QueryText, known_order
+from service.web.list_view import Asked, ListView, known_order
 
 ME, OF_NOBODY = "me", "nobody"
 """What may stand in an address instead of a name."""
@@ -65,13 +65,13 @@ FIRST = {"after": "", "before": ""}
 class FlagsAsked(BaseModel):
     """An address as it came."""
 
-    q: QueryText = ""
-    matter: QueryText = ""
-    state: QueryText = ""
-    assigned: QueryText = ""
-    sort: QueryText = ""
-    after: QueryText = ""
-    before: QueryText = ""
+    q: Asked = ""
+    matter: Asked = ""
+    state: Asked = ""
+    assigned: Asked = ""
+    sort: Asked = ""
+    after: Asked = ""
+    before: Asked = ""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Filters and order of a list, kept in the address so that it can be saved, shared and revisited."""
+"""What a visitor asked a list for: it stands in the address, so that it can be kept, sent on and gone back to."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,40 +10,40 @@ from pydantic import Field
 from estimator.message import say
 from service.web.fields import NO_NUL
 
-QueryText = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
-"""Text of a query parameter."""
+Asked = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
+"""A part of an address, as it came."""
 
 
-def address_of(path: str, parameters: Mapping[str, object]) -> str:
-    """A path with its query; empty parameters are left out."""
-    filled = {name: value for name, value in parameters.items() if value}
-    return f"{path}?{urlencode(filled)}" if filled else path
+def address_of(path: str, asked: Mapping[str, object]) -> str:
+    """A path with what is asked of it; empty parts are left out."""
+    kept = {name: value for name, value in asked.items() if value}
+    return f"{path}?{urlencode(kept)}" if kept else path
 
 
 @dataclass(frozen=True)
 class ListView:
-    """A list filtered and ordered by its address. Empty fields are unset."""
+    """A list that is narrowed and ordered by its address. Every field is empty where nothing is asked."""
 
     PATH: ClassVar[str]
     NAMES: ClassVar[Mapping[str, str]]
-    """Query parameters of the fields, in order."""
+    """Fields as they are called in an address, in its order."""
     PLAIN: ClassVar[Mapping[str, object]]
-    """Defaults, which an address leaves out."""
+    """What an address need not say: the list as it is unasked."""
     FIRST: ClassVar[Mapping[str, str | int]]
-    """Parameters of the first page."""
+    """What leads to the first page."""
     ORDERS: ClassVar[Mapping[str, str]]
-    """Orders of the list, in words."""
+    """What the list can be ordered by, in words."""
     sort: str = ""
-    """One of the orders, with ``-`` before it where reversed."""
+    """One of these, with ``-`` before it where backwards."""
 
     @property
     def order(self) -> str:
-        """The order of the list."""
+        """What the list is ordered by."""
         return self.sort.removeprefix("-")
 
     @property
     def backwards(self) -> bool:
-        """Whether the order is reversed."""
+        """Whether the last comes first."""
         return self.sort.startswith("-")
 
     @property
@@ -53,20 +53,20 @@ class ListView:
 
     @property
     def narrows(self) -> bool:
-        """Whether any filter is set."""
+        """Whether it leaves anything out."""
         return any(value for field, value in vars(self).items() if field not in ("sort", *self.FIRST))
 
     def url(self, **changes: str | int) -> str:
-        """The address of this view with some fields changed."""
-        fields = {**vars(self), **changes}
-        parameters = {name: fields[f] for f, name in self.NAMES.items() if fields[f] != self.PLAIN.get(f, "")}
-        return address_of(self.PATH, parameters)
+        """The address of this view with something changed."""
+        asked = {**vars(self), **changes}
+        shown = {name: asked[f] for f, name in self.NAMES.items() if asked[f] != self.PLAIN.get(f, "")}
+        return address_of(self.PATH, shown)
 
     def sorted_by(self, order: str) -> str:
-        """The address of the list in another order, or reversed where it has this one; from its first page."""
+        """The address of the list in another order, or backwards where it has this one; from its first page on."""
         return self.url(**{**self.FIRST, "sort": f"-{order}" if self.sort == order else order})
 
 
-def known_order(requested: str, orders: Mapping[str, str], default: str) -> str:
-    """The requested order, or a default for an unknown one."""
-    return requested if requested.removeprefix("-") in orders else default
+def known_order(asked: str, orders: Mapping[str, str], otherwise: str) -> str:
+    """The order that an address asks for, or another where nobody knows it."""
+    return asked if asked.removeprefix("-") in orders else otherwise

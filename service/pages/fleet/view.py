@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 from service.fleet.records import FleetQuery, Order
 from service.sessions.decision import Verdict
 from service.sessions.words.conditions import RESERVED
-from service.web.list_view import ListView, QueryText, known_order
+from service.web.list_view import Asked, ListView, known_order
 
 PAGE_SIZE = 50
 """Units on a page: two screens."""
@@ -36,17 +36,17 @@ FIRST: dict[str, str | int] = {"page": 1, "after": "", "before": ""}
 class FleetAsked(BaseModel):
     """An address as it came."""
 
-    q: QueryText = ""
-    condition: QueryText = ""
-    due: QueryText = ""
-    type: QueryText = ""
-    stand: QueryText = ""
-    lot: QueryText = ""
-    flagged: QueryText = ""
-    sort: QueryText = ""
+    q: Asked = ""
+    condition: Asked = ""
+    due: Asked = ""
+    type: Asked = ""
+    stand: Asked = ""
+    lot: Asked = ""
+    flagged: Asked = ""
+    sort: Asked = ""
     page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
-    after: QueryText = ""
-    before: QueryText = ""
+    after: Asked = ""
+    before: Asked = ""
 
 
 @dataclass(frozen=True)

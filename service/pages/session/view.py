@@ -10,7 +10,7 @@ from service.sessions.decision import Verdict
 from service.sessions.records import SessionOrder, SessionQuery
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED, STATES, UNDECIDED
-from service.web.list_view import ListView, QueryText, known_order
+from service.web.list_view import Asked, ListView, known_order
 
 PAGE_SIZE = 50
 """Sessions on a page: two screens."""
@@ -37,16 +37,16 @@ FIRST = {"after": "", "before": ""}
 class SessionsAsked(BaseModel):
     """An address as it came."""
 
-    q: QueryText = ""
-    type: QueryText = ""
-    stand: QueryText = ""
-    since: QueryText = ""
-    until: QueryText = ""
-    state: QueryText = ""
-    verdict: QueryText = ""
-    sort: QueryText = ""
-    after: QueryText = ""
-    before: QueryText = ""
+    q: Asked = ""
+    type: Asked = ""
+    stand: Asked = ""
+    since: Asked = ""
+    until: Asked = ""
+    state: Asked = ""
+    verdict: Asked = ""
+    sort: Asked = ""
+    after: Asked = ""
+    before: Asked = ""
 
 
 @dataclass(frozen=True)
