@@ -40,7 +40,7 @@ from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
 from service.storage.json_text import STORED, json_text
 from service.storage.queries import Queries
-from service.types.store import tells_of_stand, tells_of_type
+from service.types.store import counts_for_stand, counts_for_type
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
@@ -192,10 +192,10 @@ def _belongs(group: Group) -> ColumnElement[bool]:
         case Level.UNIT:
             return SessionRow.unit_id == group.key
         case Level.TYPE:
-            units = select(UnitRow.id).where(UnitRow.unit_type_id == group.key, tells_of_type(group.key))
+            units = select(UnitRow.id).where(UnitRow.unit_type_id == group.key, counts_for_type(group.key))
             return SessionRow.unit_id.in_(units)
         case Level.STAND:
-            return and_(SessionRow.stand_id == group.key, tells_of_stand(group.key))
+            return and_(SessionRow.stand_id == group.key, counts_for_stand(group.key))
 
 
 def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:

@@ -1,4 +1,4 @@
-"""Causes in the model of a stand or a unit type, as lines of a table."""
+"""Accepted causes of a stand or a unit type, as lines of a table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,6 +23,13 @@ class AcceptedCause:
 def accepted_causes(revisions: Sequence[ModelRevision]) -> tuple[AcceptedCause, ...]:
     """Lines in the order of the revisions."""
     return tuple(
-        AcceptedCause(one.id, cause_on(one.cause, one.sensors), one.session, one.accepted_by, one.accepted_at, one.note)
-        for one in revisions
+        AcceptedCause(
+            revision.id,
+            cause_on(revision.cause, revision.sensors),
+            revision.session,
+            revision.accepted_by,
+            revision.accepted_at,
+            revision.note,
+        )
+        for revision in revisions
     )

@@ -2,11 +2,9 @@
 
 A backup is a zip file. Its directory is at its end, so a truncated one cannot be opened; the manifest is written last.
 
-tables/NAME.jsonl   a line a row: the values in the order of the manifest's columns
-
-files/SHA256        an uploaded file under its hash
-
-manifest.json       this
+    tables/NAME.jsonl   a line a row: the values in the order of the manifest's columns
+    files/SHA256        an uploaded file under its hash
+    manifest.json       this
 """
 
 import json
