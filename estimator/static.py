@@ -144,7 +144,7 @@ def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
     rows = joined(
         ", ",
         (
-            say("{a} to {b}", a=a + 1, b=b)
+            say("{first} to {last}", first=a + 1, last=b)
             for a, b in zip(intervals.start[moves][:3], intervals.stop[moves][:3], strict=True)
         ),
     )

@@ -32,7 +32,7 @@ from service.records import api as records
 from service.records import events_api as events
 from service.uploads import api as uploads
 from service.web.headers import API
-from service.web.held import Held
+from service.web.held import EntityTags
 from service.web.problems import MEDIA_TYPE, add_problem_handlers
 from service.work import api as work
 
@@ -94,7 +94,7 @@ def mount(app: FastAPI) -> None:
     app.router.routes.extend(_every().routes)
     add_problem_handlers(app)
     describe(app)
-    app.add_middleware(Held, prefix=PREFIX)
+    app.add_middleware(EntityTags, prefix=PREFIX)
 
 
 @cache

@@ -134,15 +134,15 @@ def _require_both_directions(turns: Turns) -> None:
     for sign, word in ((1, "positive"), (-1, "negative")):
         if not (sign * turns.rates > 0).any():
             message = say(
-                "no whole turn at a {word} rate; turn both ways, so that the zeros and the Earth's rotation cancel",
-                word=word,
+                "no whole turn at a {sign} rate; turn both ways, so that the zeros and the Earth's rotation cancel",
+                sign=word,
             )
             raise ScheduleError([Problem("turn_rate_deg_s", message)])
     if len(turns.rates) < FEWEST_TURNS:
         held = counted(len(turns.rates), "whole turn")
         message = say(
-            "holds {held}; give {fewest_turns} or more, so that their scatter is known",
-            held=held,
+            "holds {runs}; give {fewest_turns} or more, so that their scatter is known",
+            runs=held,
             fewest_turns=FEWEST_TURNS,
         )
         raise ScheduleError([Problem("turn_rate_deg_s", message)])
@@ -152,11 +152,11 @@ def _require_following(turns: Turns) -> None:
     disagrees = np.abs(turns.means[:, 2] - turns.rates) > DISAGREEMENT * np.abs(turns.rates) + EARTH_RATE
     if disagrees.any():
         worst = int(np.argmax(disagrees))
-        problem = say("the table turns at {np} °/s", np=f"{np.degrees(turns.rates[worst]):+g}")
+        problem = say("the table turns at {rate} °/s", rate=f"{np.degrees(turns.rates[worst]):+g}")
         message = say(
-            "{problem}, the gyros at {np} °/s about the block's Z axis",
+            "{problem}, the gyros at {rate} °/s about the block's Z axis",
             problem=problem,
-            np=f"{np.degrees(turns.means[worst, 2]):+.4g}",
+            rate=f"{np.degrees(turns.means[worst, 2]):+.4g}",
         )
         advice = "check the sign and unit of turn_rate_deg_s, the gyros' scale and range, and Z, the table's axis"
         raise ScheduleError([Problem("turn_rate_deg_s", say("{message}; {advice}", message=message, advice=advice))])

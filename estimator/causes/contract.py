@@ -141,9 +141,9 @@ class Setting:
             case _:
                 raise ValueError(
                     say(
-                        "no session can provide {need}: causes may need {needs}",
-                        need=repr(need),
-                        needs=", ".join(sorted(NEEDS)),
+                        "no session can provide {unknown}: causes may need {known}",
+                        unknown=repr(need),
+                        known=", ".join(sorted(NEEDS)),
                     )
                 )
 

@@ -178,7 +178,8 @@ def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -
         if length > DECISIVE**0.5 * sigma:
             text = _centimetres(length, sigma)
             yield say(
-                "The origin of the stated positions lies {text} from the turn axis, and that is taken off.", text=text
+                "The origin of the stated positions lies {distance} from the turn axis, and that is taken off.",
+                distance=text,
             )
     if arms.named:
         yield say(

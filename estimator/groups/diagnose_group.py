@@ -144,18 +144,18 @@ def notes(selection: Selection, each: Sequence[Estimated]) -> list[str]:
         if h.shape is None:
             found.append(
                 say(
-                    "{cause}{where} is near, but {words} fits better: it has no name",
+                    "{cause}{place} is near, but {combination} fits better: it has no name",
                     cause=f.cause,
-                    where=where,
-                    words=joined(" + ", h.words),
+                    place=where,
+                    combination=joined(" + ", h.words),
                 )
             )
         else:
             found.append(
                 say(
-                    "{cause}{where} is near, but leaves harmonic {shape} of β: it does not fit",
+                    "{cause}{place} is near, but leaves harmonic {shape} of β: it does not fit",
                     cause=f.cause,
-                    where=where,
+                    place=where,
                     shape=f"{h.shape:g}",
                 )
             )
@@ -167,7 +167,7 @@ def notes(selection: Selection, each: Sequence[Estimated]) -> list[str]:
         )
     larger = {p.statistics.unit: s for p, s in zip(selection.layout.parts, selection.scale, strict=True) if s > 1.5}
     found += [
-        say("{u}: the sessions scatter {s} times as much as stated", u=u, s=f"{np.sqrt(s):.1f}")
+        say("{unit}: the sessions scatter {ratio} times as much as stated", unit=u, ratio=f"{np.sqrt(s):.1f}")
         for u, s in larger.items()
     ]
     return found

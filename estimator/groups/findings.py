@@ -190,7 +190,7 @@ def words_of(h: Hypothesis) -> str:
     """Where a hypothesis acts, for people."""
     every = {"accelerometer": "every accelerometer", "gyroscope": "every gyro"}
     where = every.get(h.kind, "every sensor") if h.sensor == EVERY else h.sensor
-    return say("{where} of type {subject}", where=where, subject=h.subject) if h.level == TYPE else where
+    return say("{place} of type {subject}", place=where, subject=h.subject) if h.level == TYPE else where
 
 
 def rival_of(near_by: Near, measurement: str, sessions: int | None) -> Rival:
@@ -222,9 +222,9 @@ def structures(selection: Selection) -> tuple[GroupStructure, ...]:
     for h, statistic in selection.structures:
         what = say("harmonic {shape} of β", shape=f"{h.shape:g}") if h.shape is not None else joined(" + ", h.words)
         where = (
-            say("{h}: {what}", h=words_of(h), what=what)
+            say("{hypothesis}: {shape}", hypothesis=words_of(h), shape=what)
             if h.sensor
-            else say("the applied vector, common to all sensors: {what}", what=what)
+            else say("the applied vector, common to all sensors: {shape}", shape=what)
         )
         found.append(GroupStructure(where, h.subject, (h.sensor,) if h.sensor else (), float(np.sqrt(statistic))))
     return tuple(found)

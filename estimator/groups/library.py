@@ -150,7 +150,7 @@ def _of_vector(setting: Setting) -> Iterator[Term]:
             change = turn[..., None] * f.values[:, None, None, :]
             unit = f"rad/({f.unit})" if f.unit else "rad"
             yield Term(
-                tuple(say("{name}: {w}", name=name, w=w) for w in f.words),
+                tuple(say("{name}: {term}", name=name, term=w) for w in f.words),
                 unit,
                 variable_of(f),
                 setting.through(change),

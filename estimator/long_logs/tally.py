@@ -174,7 +174,7 @@ def check_alike(head: CalibrationSession, part: CalibrationSession, at: int) -> 
     """FormatError where a column is empty in some parts only."""
     for name in (*SET, *AVERAGED):
         if (getattr(head, name) is None) != (getattr(part, name) is None):
-            rows = say("rows {at} to {at2}", at=at + 1, at2=at + len(part.readings))
+            rows = say("rows {first} to {last}", first=at + 1, last=at + len(part.readings))
             raise FormatError(
                 [Problem(name, say("is stated in some parts of the log and not in {rows}, or only there", rows=rows))]
             )

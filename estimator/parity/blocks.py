@@ -198,8 +198,8 @@ def too_short(total: int, ledger: Ledger) -> str:
         )
     held = counted(total, "block")
     return say(
-        "the recording holds {held} of one second; parity needs {fewest_groups} or more: record longer",
-        held=held,
+        "the recording holds {groups} of one second; parity needs {fewest_groups} or more: record longer",
+        groups=held,
         fewest_groups=FEWEST_GROUPS,
     )
 
@@ -208,12 +208,12 @@ def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
     """Which channels."""
     listed = joined(", ", saturated)
     return say(
-        "{listed} stood at the end of the range in {total} of {total2} blocks; nothing can be "
+        "{names} stood at the end of the range in {number} of {blocks} blocks; nothing can be "
         "judged from readings that are cut off: repair the channel, or record with less motion "
         "or a wider range",
-        listed=listed,
-        total=total - clean,
-        total2=total,
+        names=listed,
+        number=total - clean,
+        blocks=total,
     )
 
 
@@ -221,17 +221,17 @@ def never_still(used: int, total: int) -> str:
     """Nothing at rest."""
     return (
         say(
-            "only {used} of {total} blocks is at rest, {fewest_groups} are needed; let the block "
+            "only {number} of {total} blocks is at rest, {fewest_groups} are needed; let the block "
             "stand still for a while, or judge it in motion if its sensors sit in one point",
-            used=used,
+            number=used,
             total=total,
             fewest_groups=FEWEST_GROUPS,
         )
         if used == 1
         else say(
-            "only {used} of {total} blocks are at rest, {fewest_groups} are needed; let the block "
+            "only {number} of {total} blocks are at rest, {fewest_groups} are needed; let the block "
             "stand still for a while, or judge it in motion if its sensors sit in one point",
-            used=used,
+            number=used,
             total=total,
             fewest_groups=FEWEST_GROUPS,
         )

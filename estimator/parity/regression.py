@@ -106,7 +106,8 @@ def regress(selection: Selection, reference: Reference, norm: float | None, *, s
         raise ScheduleError(
             [
                 Problem(
-                    "table", say("{held}; {fewest_groups} or more are needed", held=held, fewest_groups=FEWEST_GROUPS)
+                    "table",
+                    say("{groups}; {fewest_groups} or more are needed", groups=held, fewest_groups=FEWEST_GROUPS),
                 )
             ]
         )

@@ -63,7 +63,7 @@ class Fields:
         if isinstance(value, str) and value in allowed:
             return value
         problem = say("{value} is unknown", value=shown(value)) if self.has(key) else "missing"
-        self.add(key, say("{problem}; give one of {allowed}", problem=problem, allowed=joined(", ", allowed)))
+        self.add(key, say("{problem}; give one of {values}", problem=problem, values=joined(", ", allowed)))
         return allowed[0]
 
     def number(self, key: str, within: Interval, advice: str) -> float:

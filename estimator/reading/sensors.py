@@ -36,7 +36,7 @@ def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:
         return ()
     if len(entries) > MOST:
         document.add(
-            "sensors", say("holds {entries} sensors; a block has at most {most}", entries=len(entries), most=MOST)
+            "sensors", say("holds {entries} sensors; a block has at most {limit}", entries=len(entries), limit=MOST)
         )
         return ()
     sensors = []
@@ -107,7 +107,12 @@ def _read_repeatability(entry: Fields, kind: str) -> float:
         if other != kind and entry.has(key):
             entry.add(
                 key,
-                say("is for a {other}; this sensor is a {kind}, so give {field}", other=other, kind=kind, field=field),
+                say(
+                    "is for a {other_kind}; this sensor is a {kind}, so give {field}",
+                    other_kind=other,
+                    kind=kind,
+                    field=field,
+                ),
             )
     value = entry.optional_number(field, WITHIN[f"sensors[].{field}"])
     return 0.0 if value is None else value
@@ -121,7 +126,9 @@ def _check_names(sensors: list[Sensor], problems: Problems) -> None:
         if name and name in seen:
             problems.add(
                 field,
-                say("{name} is also the name of sensors[{seen}]; names must differ", name=shown(name), seen=seen[name]),
+                say(
+                    "{name} is also the name of sensors[{index}]; names must differ", name=shown(name), index=seen[name]
+                ),
             )
         elif name in taken:
             problems.add(

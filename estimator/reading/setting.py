@@ -98,10 +98,12 @@ def read_moment(document: Fields, key: str) -> str | None:
     try:
         at = datetime.fromisoformat(text)
     except ValueError:
-        document.add(key, say("is {text}; write it like 2026-03-01T09:00:00Z", text=shown(text)))
+        document.add(key, say("is {value}; write it like 2026-03-01T09:00:00Z", value=shown(text)))
         return None
     if at.tzinfo is None:
-        document.add(key, say("{text} has no offset; end it with Z for UTC or with one like +03:00", text=shown(text)))
+        document.add(
+            key, say("{value} has no offset; end it with Z for UTC or with one like +03:00", value=shown(text))
+        )
     elif at.year not in YEARS:
         document.add(key, say("is in the year {year}; must be {years}", year=at.year, years=YEARS))
     else:

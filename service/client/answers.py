@@ -1,8 +1,7 @@
-"""What the service answers, as `docs/api.md` describes it; SI, moments in UTC. `document` is always the whole answer,
-with the fields that are not named here.
+"""Answers of the service, as documented in `docs/api.md`; SI, times in UTC. `document` is always the whole answer, with
+the fields that are not named here.
 
-These are types of what comes over the wire: a program that asks needs nothing of the service's own, whose records they
-resemble where an answer is one.
+These types are independent of the service's own records, so that a client needs nothing else of the service.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
-"""Every command of `imu-health`: where it is, and what the list of commands says of it.
+"""Every command of `imu-health`: its module, and its line in the list of commands.
 
-The list is shown, and a name completed, without importing a single command;
-`tests/service/commands/test_start_up.py` holds what stands here equal to what a command says of itself.
+The list is shown, and a name completed, without importing any command; `tests/service/commands/test_start_up.py`
+compares the texts with the commands' own help.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ class Entry:
     """One command."""
 
     home: str
-    """Module below `service.commands`, and in it the function or the group; none where the module has a table."""
+    """Module below `service.commands`, and its function or group; none where the module has a table."""
     says: str
     """The first paragraph of its help."""
 

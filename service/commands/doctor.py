@@ -1,4 +1,4 @@
-"""`imu-health doctor`: what the service needs, looked at from this machine, and what to do where something lacks."""
+"""`imu-health doctor`: checks the needs of the service on this machine, and advises where something is missing."""
 
 import difflib
 import os
@@ -33,21 +33,21 @@ from service.storage.engine import shown_url
 from service.storage.folders import require_writable, space_at
 from service.web.hosts import hosts_of
 
-ELSEWHERE = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")
+OTHER_VARIABLES = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")
 """Variables that are read by commands and tests, not by the service."""
-APART = timedelta(seconds=5)
+CLOCK_TOLERANCE = timedelta(seconds=5)
 """More than a busy machine takes to answer; due dates and tokens are kept to the second."""
 SQLITE = "sqlite:///"
 
 
 class State(StrEnum):
-    """How well a matter stands."""
+    """Result of a check."""
 
     OK = "ok"
     WARN = "warn"
     """The service works; somebody should know."""
     FAIL = "fail"
-    """Something cannot be done until it is put right."""
+    """Something does not work until it is corrected."""
 
 
 COLOURS = {State.OK: "green", State.WARN: "yellow", State.FAIL: "red"}
@@ -61,18 +61,18 @@ class Finding:
     state: State
     text: str
     remedy: str = ""
-    """What to do; empty where nothing is to be done."""
+    """What to do; empty where nothing is needed."""
 
 
 def program() -> Iterator[Finding]:
-    """Python, this program, and the libraries that it needs."""
+    """Python, this program, and its libraries."""
     yield Finding("python", State.OK, f"{platform.python_version()} at {sys.executable}, imu-health {VERSION}")
     extras: dict[str, list[str]] = {}
     missing = []
-    for wanted in map(Requirement, requires("imu-health") or ()):
-        extra = re.search(r"extra == [\"']([\w-]+)[\"']", str(wanted.marker or ""))
+    for requirement in map(Requirement, requires("imu-health") or ()):
+        extra = re.search(r"extra == [\"']([\w-]+)[\"']", str(requirement.marker or ""))
         if extra is None or extra[1] != "test":
-            fault = _lacking(wanted)
+            fault = _fault_of_library(requirement)
             if fault and extra is None:
                 missing.append(fault)
             elif fault and extra is not None:
@@ -85,34 +85,34 @@ def program() -> Iterator[Finding]:
         yield Finding(f"extra {name}", State.OK, f"not installed ({'; '.join(faults)}); needed only for what it adds")
 
 
-def _lacking(wanted: Requirement) -> str:
-    """Why a library will not do; empty where it will."""
+def _fault_of_library(requirement: Requirement) -> str:
+    """Why a library does not fit; empty where it does."""
     try:
-        found = version(wanted.name)
+        installed = version(requirement.name)
     except PackageNotFoundError:
-        return f"{wanted.name} is missing"
+        return f"{requirement.name} is missing"
     return (
         ""
-        if wanted.specifier.contains(found, prereleases=True)
-        else f"{wanted.name} is {found}, not {wanted.specifier}"
+        if requirement.specifier.contains(installed, prereleases=True)
+        else f"{requirement.name} is {installed}, not {requirement.specifier}"
     )
 
 
 def variables(environment: Mapping[str, str]) -> Iterator[Finding]:
-    """Variables of the environment that nothing reads, most often because they are misspelt."""
-    known = {*(f"{PREFIX}{name.upper()}" for name in Settings.model_fields), *ELSEWHERE}
+    """Unknown variables of the environment, most often misspelt."""
+    known = {*(f"{PREFIX}{name.upper()}" for name in Settings.model_fields), *OTHER_VARIABLES}
     known |= retired(environment).keys()  # a failure of its own, with what stands in their place
     unknown = sorted(name for name in environment if name.upper().startswith(PREFIX) and name.upper() not in known)
     for name in unknown:
-        close = difflib.get_close_matches(name.upper(), known, 1)
-        remedy = f"Did you mean {close[0]}?" if close else "Remove it, or look its name up on the page of settings."
+        similar = difflib.get_close_matches(name.upper(), known, 1)
+        remedy = f"Did you mean {similar[0]}?" if similar else "Remove it, or look its name up on the page of settings."
         yield Finding("settings", State.WARN, f"{name} is no setting and has no effect", remedy)
     if not unknown:
         yield Finding("settings", State.OK, "every variable is known")
 
 
 def contradictions(settings: Settings) -> Iterator[Finding]:
-    """Settings that do not go together."""
+    """Contradictory settings."""
     if settings.sign_in == "off" and not settings.is_local:
         yield Finding("sign-in", State.WARN, f"nobody signs in, and {settings.host} may be reached from elsewhere",
                       "Set IMU_HEALTH_SIGN_IN=required.")  # fmt: skip
@@ -134,7 +134,7 @@ def contradictions(settings: Settings) -> Iterator[Finding]:
 
 
 def folders(settings: Settings) -> Iterator[Finding]:
-    """Whether uploads can be kept, and how much room there is."""
+    """Whether uploads can be stored, and the free space."""
     try:
         require_writable(settings.files)
     except ServiceError as fault:
@@ -152,7 +152,7 @@ def folders(settings: Settings) -> Iterator[Finding]:
 
 
 def database(settings: Settings, now: datetime) -> Iterator[Finding]:
-    """Whether the database answers, is at the newest migration, and agrees about the time."""
+    """Whether the database answers, has the newest migration, and agrees about the time."""
     where = shown_url(settings.database)
     if settings.database.startswith(SQLITE) and not Path(settings.database.removeprefix(SQLITE)).exists():
         yield Finding("database", State.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
@@ -174,14 +174,14 @@ def _remedy(fault: str) -> str:
 
 
 def _clock(opened: Database, now: datetime) -> Iterator[Finding]:
-    """This machine's clock against the server's, and against what is stored already."""
+    """This machine's clock against the server's, and against stored times."""
     remedy = "Set the clocks of both machines, best by NTP."
     server = opened.server_time()
     with opened.reading() as store:
         lines = Audit(store).page(1)
-    if server is not None and abs(server - now) > APART:
+    if server is not None and abs(server - now) > CLOCK_TOLERANCE:
         yield Finding("clock", State.FAIL, f"{abs(server - now).total_seconds():.0f} s apart from the database", remedy)
-    elif lines and lines[0].at - now > APART:
+    elif lines and lines[0].at - now > CLOCK_TOLERANCE:
         text = f"the audit trail's last line is of {lines[0].at:%Y-%m-%d %H:%M:%S} UTC, later than this clock says"
         yield Finding("clock", State.FAIL, text, remedy)
     else:
@@ -189,11 +189,11 @@ def _clock(opened: Database, now: datetime) -> Iterator[Finding]:
 
 
 def _waiting(opened: Database, settings: Settings) -> Iterator[Finding]:
-    """Processes that work beside the requests, and what waits for them."""
+    """Background processes, and the work waiting for them."""
     with opened.reading() as store:
-        waiting = WorkQueue(store, WorkKind.DIAGNOSIS).count()
+        pending = WorkQueue(store, WorkKind.DIAGNOSIS).count()
     workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
-    text = f"{workers} beside the requests, {waiting} diagnoses waiting"
+    text = f"{workers} beside the requests, {pending} diagnoses waiting"
     if workers == 0:
         yield Finding(
             "workers", State.WARN, text, "Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."
@@ -211,15 +211,15 @@ def doctor(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, one finding a line.")] = False,
 ) -> None:
     """Look at everything the service needs on this machine, and say what to do; exit code 1 where something fails."""
-    found = list(_findings(database_url=database_url, data_folder=data_folder))
-    for one in found:
+    findings = list(_findings(database_url=database_url, data_folder=data_folder))
+    for finding in findings:
         if as_json:
-            print_json(asdict(one))
+            print_json(asdict(finding))
         else:
-            remedy = f"\n      {escape(one.remedy)}" if one.remedy else ""
-            mark = f"[{COLOURS[one.state]}]{one.state:4}[/]"
-            screen().print(f"{mark}  [bold]{escape(one.what)}[/]: {escape(one.text)}{remedy}", soft_wrap=True)
-    if any(one.state is State.FAIL for one in found):
+            remedy = f"\n      {escape(finding.remedy)}" if finding.remedy else ""
+            mark = f"[{COLOURS[finding.state]}]{finding.state:4}[/]"
+            screen().print(f"{mark}  [bold]{escape(finding.what)}[/]: {escape(finding.text)}{remedy}", soft_wrap=True)
+    if any(finding.state is State.FAIL for finding in findings):
         raise typer.Exit(FAILED)
 
 

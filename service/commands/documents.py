@@ -11,12 +11,12 @@ import typer
 from service.client import connect
 from service.commands.calls import in_address
 from service.commands.console import DEFAULT_SERVER, Out, Server, deliver, progress
-from service.commands.speech import say, spoken
+from service.commands.speech import output_language, say
 from service.languages.language import Language, of_environment
 
 
 class System(StrEnum):
-    """Whose parameters."""
+    """Target system of the parameters."""
 
     PX4 = "px4"
     ARDUPILOT = "ardupilot"
@@ -25,14 +25,14 @@ class System(StrEnum):
 
 
 class CertificateForm(StrEnum):
-    """What a certificate can be written as."""
+    """Form of a certificate."""
 
     PDF = "pdf"
     DCC = "dcc"
 
 
 class ReportForm(StrEnum):
-    """What a report can be written as."""
+    """Form of a report."""
 
     JSON = "json"
     CSV = "csv"
@@ -41,7 +41,7 @@ class ReportForm(StrEnum):
 
 
 class LabelForm(StrEnum):
-    """What a label can be written as."""
+    """Form of a label."""
 
     PDF = "pdf"
     SVG = "svg"
@@ -65,15 +65,15 @@ def certificate(
     """Write the certificate of a session."""
     path = "/sessions/{session}/certificates/{number}" if number else "/sessions/{session}/certificate"
     query = {"format": format.value} | ({} if number else {"by": by})
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         deliver(client.get(in_address(path, {"session": session, "number": number}), **query).content, out)
 
 
 def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = None) -> None:
     """Write the correction that firmware applies to readings, as JSON."""
-    with connect(server, language=spoken()) as client:
-        found = client.get(in_address("/sessions/{session}/correction", {"session": session})).json()
-    deliver((json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode(), out)
+    with connect(server, language=output_language()) as client:
+        document = client.get(in_address("/sessions/{session}/correction", {"session": session})).json()
+    deliver((json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode(), out)
 
 
 def export(
@@ -83,7 +83,7 @@ def export(
     out: Out = None,
 ) -> None:
     """Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."""
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         path = in_address("/sessions/{session}/export", {"session": session})
         deliver(client.get(path, system=system.value).content, out)
 
@@ -102,7 +102,7 @@ def write_report(
     if context.invoked_subcommand is not None:
         return
     is_long = format in (ReportForm.XLSX, ReportForm.PDF)
-    with connect(server, language=spoken()) as client, progress(1, "making the report", is_long=is_long):
+    with connect(server, language=output_language()) as client, progress(1, "making the report", is_long=is_long):
         content = client.get("/fleet/report", format=format.value).content
     deliver(content, out)
 
@@ -117,7 +117,7 @@ def write_label(
 ) -> None:
     """Write a unit's label: serial number, due date, and a QR code that opens its page."""
     path = in_address(f"/units/{{unit}}/label.{format.value}", {"unit": unit})
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         deliver(client.get(path, due=str(due).lower()).content, out)
 
 
@@ -134,8 +134,8 @@ def write_template(
     out: Annotated[Path, typer.Option(help="File to write.")] = Path("session.xlsx"),
 ) -> None:
     """Write a workbook to fill in: sensors, stand and schedule are there; `imu-health upload` takes it as it is."""
-    asked = {"unit": unit, "unit_type": unit_type, "kind": kind, "sensors": sensors}
+    query = {"unit": unit, "unit_type": unit_type, "kind": kind, "sensors": sensors}
     language = lang or of_environment(os.environ)
-    with connect(server, language=spoken()) as client:
-        out.write_bytes(client.get("/session-template", lang=language.value, **asked).content)
+    with connect(server, language=output_language()) as client:
+        out.write_bytes(client.get("/session-template", lang=language.value, **query).content)
     say(f"{out} is ready to fill in: its yellow cells; then imu-health upload {out}")

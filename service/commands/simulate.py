@@ -32,13 +32,13 @@ from estimator.writing import session_document
 from service.commands.console import AsJson, print_json
 from service.commands.hiding import (
     Answer,
+    HidingRequest,
     NamedCause,
     OnSensor,
     Strength,
     Warming,
-    Wish,
     hidden_in,
-    read_wish,
+    read_request,
     warmed,
     write_answer,
 )
@@ -177,7 +177,7 @@ def simulate_files(
         raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")
     if warming and programme != TWO_AXIS_STAND:
         raise typer.BadParameter(f"--warming: {programme} records no temperature; {TWO_AXIS_STAND} does")
-    wish = read_wish(hide, strength, sensor, answer, programme)
+    wish = read_request(hide, strength, sensor, answer, programme)
     rng = np.random.default_rng([seed, *unit.encode()])
     if programme == ARBITRARY_ORIENTATIONS:
         schedule = orientations(unit, sensors, positions, rng)
@@ -192,7 +192,7 @@ def simulate_files(
     _write((_earlier(one, back) for one in made), wish, seed, f"{out}/{safe_name(unit)}", as_json=as_json)
 
 
-def _write(made: Iterator[Simulated], wish: Wish | None, seed: int, start: str, *, as_json: bool) -> None:
+def _write(made: Iterator[Simulated], wish: HidingRequest | None, seed: int, start: str, *, as_json: bool) -> None:
     """The sessions as files that begin with ``start``; nothing is written of what cannot be hidden."""
     if wish is not None:
         *before, last = made

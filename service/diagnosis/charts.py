@@ -99,7 +99,9 @@ def _panel(sides: Sides, column: int, across: Across, measure: Measure) -> Panel
     shown = [_rms(side, column, measure) for side in (sides.before, sides.after) if side is not None]
     return Panel(
         title=sides.sensors[column].name,
-        description=say("rms {shown}{thin}{label}", shown=" → ".join(shown), thin=THIN, label=measure.label),
+        description=say(
+            "rms {values}{thin_space}{label}", values=" → ".join(shown), thin_space=THIN, label=measure.label
+        ),
         condition=None,
         datasets={DATA_FORM: _points(sides, column, across, measure)},
     )
@@ -222,10 +224,10 @@ def _course_panel(component: str, value: np.ndarray, residuals: Residuals, acros
     return Panel(
         title=component,
         description=say(
-            "{component}, up to {reach}{thin}{label}",
+            "{component}, up to {reach}{thin_space}{label}",
             component=component_in_words(component),
             reach=number(reach, decimals(reach)),
-            thin=THIN,
+            thin_space=THIN,
             label=measure.label,
         ),
         condition=None,

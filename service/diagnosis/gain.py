@@ -121,7 +121,7 @@ def _rms(before: Score, after: Score, kind: str, *, several: bool) -> GainRow:
     who = say(" of {kind}s", kind=kind) if several else ""
     return GainRow(
         "rms",
-        say("error of prediction{who}, {label}", who=who, label=measure.label),
+        say("error of prediction{sensors}, {label}", sensors=who, label=measure.label),
         *(number(x * measure.factor, 3) for x in own),
     )
 

@@ -46,7 +46,7 @@ from service.web.dependencies import Now, Reading
 from service.web.fields import NO_NUL
 from service.web.render import render
 from service.work.dependencies import ReaderOf
-from service.work.readers import GLANCE
+from service.work.readers import PAGE_PATIENCE
 
 WAIT = "A large session takes some seconds; this page reads itself again."
 CLAIM = "conditional-pass"
@@ -242,7 +242,7 @@ router = APIRouter(include_in_schema=False)
 @router.get("/sessions/{id}/diagnosis")
 def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) -> HTMLResponse:
     """What the simulation gets wrong about the session."""
-    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, patience=GLANCE)))
+    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, patience=PAGE_PATIENCE)))
     return render(request, "diagnosis.html", page)
 
 

@@ -140,10 +140,10 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
         if flag.state not in POSSIBLE[state]:
             raise ConflictError(
                 say(
-                    "Flag {id} is {value} already, so it cannot be {value2} now.",
+                    "Flag {id} is {state} already, so it cannot be {new_state} now.",
                     id=id,
-                    value=flag.state.value,
-                    value2=state.value,
+                    state=flag.state.value,
+                    new_state=state.value,
                 )
             )
         return _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
@@ -192,9 +192,9 @@ def fault_of(url: str, hosts: tuple[str, ...]) -> str:
     wanted = host if parsed.port is None else f"{host}:{parsed.port}"
     if wanted.lower() not in {allowed.lower() for allowed in hosts}:
         return say(
-            "leads to {wanted}, which this service may not call; whoever runs it can allow it with "
+            "leads to {host}, which this service may not call; whoever runs it can allow it with "
             "IMU_HEALTH_WEBHOOK_HOSTS",
-            wanted=wanted,
+            host=wanted,
         )
     return ""
 

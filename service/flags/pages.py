@@ -19,7 +19,7 @@ from service.groups.words import place_in_words
 from service.models.records import Scope
 from service.pages.saved import Saved, saved
 from service.people.admission import PersonOf
-from service.people.dependencies import SEE_OTHER, By, Number, Perhaps, StorageOf, Why
+from service.people.dependencies import SEE_OTHER, By, Number, OptionalText, StorageOf, Why
 from service.people.view_store import SavedViews
 from service.people.views import ListPage
 from service.sessions.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
@@ -173,7 +173,7 @@ def show_flags(request: Request, store: Reading, person: PersonOf, view: Asking)
 
 @router.post("/assign")
 def assign_chosen(
-    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "", view: Asking
+    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: OptionalText = "", view: Asking
 ) -> RedirectResponse:
     """Several are given to somebody."""
     assign_flags(storage, flag, Assignment(to, by, why), now)
@@ -181,7 +181,9 @@ def assign_chosen(
 
 
 @router.post("/{id}/assign")
-def assign(id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "") -> RedirectResponse:
+def assign(
+    id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: OptionalText = ""
+) -> RedirectResponse:
     """One is given to somebody."""
     return _back(assign_flag(storage, id, Assignment(to, by, why), now))
 

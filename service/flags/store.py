@@ -47,7 +47,7 @@ class Notices(Queries):
         told = select(literal(notice), WebhookRow.id, literal("waiting"), literal(0), literal(""))
         new = insert(DeliveryRow).from_select(columns, told.where(WebhookRow.removed_at.is_(None)))
         deliveries = self._session.scalars(new.returning(DeliveryRow.id)).all()
-        WorkQueue(self._store, WorkKind.MESSAGE).ask_once(map(str, sorted(deliveries)), at)
+        WorkQueue(self._store, WorkKind.MESSAGE).enqueue_once(map(str, sorted(deliveries)), at)
 
 
 def notice_of(row: NoticeRow, serial: str) -> Notice:

@@ -13,7 +13,7 @@ from service.outlook.records import UnitOutlook
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
 from service.types.records import UnitType
-from service.units.records import NOBODY, Customer
+from service.units.records import NO_CUSTOMER, Customer
 
 
 @answer
@@ -59,7 +59,7 @@ class UnitSummary:
     """Production lot, where it is recorded."""
     reservations: Hidden[Reservations] = ()
     """What the verdict is said with."""
-    customer: Hidden[Customer] = NOBODY
+    customer: Hidden[Customer] = NO_CUSTOMER
     """For whom it is calibrated."""
     is_undated: Hidden[bool] = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""

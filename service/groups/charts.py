@@ -121,7 +121,9 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
     left = say("; {beyond} too unsure to be drawn are in the table", beyond=beyond) if beyond else ""
     return Panel(
         title=element.name,
-        description=say("{value} together{left}", value=measured(value, spread, element.measure), left=left),
+        description=say(
+            "{value} together{omitted_rows}", value=measured(value, spread, element.measure), omitted_rows=left
+        ),
         condition=None,
         datasets={
             DATA_FORM: list(_session_points(finding, element)),
@@ -238,7 +240,7 @@ def _picture_panel(picture: dict[str, Any], side: str, at: Sequence[float], meas
     values = picture["before" if side == SIDES[0] else "after"]
     outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture["sigma"], strict=True))
     return Panel(
-        title=say("{what} {side}", what=WHAT.get(picture["of"], picture["of"]), side=side),
+        title=say("{quantity} {direction}", quantity=WHAT.get(picture["of"], picture["of"]), direction=side),
         description=say("{outside} of {values} outside ±2σ", outside=outside, values=len(values)),
         condition=None,
         datasets={

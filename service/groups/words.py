@@ -42,8 +42,8 @@ def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexpla
     if findings:
         return say("{sessions}: {statement}", sessions=over(sessions), statement=joined(" ", map(statement, findings)))
     if unexplained:
-        return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SHARED))
-    return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SOUND))
+        return say("{sessions}: {summary}", sessions=over(sessions), summary=uncapitalised(SHARED))
+    return say("{sessions}: {summary}", sessions=over(sessions), summary=uncapitalised(SOUND))
 
 
 def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained: bool) -> str:
@@ -63,7 +63,7 @@ def statement(finding: GroupFinding) -> str:
     if not finding.alternatives:
         return finding.sentence
     others = joined(" or ", dict.fromkeys(map(cause_name, finding.alternatives)))
-    return say("{sentence}, unless it is {others}.", sentence=without_stop(finding.sentence), others=others)
+    return say("{sentence}, unless it is {alternatives}.", sentence=without_stop(finding.sentence), alternatives=others)
 
 
 def place_in_words(place: str, subject: str) -> str:
@@ -73,7 +73,7 @@ def place_in_words(place: str, subject: str) -> str:
     if not known:
         return place
     of = say(" ({sensors})", sensors=sensors.removesuffix(")")) if bracket else ""
-    return say("{scope} {subject}: {cause}{of}", scope=scope, subject=subject, cause=cause, of=of)
+    return say("{scope} {subject}: {cause}{sensors}", scope=scope, subject=subject, cause=cause, sensors=of)
 
 
 def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = None) -> str:
@@ -131,11 +131,13 @@ def term_view(term: EmpiricalTerm, accepted: Sequence[ModelRevision] = ()) -> Te
         lines=tuple(_lines(term)),
         whose=term.subject,
         worth=say(
-            "It removes {explained}{hard}% of what the sessions that took no part in learning it show too much.",
+            "It removes {explained}{nbsp}% of what the sessions that took no part in learning it show too much.",
             explained=number(100 * term.explained, 0),
-            hard=HARD,
+            nbsp=HARD,
         ),
-        nearest=say("Nearest in the catalogue: {nearest}, {near}.", nearest=cause_name(term.nearest), near=near)
+        nearest=say(
+            "Nearest in the catalogue: {nearest}, {similarity}.", nearest=cause_name(term.nearest), similarity=near
+        )
         if term.nearest
         else "",
         sensors=term.sensors,
@@ -154,7 +156,11 @@ def holds_term(revision: ModelRevision, term: EmpiricalTerm) -> bool:
 def equation_of(term: EmpiricalTerm) -> str:
     """``A3 reads more by (3.1 ± 0.2) µg · sin 3β.``"""
     return joined(
-        " ", (say("{what} {equation}.", what=capitalised(what), equation=equation) for what, equation in _lines(term))
+        " ",
+        (
+            say("{quantity} {equation}.", quantity=capitalised(what), equation=equation)
+            for what, equation in _lines(term)
+        ),
     )
 
 
@@ -166,7 +172,12 @@ def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
         spread = COVERAGE * sigma
         measure = amplitude_measure("", unit, max(abs(value), spread))
         found.setdefault(target, []).append(
-            say("({size}){hard}·{hard}{factor}", size=measured(value, spread, measure), hard=HARD, factor=factor)
+            say(
+                "({size}){nbsp}·{nbsp}{factor}",
+                size=measured(value, spread, measure),
+                nbsp=HARD,
+                factor=factor,
+            )
         )
     for target, parts in found.items():
         yield TURNS.get(target, say(READS, sensor=joined(", ", term.sensors))), joined(" + ", parts)
@@ -183,11 +194,11 @@ def gain_in_words(gain: GroupGain | None) -> str:
         else say("{log_score} less", log_score=number(-gain.log_score, 1))
     )
     return say(
-        "Sizes fixed on the first {fitted} sessions, tried on the {held_out} that came later: "
+        "Sizes fixed on the first {fitted_sessions} sessions, tried on the {held_out_sessions} that came later: "
         "their χ² per degree of freedom goes from {before} to {after}, their log score is "
         "{likelier}.",
-        fitted=gain.fitted,
-        held_out=gain.held_out,
+        fitted_sessions=gain.fitted,
+        held_out_sessions=gain.held_out,
         before=before,
         after=after,
         likelier=likelier,
@@ -332,7 +343,7 @@ def with_days(note: str) -> str:
 def since_in_words(form: str, since: str | None) -> str:
     """In which of the sessions an effect is."""
     return FORMS.get(form) or (
-        "since one of these sessions" if since is None else say("since {since}", since=day_in_words(since))
+        "since one of these sessions" if since is None else say("since {date}", date=day_in_words(since))
     )
 
 

@@ -9,11 +9,11 @@ from estimator.reading.problems import Problems, cut
 from service.kit.limits import in_force, refusal
 
 KEY = "imu-session"
-"""Under which a table's file keeps the session's other fields."""
+"""Key of the session's other fields in a table's file."""
 
 
 def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> dict[str, object]:
-    """The document of a session: the JSON metadata, and the columns as its table."""
+    """Document of a session: the JSON metadata, with the columns as its table."""
     problems = Problems(filename, in_force().extent)
     document = parse_json(text, problems)
     problems.raise_if_any()
@@ -30,16 +30,16 @@ TEXTS = (
 )  # fmt: skip
 """Keys whose value is text even where it looks like a number, as a serial number may."""
 DEEPEST = 4
-"""Steps of a key; no field of a session has more, and a hostile key could nest without end."""
+"""Parts of a key; no field of a session has more, and a hostile key could nest without end."""
 
 
 def last_step(key: str) -> str:
-    """The key itself, without where it stands."""
+    """The last part of a key."""
     return key.strip().rpartition(".")[2]
 
 
 def nested(rows: Sequence[tuple[str, float | str | None]], problems: Problems) -> dict[str, object]:
-    """The metadata; records keys that are given twice or cannot stand where they do."""
+    """The metadata as a document; records keys that are given twice or misplaced."""
     document: dict[str, Any] = {}
     for key, value in rows:
         steps = key.strip().replace("[", ".").replace("]", "").split(".")

@@ -1,4 +1,4 @@
-"""What the fields and columns of a session file hold, in a line each, for people who fill one in."""
+"""Hints for the fields and columns of a session file, one line each, for people who fill one in."""
 
 from estimator.message import say
 
@@ -44,7 +44,7 @@ KEY_HINTS = {
     "position_m": "Where the sensor sits: three numbers in metres, block axes.",
     "direction_sigma_deg": "How well the stated directions are known, one sigma, degrees.",
 }
-"""By the whole key, or by its last step."""
+"""By the whole key, or by its last part."""
 COLUMN_HINTS = {
     "run": "direct, or flipped with the block turned by 180° about the platform's Z axis.",
     "beta_deg": "Turn of the head, degrees.",
@@ -61,10 +61,10 @@ COLUMN_HINTS = {
 
 
 def reading_hint(sensor: str, unit: str) -> str:
-    """Of a sensor's column."""
+    """Hint of a sensor's column."""
     return say("Reading of {sensor}, {unit}: the mean at this position.", sensor=sensor, unit=unit)
 
 
 def standard_error_hint(sensor: str, unit: str) -> str:
-    """Of the column of its standard errors."""
+    """Hint of the column of its standard errors."""
     return say("Standard error of the mean reading of {sensor}, {unit}. May stay empty.", sensor=sensor, unit=unit)

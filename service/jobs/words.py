@@ -1,4 +1,4 @@
-"""Long work in words: what it is, how far it has come, and what it did."""
+"""Long jobs in words: title, progress and outcome."""
 
 from estimator.message import say
 from estimator.wording import counted
@@ -41,26 +41,26 @@ def title_of(job: Job) -> str:
             return say("All units measured on stand {subject} computed again", subject=job.subject)
 
 
-def left_in_words(left: int) -> str:
-    """Why sessions of a unit keep what they had, and what helps."""
+def left_in_words(count: int) -> str:
+    """Why sessions of a unit were left as before, and what helps."""
     return say(
-        "{left} left as before: the file is lost, or cannot be calibrated under the model in "
+        "{sessions} left as before: the file is lost, or cannot be calibrated under the model in "
         "force. Upload a lost file again; withdraw an accepted cause that does not fit.",
-        left=counted(left, "session"),
+        sessions=counted(count, "session"),
     )
 
 
 def progress_of(job: Job) -> str:
-    """How far it has come."""
+    """How far it is."""
     if job.kind is JobKind.UPLOAD:
-        return _read_so_far(job)
+        return _upload_progress(job)
     if job.kind is JobKind.REPORT:
         return "" if job.state is not JobState.DONE else "The report is made."
     return say("Units: {done} of {total}", done=job.done, total=job.total)
 
 
-def _read_so_far(job: Job) -> str:
-    """Of a file: megabytes, and how often it was gone through before."""
+def _upload_progress(job: Job) -> str:
+    """Of a file: megabytes, and finished passes."""
     if not job.is_open:
         return ""
     if job.is_storing:
@@ -78,22 +78,24 @@ def _read_so_far(job: Job) -> str:
 
 
 def outcome_of(job: Job) -> str:
-    """What it did so far; empty of a report."""
+    """Result so far; empty for a report."""
     if job.kind is JobKind.UPLOAD:
-        return _became(job)
+        return _upload_outcome(job)
     if job.kind is JobKind.REPORT:
         return ""
     if job.state is JobState.DONE and not job.recomputed and not job.failed:
         return "No session needed it: all rest on the models in force already."
-    other = (
+    verdicts = (
         say("{verdicts} with another verdict", verdicts=counted(job.verdicts, "session"))
         if job.verdicts
         else "no verdict moved"
     )
-    return say("{recomputed} computed again, {other}.", recomputed=counted(job.recomputed, "session"), other=other)
+    return say(
+        "{recomputed} computed again, {verdicts}.", recomputed=counted(job.recomputed, "session"), verdicts=verdicts
+    )
 
 
-def _became(job: Job) -> str:
+def _upload_outcome(job: Job) -> str:
     if job.session:
         return "The file is stored as a session."
     return "The file cannot be used. Nothing was stored; correct what is listed and upload it again." * bool(
@@ -102,7 +104,7 @@ def _became(job: Job) -> str:
 
 
 def ending_of(job: Job) -> str:
-    """What its end means; empty while it goes on."""
+    """What its end means; empty while it is open."""
     if job.kind is JobKind.UPLOAD:
         return "Cancelled: nothing was stored, and the file is gone." if job.state is JobState.CANCELLED else ""
     match job.state:

@@ -72,10 +72,10 @@ def beside_type(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doub
             who, most = joined(", ", away), in_words(kind, parameter, max(away.values(), key=abs))
             yield Doubt(
                 say(
-                    "The {name} of {who} lies {most} from those of the type's other units",
+                    "The {name} of {sensors} lies {distance} from those of the type's other units",
                     name=name,
-                    who=who,
-                    most=most,
+                    sensors=who,
+                    distance=most,
                 ),
                 ANOTHER,
             )
@@ -104,13 +104,13 @@ def _directions(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doub
         if angle <= of.far(sensor.kind, "axis", float(np.median(others)) / RAYLEIGH):
             continue
         other = next((o for o, mean in means.items() if o != sensor.name and sensor.axis @ mean > NEAR), None)
-        where = "" if other is None else say(", along that of {other}", other=other)
+        where = "" if other is None else say(", along that of {other_sensor}", other_sensor=other)
         yield Doubt(
             say(
-                "{name} points {kind} from where it does in the type's other units{where}",
+                "{name} points {kind} from where it does in the type's other units{direction}",
                 name=sensor.name,
                 kind=in_words(sensor.kind, "axis", angle),
-                where=where,
+                direction=where,
             ),
             "sensors or axes are named otherwise than in the type" if other else "nominal axis or mounting is wrong",
         )

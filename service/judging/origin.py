@@ -182,8 +182,13 @@ def of_unit(
         near = _near(known, new, sensors)
         if near is not None:
             yield Doubt(
-                say("{unit} is new, and {near} is known; {near2}", unit=new.session.unit, near=near[0], near2=near[1]),
-                say("is this {near}? The serial number is probably mistyped", near=near[0]),
+                say(
+                    "{unit} is new, and {similar_unit} is known; {question}",
+                    unit=new.session.unit,
+                    similar_unit=near[0],
+                    question=near[1],
+                ),
+                say("is this {similar_unit}? The serial number is probably mistyped", similar_unit=near[0]),
                 Correction(Remedy.UNIT, unit=near[0]),
             )
 

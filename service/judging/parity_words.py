@@ -27,7 +27,7 @@ def agreement_in_words(result: ParityResult) -> FitWords:
     chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
     quiet = TOO_MUCH_MOTION if result.moving else SAME
     return FitWords(
-        headline=say("{found}.", found=CHANGED if result.detected else quiet),
+        headline=say("{result}.", result=CHANGED if result.detected else quiet),
         detail=say(
             "χ² = {chi2} for {dof} numbers; an unchanged block gives this much or more in {chance} % of recordings.",
             chi2=number(result.chi2, 1),
@@ -41,9 +41,9 @@ def agreement_in_words(result: ParityResult) -> FitWords:
 def _warnings(result: ParityResult) -> Iterator[str]:
     can = PER_SENSOR * len(result.sensors)
     yield say(
-        "Parity sees {dof} of {can} numbers that can change. It never sees {common}.",
+        "Parity sees {dof} of {total} numbers that can change. It never sees {common}.",
         dof=result.dof,
-        can=can,
+        total=can,
         common=COMMON,
     )
     if not result.complete:
@@ -57,7 +57,7 @@ def _warnings(result: ParityResult) -> Iterator[str]:
         if count
     ]
     if left:
-        yield say("Left out of {blocks} blocks: {left}.", blocks=result.blocks, left=joined(", ", left))
+        yield say("Left out of {blocks} blocks: {reasons}.", blocks=result.blocks, reasons=joined(", ", left))
 
 
 def _suspicion(result: ParityResult) -> str:

@@ -131,9 +131,18 @@ def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy =
         who = (
             "Every scale factor is"
             if len(alike) == len(ratios)
-            else say("The scale factor of {alike} is", alike=joined(", ", alike))
+            else say("The scale factor of {sensors} is", sensors=joined(", ", alike))
         )
-        yield Doubt(say("{who} {ratio} times its {what}", who=who, ratio=f"{ratio:.4g}", what=what), slip, correction)
+        yield Doubt(
+            say(
+                "{subject_and_verb} {ratio} times its {reference}",
+                subject_and_verb=who,
+                ratio=f"{ratio:.4g}",
+                reference=what,
+            ),
+            slip,
+            correction,
+        )
 
 
 def _alike(ratios: dict[str, float]) -> Iterator[tuple[str, ...]]:
@@ -187,7 +196,11 @@ def _of_axes(found: Found) -> Iterator[Doubt]:
             done |= {name, other}
             pair = Correction(Remedy.EXCHANGE, (name, other))
             yield Doubt(
-                say("{name} feels along the axis of {other}, and {other} along that of {name}", name=name, other=other),
+                say(
+                    "{name} feels along the axis of {other_name}, and {other_name} along that of {name}",
+                    name=name,
+                    other_name=other,
+                ),
                 EXCHANGED,
                 pair,
             )

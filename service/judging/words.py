@@ -56,7 +56,7 @@ def advice_on(cause: str) -> str:
 def named(finding: Finding, size: str) -> str:
     """``the zero of A2 jumps once and stays (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
     what = choice_of(finding) if finding.alternatives else finding.sentence
-    return say("{what}{size}", what=within(what), size=say(" ({size})", size=size) if size else "")
+    return say("{limit}{size}", limit=within(what), size=say(" ({size})", size=size) if size else "")
 
 
 def unexplained(structures: Sequence[Structure], size: str) -> str:
@@ -65,7 +65,7 @@ def unexplained(structures: Sequence[Structure], size: str) -> str:
     if first.of_record:
         return within(MIXED_UP)
     where = say(" in {sensors}", sensors=joined(", ", first.sensors)) if first.sensors else " in all sensors"
-    return say("something is there{where} that no known cause explains ({size})", where=where, size=size)
+    return say("something is there{place} that no known cause explains ({size})", place=where, size=size)
 
 
 def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *, named: bool = False) -> str:
@@ -75,11 +75,11 @@ def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *
     """
     word = uncapitalised(condition_of(verdict).word)
     if named:
-        return say("it would be {word} with what was found in the model", word=word)
+        return say("it would be {verdict} with what was found in the model", verdict=word)
     if not causes:
-        return say("it would be {word} if what acts were none of the known causes", word=word)
+        return say("it would be {verdict} if what acts were none of the known causes", verdict=word)
     names = [cause_on(causes[0], sensors), *(cause_on(cause, ()) for cause in causes[1:])]
-    return say("it would be {word} with {names} in the model", word=word, names=joined(" and ", names))
+    return say("it would be {verdict} with {names} in the model", verdict=word, names=joined(" and ", names))
 
 
 def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], tolerance: float) -> str:
@@ -87,36 +87,31 @@ def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], t
     value, sigma = size
     measure = deviation_measure(kind, parameter, max(value, tolerance))
     allowed = say(
-        "tolerance {tolerance}{thin}{label}",
+        "tolerance {tolerance}{thin_space}{label}",
         tolerance=number(in_measure(tolerance, measure)),
-        thin=THIN,
+        thin_space=THIN,
         label=measure.label,
     )
     if sigma is None:
         return say(
-            "about {value}{thin}{label}, {allowed}",
+            "about {value}{thin_space}{label}, {tolerance}",
             value=number(float(f"{value * measure.factor:.2g}")),
-            thin=THIN,
+            thin_space=THIN,
             label=measure.label,
-            allowed=allowed,
+            tolerance=allowed,
         )
-    return say("{value}, {allowed}", value=measured(value, COVERAGE * sigma, measure), allowed=allowed)
+    return say("{value}, {tolerance}", value=measured(value, COVERAGE * sigma, measure), tolerance=allowed)
 
 
 def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
     """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
-    here, by, at = _degrees(now), _degrees(abs(outside)), _between(*covered)
-    if outside > 0:
-        away = say(
-            "it was measured at {here}, {by} above its reference and earlier sessions ({at})", here=here, by=by, at=at
-        )
-    else:
-        away = say(
-            "it was measured at {here}, {by} below its reference and earlier sessions ({at})", here=here, by=by, at=at
-        )
+    parts = {"temperature": _degrees(now), "difference": _degrees(abs(outside)), "earlier": _between(*covered)}
+    above = "it was measured at {temperature}, {difference} above its reference and earlier sessions ({earlier})"
+    below = "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})"
+    away = say(above if outside > 0 else below, **parts)
     if worth:
-        return say("{away}, and the temperature alone may be worth {worth}", away=away, worth=worth)
-    return say("{away}, and the temperature alone can make or hide a change", away=away)
+        return say("{difference}, and the temperature alone may be worth {effect}", difference=away, effect=worth)
+    return say("{difference}, and the temperature alone can make or hide a change", difference=away)
 
 
 def worth_in(parameter: str, sensor: str, size: str) -> str:
@@ -157,7 +152,9 @@ ALL_PASS = "Every parameter is within its tolerance by more than U; closest to i
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
     """A verdict as it is said wherever it stands: ``Fit, but the zero of A2 jumps once: repeat the session``."""
-    return say("{word}{but}", word=condition.word, but=but(reservations)) if reservations != () else condition.word
+    if reservations == ():
+        return condition.word
+    return say("{verdict}{reservations}", verdict=condition.word, reservations=but(reservations))
 
 
 def unit_in_words(unit: UnitSummary) -> str:
@@ -190,36 +187,36 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
         return say(
             ALL_PASS,
             closest=say(
-                "{place}, moved {moved} (U {spread}) of {allowed} allowed",
+                "{place}, moved {change} (U {spread}) of {tolerance} allowed",
                 place=place,
-                moved=moved,
+                change=moved,
                 spread=spread,
-                allowed=allowed,
+                tolerance=allowed,
             ),
         )
     if worst.verdict is Verdict.FAIL:
         return say(
-            "{place} moved {moved} (U {spread}) beyond the tolerance of {allowed}.",
+            "{place} moved {change} (U {spread}) beyond the tolerance of {tolerance}.",
             place=place,
-            moved=moved,
+            change=moved,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     if worst.verdict is Verdict.CONDITIONAL_FAIL:
         return say(
-            "{place} moved {moved} (U {spread}): beyond the tolerance of {allowed}, by less than U.",
+            "{place} moved {change} (U {spread}): beyond the tolerance of {tolerance}, by less than U.",
             place=place,
-            moved=moved,
+            change=moved,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     if worst.verdict is Verdict.CONDITIONAL_PASS:
         return say(
-            "{place} moved {moved} (U {spread}): within the tolerance of {allowed}, by less than U.",
+            "{place} moved {change} (U {spread}): within the tolerance of {tolerance}, by less than U.",
             place=place,
-            moved=moved,
+            change=moved,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     return _too_uncertain(place, moved, spread, allowed, worst)
 
@@ -227,19 +224,19 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
 def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
     if worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
-            "{place} is known to U {spread} only, more than its tolerance of {allowed}: measure more "
+            "{place} is known to U {spread} only, more than its tolerance of {tolerance}: measure more "
             "positions or better averages, or set a tolerance that can be decided.",
             place=place,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     return say(
-        "{place} moved {moved} (U {spread}), beyond the tolerance of {allowed} but no more than "
+        "{place} moved {change} (U {spread}), beyond the tolerance of {tolerance} but no more than "
         "noise makes the largest of so many numbers: measure again.",
         place=place,
-        moved=moved,
+        change=moved,
         spread=spread,
-        allowed=allowed,
+        tolerance=allowed,
     )
 
 
@@ -251,7 +248,7 @@ def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     missing = "has none in the reference session to compare with"
     if worst.value is None:
         missing = "is not observable in this session: add the positions that show it"
-    return say("{worst} of {named} {missing}.", worst=capitalised(_name(worst)), named=named, missing=missing)
+    return say("{worst} of {parameters} {missing}.", worst=capitalised(_name(worst)), parameters=named, missing=missing)
 
 
 def _name(decision: Decision) -> str:
@@ -263,8 +260,8 @@ def _words(decision: Decision, si: float, *, signed: bool = False) -> str:
 
 
 ALIKE = "with one another as they did at the calibration"
-SAME = say("The sensors agree {alike}", alike=ALIKE)
-CHANGED = say("The sensors do not agree {alike}", alike=ALIKE)
+SAME = say("The sensors agree {tolerance}", tolerance=ALIKE)
+CHANGED = say("The sensors do not agree {tolerance}", tolerance=ALIKE)
 TOO_MUCH_MOTION = "Moving too much to tell"
 REST = 15
 """Blocks at rest that are asked for: twelve are needed, and the first and the last are never whole."""
@@ -281,18 +278,18 @@ def recording_in_words(result: ParityResult, decisions: tuple[Decision, ...]) ->
     found = found_in_words(result)
     unseen = [d for d in decisions if d.verdict is Verdict.UNDECIDABLE]
     if not decisions:
-        return say("{found}. {nothing_judged}", found=found, nothing_judged=NOTHING_JUDGED)
+        return say("{result}. {nothing_judged}", result=found, nothing_judged=NOTHING_JUDGED)
     if result.detected:
-        return say("{found}.", found=found)
+        return say("{result}.", result=found)
     if not unseen:
         allowed = ", with what motion does allowed for" if result.moving else ""
         return say(
-            "{same}{allowed}: a change as large as any tolerance would have been seen.", same=SAME, allowed=allowed
+            "{result}{limit}: a change as large as any tolerance would have been seen.", result=SAME, limit=allowed
         )
     return (
-        say("{found}.", found=found)
+        say("{result}.", result=found)
         if result.moving
-        else say("{found}, but {unseen}.", found=found, unseen=_limit(unseen, result))
+        else say("{result}, but {unseen}.", result=found, unseen=_limit(unseen, result))
     )
 
 
@@ -318,10 +315,10 @@ def found_in_words(result: ParityResult) -> str:
         moved = joined(" or ", (_moved(c, result.kind) for c in result.candidates))
         said = clipped_in_words(result, best.sensor)
         return say(
-            "{sensor} has changed since the calibration: {moved}; the others agree{said}",
+            "{sensor} has changed since the calibration: {change}; the others agree{notes}",
             sensor=best.sensor,
-            moved=moved,
-            said=said and say("; {said}", said=said),
+            change=moved,
+            notes=said and say("; {notes}", notes=said),
         )
     listed = joined(
         " or ",
@@ -331,7 +328,7 @@ def found_in_words(result: ParityResult) -> str:
         ),
     )
     return say(
-        "Something has changed since the calibration, and this recording cannot tell what: {listed}", listed=listed
+        "Something has changed since the calibration, and this recording cannot tell what: {suspects}", suspects=listed
     )
 
 
@@ -371,9 +368,9 @@ def _moved(candidate: Candidate, kind: str) -> str:
     moved = in_words(kind, candidate.kind, size, signed=candidate.kind != "axis")
     sigma = max(candidate.sigma)
     return say(
-        "{parameter} {moved} (U {expanded})",
+        "{parameter} {change} (U {expanded})",
         parameter=PARAMETER_NAMES[candidate.kind],
-        moved=moved,
+        change=moved,
         expanded=in_words(kind, candidate.kind, COVERAGE * sigma),
     )
 
@@ -391,10 +388,10 @@ def _limit(unseen: list[Decision], result: ParityResult) -> str:
     allowed = in_words(worst.kind, worst.parameter, worst.tolerance)
     longer = "record longer, with slower turns, or set a tolerance that can be decided"
     return say(
-        "{sensor} {parameter_names} must change by {needed} to be seen, and {allowed} are allowed: {longer}",
+        "{sensor} {parameter_names} must change by {change} to be seen, and {tolerance} are allowed: {longer}",
         sensor=worst.sensor,
         parameter_names=PARAMETER_NAMES[worst.parameter],
-        needed=needed,
-        allowed=allowed,
+        change=needed,
+        tolerance=allowed,
         longer=stillness(result) if result.motion_share > MOSTLY_MOTION else longer,
     )

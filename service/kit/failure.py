@@ -72,7 +72,7 @@ NAMES = {
 
 def with_last_try(text: str, why: str) -> str:
     """What was given up, and how its last try ended where that is known."""
-    return say("{text} The last try: {why}.", text=text, why=without_stop(why)) if why else text
+    return say("{failure} The last try: {reason}.", failure=text, reason=without_stop(why)) if why else text
 
 
 def unit_failed(reason: str) -> str:

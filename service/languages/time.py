@@ -1,4 +1,4 @@
-"""Axes of time in another language: the locale of dates, as d3 wants it."""
+"""Time axes in another language: d3's locale of dates."""
 
 from collections.abc import Mapping
 

@@ -120,12 +120,12 @@ class ModelAndRecomputations(ModelDocument):
 
 
 def model_document(revision: ModelRevision) -> ModelDocument:
-    """With its evidence as it is stored."""
+    """A revision with its evidence as stored."""
     return ModelDocument(**_fields(revision))
 
 
 def moved_by(revision: ModelRevision, recomputations: Iterable[Recomputation]) -> ModelAndRecomputations:
-    """With what it brought."""
+    """A revision with its consequences."""
     return ModelAndRecomputations(**_fields(revision), recomputations=tuple(recomputations))
 
 
@@ -146,9 +146,9 @@ router = APIRouter(prefix="/models", tags=["models"])
 def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ModelDocument:
     """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without.
     What a group of sessions showed goes out of the stored ones too."""
-    made = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
+    withdrawal = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
     recompute_beside(reception, now)
-    return model_document(made)
+    return model_document(withdrawal)
 
 
 @router.get("/{id}", responses=errors(404, 422))
@@ -165,5 +165,5 @@ def list_models(
     subject: Annotated[Text | None, Query(description="Only of this unit, unit type or stand.")] = None,
 ) -> ModelPage:
     """Accepted causes, newest first."""
-    found = Models(store).page(ModelQuery(scope, subject, window.offset, window.limit))
-    return ModelPage(models=list(map(model_document, found)), **window.place(len(found)))
+    revisions = Models(store).page(ModelQuery(scope, subject, window.offset, window.limit))
+    return ModelPage(models=list(map(model_document, revisions)), **window.place(len(revisions)))

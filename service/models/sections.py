@@ -1,4 +1,4 @@
-"""Causes in the model of a stand or a unit type, as lines of a table."""
+"""Accepted causes of a stand or a unit type, as lines of a table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,13 +27,13 @@ def accepted_causes(revisions: Sequence[ModelRevision]) -> tuple[AcceptedCause, 
     """Lines in the order of the revisions."""
     return tuple(
         AcceptedCause(
-            revision=one.id,
-            name=cause_on(one.cause, one.sensors),
-            session=one.session,
-            who=one.accepted_by,
-            at=one.accepted_at,
-            note=one.note,
-            gain=gain_of(one),
+            revision=revision.id,
+            name=cause_on(revision.cause, revision.sensors),
+            session=revision.session,
+            who=revision.accepted_by,
+            at=revision.accepted_at,
+            note=revision.note,
+            gain=gain_of(revision),
         )
-        for one in revisions
+        for revision in revisions
     )

@@ -28,7 +28,7 @@ class ModelRow(Base):
 
 
 class RecomputationRow(Base):
-    """A unit whose sessions a revision concerns: whether they are computed again, and what moved because of it."""
+    """Recomputation of a unit after a revision: its state, and the result."""
 
     __tablename__ = "recomputations"
     revision: Mapped[int] = mapped_column(ForeignKey("model_revisions.id"), primary_key=True, autoincrement=False)

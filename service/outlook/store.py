@@ -20,7 +20,7 @@ from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import DecisionRow, SessionRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
-from service.types.store import tells_of_type
+from service.types.store import counts_for_type
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
@@ -204,7 +204,7 @@ class Outlooks(Queries):
             select(UnitTypeRow.name, UnitRow.lot, UnitRow.serial, OutlookRow.rates)
             .join(UnitRow, UnitRow.id == OutlookRow.unit_id)
             .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-            .where(UnitTypeRow.id == unit_type, tells_of_type(unit_type))
+            .where(UnitTypeRow.id == unit_type, counts_for_type(unit_type))
             .order_by(UnitRow.serial)
         )
         return tuple(

@@ -88,9 +88,9 @@ def place_of(trend: ParameterTrend) -> str:
 
 def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
     return say(
-        "{trend} follows the temperature of the session, by {trend2}; its trend goes on without that.",
-        trend=place_of(trend),
-        trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
+        "{sensor} follows the temperature of the session, by {coefficient}; its trend goes on without that.",
+        sensor=place_of(trend),
+        coefficient=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
     )
 
 
@@ -111,7 +111,7 @@ def reason_of(basis: DueBasis, due: datetime | None) -> str:
         return "No calibration yet."
     if basis.rule is DueRule.RISK and due is not None:
         level = f"{100 * (basis.risk or 0):.0f} %"
-        chance = say("The chance that it is out of tolerance reaches {level} on {due}", level=level, due=day_of(due))
+        chance = say("The chance that it is out of tolerance reaches {level} on {date}", level=level, date=day_of(due))
         return say("{chance}; {basis} contributes most.", chance=chance, basis=_place(basis))
     if basis.rule is DueRule.MAY_BE_OUT:
         return say("{basis} may be out of its tolerance already. Measure it again.", basis=_place(basis))
@@ -133,7 +133,7 @@ def _since(basis: DueBasis, day: str) -> str:
             day=day,
         )
     if basis.rule is DueRule.UNDECIDED:
-        return say("The session of {day} did not decide. {because}", day=day, because=basis.because)
+        return say("The session of {day} did not decide. {reason}", day=day, reason=basis.because)
     return say("Serviced on {day}: measure it again.", day=day)
 
 
@@ -167,7 +167,7 @@ def calibrated(session: StoredSession) -> str:
 
 def was_due(due: datetime, reason: str) -> str:
     """Of a unit whose date has passed; ``reason`` is that of its date."""
-    return say("Calibration was due on {due}. {reason}", due=day_of(due), reason=reason)
+    return say("Calibration was due on {date}. {reason}", date=day_of(due), reason=reason)
 
 
 def needed_now(verdict: Verdict | None, *, known: bool) -> str:
@@ -231,8 +231,8 @@ def _headline(outlook: UnitOutlook) -> str:
     if outlook.due is None:
         return "Next calibration: not known"
     if outlook.overdue:
-        return say("Calibration overdue since {due}", due=day_of(outlook.due))
-    return say("Next calibration: {due}", due=day_of(outlook.due))
+        return say("Calibration overdue since {date}", date=day_of(outlook.due))
+    return say("Next calibration: {date}", date=day_of(outlook.due))
 
 
 def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:
@@ -251,10 +251,10 @@ def _wandered(trend: ParameterTrend) -> str:
     moved = signed(trend.level, COVERAGE * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return say(
-        "{trend} has moved by {moved}, at no steady rate; {allowed} are allowed.",
+        "{trend} has moved by {change}, at no steady rate; {tolerance} are allowed.",
         trend=place_of(trend),
-        moved=moved,
-        allowed=allowed,
+        change=moved,
+        tolerance=allowed,
     )
 
 
@@ -270,8 +270,8 @@ def _waits(outlook: UnitOutlook, now: datetime) -> tuple[Wait, ...]:
 
 def _percent(risk: float) -> str:
     if risk < 0.001:
-        return say("below{hard}0.1{thin}%", hard=HARD, thin=THIN)
+        return say("below{nbsp}0.1{thin_space}%", nbsp=HARD, thin_space=THIN)
     if risk > 0.99:
-        return say("above{hard}99{thin}%", hard=HARD, thin=THIN)
+        return say("above{nbsp}99{thin_space}%", nbsp=HARD, thin_space=THIN)
     places = max(0, -floor(log10(100 * risk)))
     return f"{100 * risk:.{places}f}{THIN}%"

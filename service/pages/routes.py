@@ -98,7 +98,7 @@ def show_unit(
     """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
     report = unit_report(store, serial, now)
     is_judged_later = report.waiting and not report.summary.failed
-    is_coming = report.summary.is_undated and not report.summary.failed
+    is_pending = report.summary.is_undated and not report.summary.failed
     return render(
         request,
         "unit.html",
@@ -112,7 +112,7 @@ def show_unit(
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
-            follow=SOONEST if is_judged_later or (is_coming and settings.diagnosis_workers) else None,
+            follow=SOONEST if is_judged_later or (is_pending and settings.diagnosis_workers) else None,
             said=remarks(serial, "", (), report.said.files, in_force().attached),
         ),
     )

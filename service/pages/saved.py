@@ -13,7 +13,7 @@ from service.kit.person import Person
 from service.pages.fleet.view import FleetView
 from service.pages.session.view import SessionsView
 from service.people.admission import PersonOf
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Number, StorageOf
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Number, StorageOf
 from service.people.keep_view import may_remove, may_share, remove_view, save_view
 from service.people.views import ListPage, NewView, SavedView
 from service.web.dependencies import Now
@@ -97,7 +97,7 @@ def query_of(url: str) -> str:
 
 
 router = APIRouter(prefix="/views", include_in_schema=False)
-Name = Annotated[str, Form(max_length=100, pattern=SAYS_SOMETHING)]
+Name = Annotated[str, Form(max_length=100, pattern=NOT_BLANK)]
 Query = Annotated[str, Form(max_length=20_000, pattern=NO_NUL)]
 """An address's, percent signs included: nine parts of 200 characters."""
 

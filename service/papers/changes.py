@@ -109,8 +109,8 @@ def require_signer(storage: Storage, signing: Signing) -> str:
     if not account.role.may(NEEDED):
         raise ForbiddenError(
             say(
-                "To sign a certificate needs the role {needed}; {login} is {role}.",
-                needed=NEEDED,
+                "To sign a certificate needs the role {needed_role}; {login} is {role}.",
+                needed_role=NEEDED,
                 login=account.login,
                 role=account.role,
             )

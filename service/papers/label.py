@@ -55,15 +55,21 @@ def _due(due: datetime | None, now: datetime) -> str:
     if due is None:
         return "Calibration due: not known"
     return (
-        say("Calibration overdue since {due}", due=_held(due))
+        say("Calibration overdue since {date}", date=_held(due))
         if due < now
-        else say("Calibration due {due}", due=_held(due))
+        else say("Calibration due {date}", date=_held(due))
     )
 
 
 def _held(day: datetime) -> str:
     """The day on one line."""
-    return say("{day}{hard}{month}{hard}{year}", day=day.day, month=f"{day:%b}", year=day.year, hard=HARD)
+    return say(
+        "{day}{nbsp}{month}{nbsp}{year}",
+        day=day.day,
+        month=f"{day:%b}",
+        year=day.year,
+        nbsp=HARD,
+    )
 
 
 def label_pdf(label: Label, now: datetime, language: Language = Language.ENGLISH) -> bytes:

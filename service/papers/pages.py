@@ -16,7 +16,7 @@ from service.papers.desk import Papers, SignedIssue, papers_of, sign
 from service.papers.records import Meaning, Signature
 from service.papers.words import STATES, done_by, moment_of
 from service.people.admission import PersonOf, attempt_of
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
 from service.people.secret import LONGEST
 from service.records.unit_changes import set_customer
 from service.sessions.records import StoredSession
@@ -140,7 +140,7 @@ def show_certificate(request: Request, id: Key, store: Reading, desk: DeskOf, pe
 def take_signature(
     request: Request,
     id: Key,
-    number: Annotated[str, Form(max_length=60, pattern=SAYS_SOMETHING)],
+    number: Annotated[str, Form(max_length=60, pattern=NOT_BLANK)],
     meaning: Annotated[Meaning, Form()],
     password: Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)],
     *,

@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.papers.records import Meaning
 from service.sessions.decision import Verdict
-from service.web.fields import TEXT, LongText, Said, Text
+from service.web.fields import TEXT, LongText, NonBlankName, Text
 
 
 class BlockCorrectionSchema(BaseModel):
@@ -62,6 +62,6 @@ class NewSignature(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    number: Said = Field(description="Of the certificate that you read; one that is not the latest is refused.")
+    number: NonBlankName = Field(description="Of the certificate that you read; one that is not the latest is refused.")
     meaning: Meaning = Field(description="A certificate is reviewed first, and approved by somebody else.")
     password: str = Field(max_length=1000, pattern=TEXT, description="Of your account, asked again.")

@@ -37,7 +37,7 @@ def draft_in_words(missing: tuple[str, ...]) -> str:
     listed = (
         missing[0]
         if len(missing) == 1
-        else say("{missing} and {missing2}", missing=joined(", ", missing[:-1]), missing2=missing[-1])
+        else say("{first} and {last}", first=joined(", ", missing[:-1]), last=missing[-1])
     )
     return say(DRAFT, missing=listed)
 
@@ -124,5 +124,9 @@ def uncertainty_in_words(calibration: Calibration, k: float) -> str:
     """With the coverage factor that the session was judged with."""
     percent = number(100 * (2.0 * chance(k, None) - 1.0), 0)
     if noise_is_estimated(calibration):
-        return say("{student} {by}", student=say(STUDENT, k=coverage_in_words(calibration, k), percent=percent), by=BY)
-    return say("{normal} {by}", normal=say(NORMAL, k=number(k), percent=percent), by=BY)
+        return say(
+            "{coverage} {source}",
+            coverage=say(STUDENT, k=coverage_in_words(calibration, k), percent=percent),
+            source=BY,
+        )
+    return say("{coverage} {source}", coverage=say(NORMAL, k=number(k), percent=percent), source=BY)

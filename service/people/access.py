@@ -1,6 +1,5 @@
-"""What each route asks of whoever calls it. Every route stands here once; one that does not is closed to everybody, so
-that no new route is open because somebody forgot it.
-"""
+"""The role that each route needs. Every route is listed once; an unlisted route is closed to everybody, so that no new
+route is open by oversight."""
 
 from collections.abc import Iterable, Mapping
 
@@ -9,7 +8,7 @@ from service.web.headers import API
 
 UNIT, SESSION = f"{API}/units/{{serial:path}}", f"{API}/sessions/{{id}}"
 Route = tuple[str, str]
-"""Method and path as the route table writes it."""
+"""Method and path as in the route table."""
 
 PUBLIC = """
 GET /healthz
@@ -23,7 +22,7 @@ POST /sign-out
 GET /oidc/start
 GET /oidc/callback
 """
-"""What somebody may who has not signed in."""
+"""Open without signing in."""
 
 VIEWER = f"""
 GET /
@@ -217,7 +216,7 @@ GET {API}/webhooks/{{id}}/deliveries
 DELETE {API}/webhooks/{{id}}
 """
 METRICS: Route = ("GET", "/metrics")
-"""That a token of its own opens as well."""
+"""Also open to a token of its own."""
 
 
 def _routes(text: str) -> Iterable[Route]:
@@ -234,4 +233,4 @@ NEEDED: Mapping[Route, Role | None] = {
     **dict.fromkeys(_routes(ENGINEER), Role.ENGINEER),
     **dict.fromkeys(_routes(ADMIN), Role.ADMIN),
 }
-"""The least role of every route; None where nobody needs one."""
+"""Lowest role for every route; None for public ones."""

@@ -126,7 +126,7 @@ def _drift_panel(found: Readiness, column: int, kind: str, allowed: float | None
     ]
     limits = [] if allowed is None else [{"y": float(f"{side * allowed * measure.factor:.4g}")} for side in (-1, 1)]
     low, high = (number(float(f"{edge * measure.factor:.2g}")) for edge in (change.min(), change.max()))
-    words = say("from {low} to {high}{thin}{label}", low=low, high=high, thin=THIN, label=measure.label)
+    words = say("from {low} to {high}{thin_space}{label}", low=low, high=high, thin_space=THIN, label=measure.label)
     return Panel(found.names[column], words, None, {DATA_FORM: points, "allowed": limits})
 
 

@@ -122,7 +122,7 @@ def _facts(answer: Asked) -> tuple[tuple[str, str], ...]:
 
 def _drift(one: Outlook) -> Drift:
     shares = [
-        say("{share} % of the {word}", share=number(100 * share, 0), word=word)
+        say("{share} % of the {kind}", share=number(100 * share, 0), kind=word)
         for share, word in ((one.bias_share, "bias"), (one.scale_share, "scale factor"))
         if share is not None
     ]

@@ -24,19 +24,18 @@ def missing_in_words(found: Missing) -> tuple[str, ...]:
     """A sentence how far it is, then one a run or a line a direction, then what is open until then."""
     if found.is_complete:
         return (say("Complete: {done} positions, and every parameter is observed.", done=found.done),)
-    to_come = len(found.settings) or len(found.directions)
     done = found.done
     lines: list[str] = [
         say_count(
-            "{n} position is done, {to_come} still to come.",
-            "{n} positions are done, {to_come} still to come.",
+            "{n} position is done, {remaining} still to come.",
+            "{n} positions are done, {remaining} still to come.",
             done,
-            to_come=to_come,
+            remaining=len(found.settings) or len(found.directions),
         )
     ]
     for run, settings in groupby(found.settings, key=lambda one: one[0]):
         angles = [f"{number(float(np.degrees(beta)), 2).rstrip('0').rstrip('.')}°" for _, beta in settings]
-        rest = say(" and {most} more", most=len(angles) - MOST) if len(angles) > MOST else ""
+        rest = say(" and {number} more", number=len(angles) - MOST) if len(angles) > MOST else ""
         lines.append(say("{run}: β = {angles}{rest}", run=run, angles=", ".join(angles[:MOST]), rest=rest))
     lines += [
         say("up along {direction} in block axes", direction=_vector(direction))
@@ -111,9 +110,9 @@ def tolerance_in_words(judged: Judged) -> str:
         return ""
     measure = MEASURES[judged.kind, judged.parameter]
     return say(
-        "of {tolerance}{thin}{label}",
+        "of {tolerance}{thin_space}{label}",
         tolerance=number(in_measure(judged.tolerance, measure)),
-        thin=THIN,
+        thin_space=THIN,
         label=measure.label,
     )
 
@@ -162,9 +161,9 @@ def readiness_headline(found: Readiness) -> str:
         case State.NOT_WARM:
             return "Not warm: waiting alone will not do"
         case State.NOT_STILL:
-            return say("Not still: {found}", found=_short(found))
+            return say("Not still: {problem}", problem=_short(found))
         case State.TOO_EARLY if found.needed is not None:
-            return say("Too early to tell: record about {needed} minutes more", needed=minutes(found.needed))
+            return say("Too early to tell: record about {minutes} minutes more", minutes=minutes(found.needed))
         case State.TOO_EARLY:
             return "Not to be told: the sensors wander"
     return "Nothing can be told from this record"
@@ -214,23 +213,23 @@ def _of_drift(found: Readiness, worst: Outlook) -> list[str]:
         return [
             say(
                 "No sensor will drift by more than it may in the {length} minutes of the programme: the "
-                "most is {bound} of {name}, with 95 % probability; allowed are {allowed}, {by}.",
+                "most is {bound} of {name}, with 95 % probability; allowed are {tolerance}, {source}.",
                 length=length,
                 bound=bound,
                 name=worst.name,
-                allowed=allowed,
-                by=by,
+                tolerance=allowed,
+                source=by,
             )
         ]
     said: list[str] = [
         say(
             "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
-            "allowed are {allowed}, {by}.",
+            "allowed are {tolerance}, {source}.",
             name=worst.name,
             bound=bound,
             length=length,
-            allowed=allowed,
-            by=by,
+            tolerance=allowed,
+            source=by,
         )
     ]
     if found.state is State.NOT_WARM:
@@ -248,16 +247,16 @@ def _of_waiting(found: Readiness) -> list[str]:
         ]
     low, middle, high = found.wait
     until = (
-        say("up to {high} minutes", high=minutes(high))
+        say("up to {minutes} minutes", minutes=minutes(high))
         if high < float("inf")
         else "how long at most cannot be told yet"
     )
     return [
         say(
-            "It settles: wait about {middle} minutes more (at least {low}, {until}), and ask again with a new record.",
+            "It settles: wait about {middle} minutes more (at least {low}, {latest}), and ask again with a new record.",
             middle=minutes(middle),
             low=minutes(low),
-            until=until,
+            latest=until,
         )
     ]
 
@@ -266,8 +265,8 @@ def _of_telling(found: Readiness, worst: Outlook) -> list[str]:
     if found.needed is not None:
         return [
             say(
-                "The record is too short to tell: leave the unit as it is and record about {needed} minutes more.",
-                needed=minutes(found.needed),
+                "The record is too short to tell: leave the unit as it is and record about {minutes} minutes more.",
+                minutes=minutes(found.needed),
             )
         ]
     return [
@@ -302,36 +301,36 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
     match one.kind:
         case Kind.STEP:
             return say(
-                "{who} changed by {size} between {start} and {stop}: somebody touched it{after}",
-                who=who,
+                "{sensors} changed by {size} between {start} and {stop}: somebody touched it{consequence}",
+                sensors=who,
                 size=size,
                 start=clock(one.start),
                 stop=clock(one.stop),
-                after=after,
+                consequence=after,
             )
         case Kind.BURST:
             return say(
-                "{who} shook by {size} rms from {start} to {stop}{after}",
-                who=who,
+                "{sensors} shook by {size} rms from {start} to {stop}{consequence}",
+                sensors=who,
                 size=size,
                 start=clock(one.start),
                 stop=clock(one.stop),
-                after=after,
+                consequence=after,
             )
         case Kind.SHAKING:
             return say(
-                "{who} shake by {size} rms all the time: a quadratic term within its tolerance would "
+                "{sensors} shake by {size} rms all the time: a quadratic term within its tolerance would "
                 "turn that into more than the drift allowed. Find what vibrates, or decouple the stand "
                 "from it.",
-                who=who,
+                sensors=who,
                 size=size,
             )
         case Kind.CLIPPED:
             share = number(float(f"{100 * one.size:.2g}"))
             return say(
-                "{who} stands at the end of its range for {share} % of the samples: set a larger range, "
+                "{sensor} stands at the end of its range for {share} % of the samples: set a larger range, "
                 "or stop what vibrates.",
-                who=who,
+                sensor=who,
                 share=share,
             )
     turn = number(float(f"{one.size * ARCSEC.factor:.2g}"))
@@ -371,15 +370,15 @@ def fault_in_words(fault: Fault) -> str:
             )
         case FaultKind.STUCK:
             return say(
-                "One and the same reading throughout: {who}. That is a dead channel and no rest; check "
+                "One and the same reading throughout: {sensors}. That is a dead channel and no rest; check "
                 "power and cables.",
-                who=who,
+                sensors=who,
             )
         case FaultKind.COARSE:
             return say(
-                "One step of the readings is larger than the drift allowed: {who}. Average more samples, "
+                "One step of the readings is larger than the drift allowed: {sensors}. Average more samples, "
                 "with more digits.",
-                who=who,
+                sensors=who,
             )
         case FaultKind.UNITS:
             return say(
@@ -388,7 +387,9 @@ def fault_in_words(fault: Fault) -> str:
                 amount=number(float(f"{fault.amount:.3g}")),
             )
         case FaultKind.TURNING:
-            return say("The block turns, or the units are wrong: {who}. Let it rest, or check nominal_scale.", who=who)
+            return say(
+                "The block turns, or the units are wrong: {name}. Let it rest, or check nominal_scale.", name=who
+            )
         case FaultKind.NOT_JUDGED:
             return "No tolerance says how far these sensors may drift: give one."
         case FaultKind.GAP:
@@ -396,4 +397,4 @@ def fault_in_words(fault: Fault) -> str:
                 "There is a gap of {amount} minutes in the record; it is judged all the same.",
                 amount=minutes(fault.amount),
             )
-    return say("{who} is alone: a fixture that creeps cannot be told from a drift of its own.", who=who)
+    return say("{sensor} is alone: a fixture that creeps cannot be told from a drift of its own.", sensor=who)

@@ -54,7 +54,7 @@ def change(
 ) -> None:
     """Writes down what becomes of a session, by whom and why; what follows from it is derived afterwards."""
     if state is RecordState.ACCEPTED and _was_questioned(store, session.id):
-        WorkQueue(store, WorkKind.DIAGNOSIS).ask_once(Derivations(store).forget_diagnosis(session.id), step.at)
+        WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once(Derivations(store).forget_diagnosis(session.id), step.at)
     States(store).put_session(session.id, state, superseded_by)
     States(store).add(RecordKind.SESSION, session.id, state, step, superseded_by=superseded_by, remedies=remedies)
     details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}
@@ -119,9 +119,9 @@ def _require_possible(store: Store, session: StoredSession) -> None:
     if stands_for_it.state in (RecordState.ACCEPTED, RecordState.QUESTIONED):
         raise ConflictError(
             say(
-                "Session {id} stands for session {id2}: withdraw it first, or both would count.",
-                id=stands_for_it.id,
-                id2=session.id,
+                "Session {session} stands for session {other_session}: withdraw it first, or both would count.",
+                session=stands_for_it.id,
+                other_session=session.id,
             )
         )
 
@@ -171,7 +171,7 @@ def _require_choice(store: Store, session: StoredSession) -> None:
         raise ConflictError("A recording in service is compared with a calibration and is no reference itself.")
     if blind := too_few(Calibrations(store).get(session.id)):
         raise ConflictError(
-            say("Session {id} gives no uncertainty to judge others with. {blind}", id=session.id, blind=blind)
+            say("Session {id} gives no uncertainty to judge others with. {advice}", id=session.id, advice=blind)
         )
 
 
@@ -235,7 +235,7 @@ def record_service(
 def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:
     found = []
     if new.at > now + CLOCK_LEEWAY:
-        found.append(Problem("at", say("lies in the future ({at}); record what was done", at=f"{new.at:%Y-%m-%d}")))
+        found.append(Problem("at", say("lies in the future ({date}); record what was done", date=f"{new.at:%Y-%m-%d}")))
     sensors = UnitTypes(store).of_unit(serial).sensors
     if new.sensor and new.sensor not in sensors:
         found.append(

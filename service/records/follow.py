@@ -45,7 +45,7 @@ def derive_left(storage: Storage, way: Deriving, serial: str, derived: Derived) 
 
     def keep(why: str) -> None:
         with storage.database.writing() as store:
-            WorkQueue(store, WorkKind.DERIVATION).keep_failed(serial, why, way.at)
+            WorkQueue(store, WorkKind.DERIVATION).add_failed(serial, why, way.at)
 
     with kept(keep):
         if derived.waiting:

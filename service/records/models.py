@@ -24,7 +24,7 @@ from service.groups.changes import tell_own
 from service.groups.records import Group, GroupShown
 from service.groups.store import read_group
 from service.groups.words import equation_of
-from service.jobs.changes import tell_job
+from service.jobs.changes import add_model_job
 from service.models.records import SCOPES, Evidence, ModelRevision, NewLasting, NewModel, Pooled, Scope
 from service.models.rules import in_force, pooled_of
 from service.models.store import Models, Recomputations
@@ -79,7 +79,7 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
 def _compute_again(store: Store, changed: ModelRevision, now: datetime) -> int:
     """Asks for the sessions of every unit that a changed model concerns; returns how many units those are."""
     units = Recomputations(store).ask(changed.id, changed.scope, changed.subject, now)
-    tell_job(store, changed, units, now)
+    add_model_job(store, changed, units, now)
     return units
 
 
@@ -98,10 +98,10 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
         raise _refused(
             "cause",
             say(
-                "{wanted} is a matter of this one record or of what changed since earlier sessions, not "
+                "{cause} is a matter of this one record or of what changed since earlier sessions, not "
                 "a property that a model can hold; correct the record and upload it again, or act on the "
                 "unit",
-                wanted=repr(wanted),
+                cause=repr(wanted),
             ),
         )
     return (*named, *equal)[0]
@@ -142,7 +142,7 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
         found = joined(" and ", sensors)
         raise _refused(
             "scope",
-            say("is 'stand', but the cause acts on {found}; accept it for the unit or the unit type", found=found),
+            say("is 'stand', but the cause acts on {sensors}; accept it for the unit or the unit type", sensors=found),
         )
     if session.stand is None:
         raise _refused("scope", "is 'stand', but the session names no stand; accept it for the unit or the unit type")
@@ -153,7 +153,7 @@ def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
     shown = ", ".join(f.cause for f in findings) or "none"
     return _refused(
         "cause",
-        say("{wanted} is not among the causes that this session shows ({shown})", wanted=repr(wanted), shown=shown),
+        say("{cause} is not among the causes that this session shows ({known})", cause=repr(wanted), known=shown),
     )
 
 

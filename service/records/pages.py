@@ -10,7 +10,7 @@ from pydantic import AfterValidator
 
 from service.kit.arriving_files import Replaced
 from service.kit.moments import in_utc
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, Number, StorageOf, Why
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, Number, StorageOf, Why
 from service.records.changes import (
     accept_session,
     choose_reference,
@@ -67,7 +67,7 @@ def correct(id: Key, by: By, reception: ReceptionOf, now: Now) -> RedirectRespon
 
 @router.post("/sessions/{id}/stand")
 def stand(
-    id: Key, session: Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)], by: By, why: Why,
+    id: Key, session: Annotated[str, Form(max_length=200, pattern=NOT_BLANK)], by: By, why: Why,
     reception: ReceptionOf, now: Now,
 ) -> RedirectResponse:  # fmt: skip
     """A session stands for another one of the same moment."""

@@ -11,7 +11,7 @@ from estimator.results import Calibration
 from estimator.session import IN_SERVICE
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
-from service.jobs.records import JobFailure, Piece
+from service.jobs.records import JobFailure, RecalibrationPiece
 from service.jobs.store import Jobs
 from service.jobs.words import left_in_words
 from service.judging.calibrate import Basis, calibrate, rests_on_model
@@ -248,7 +248,7 @@ def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: floa
         outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)
         if Recomputations(store).settle(task, outcome, now):
             left = JobFailure(task.unit, left_in_words(done.left)) if done.left else None
-            Jobs(store).count_unit(task.revision, Piece(done.recomputed, len(done.verdicts), left), now)
+            Jobs(store).count_unit(task.revision, RecalibrationPiece(done.recomputed, len(done.verdicts), left), now)
 
     with storage.database.reading() as store:
         who = Models(store).get(task.revision).accepted_by

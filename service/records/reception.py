@@ -7,7 +7,7 @@ beside the requests.
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from service.jobs.changes import UNFOLLOWED, Course
+from service.jobs.changes import NO_HOOKS, UploadHooks
 from service.kit.metrics import Metrics
 from service.storage import Storage
 
@@ -25,5 +25,5 @@ class Reception:
     """That sends the files."""
     is_dated_later: bool = False
     """Whether the unit's dates are worked out beside the requests."""
-    course: Course = UNFOLLOWED
+    course: UploadHooks = NO_HOOKS
     """What is done at the steps of an upload."""

@@ -107,9 +107,9 @@ def successor_of(storage: Storage, id: str) -> str:
         raise ConflictError(
             say(
                 "Which session stands for {id} cannot be told: name it in `superseded_by`. Uploaded "
-                "later of the same unit and date: {found}.",
+                "later of the same unit and date: {number}.",
                 id=id,
-                found=len(found),
+                number=len(found),
             )
         )
     return found[0]

@@ -258,14 +258,16 @@ def _panel(calibration: Calibration, column: int, across: Across, unit: Measure)
     noise = noise_of(residuals, calibration)
     value, sigma = residuals.value[:, column], noise.stated[:, column]
     outside = (
-        say(", {np} of {value} outside ±2σ", np=np.sum(np.abs(value) > 2 * sigma), value=len(value))
+        say(", {number} of {total} outside ±2σ", number=np.sum(np.abs(value) > 2 * sigma), total=len(value))
         if np.isfinite(sigma).any()
         else ""
     )
     rms = scatter_in_words(float(np.sqrt(np.nanmean(value**2))), unit)
     return Panel(
         title=calibration.sensors[column].name,
-        description=say("rms {rms}{thin}{label}{outside}", rms=rms, thin=THIN, label=unit.label, outside=outside),
+        description=say(
+            "rms {rms}{thin_space}{label}{outside}", rms=rms, thin_space=THIN, label=unit.label, outside=outside
+        ),
         condition=None,
         datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
     )

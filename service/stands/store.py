@@ -16,7 +16,7 @@ from service.stands.records import STILL, KnownStand, MotionOnStand, StandCertif
 from service.stands.tables import StandCertificateRow, StandConditionRow, StandRow, StandTallyRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
-from service.types.store import tells_of_stand
+from service.types.store import counts_for_stand
 from service.units.tables import UnitRow
 
 MOST = 4000
@@ -84,7 +84,7 @@ class Stands(Queries):
             )
             .where(
                 SessionRow.is_reference | CommonMotionRow.session_id.is_not(None),
-                tells_of_stand(StandRow.id.expression),
+                counts_for_stand(StandRow.id.expression),
             )
             .order_by(SessionRow.started_at.desc(), SessionRow.id, CommonMotionRow.kind, CommonMotionRow.quantity)
             .limit(MOST)

@@ -29,21 +29,21 @@ def reason_of(
 
 def _shift(shift: StandEvidence) -> str:
     """What it does, or did, on how many units it was seen, and when."""
-    seen = say("seen on {agreeing} of {units} units", agreeing=shift.agreeing, units=shift.units)
-    when = say("since {since}", since=day_of(shift.since))
+    seen = say("seen on {number} of {units} units", number=shift.agreeing, units=shift.units)
+    when = say("since {date}", date=day_of(shift.since))
     if shift.until is not None:
-        when = say("from {since} until before {until}", since=day_of(shift.since), until=day_of(shift.until))
-    by = say("{shift}, {seen} {when}.", shift=size_of_shift(shift), seen=seen, when=when)
+        when = say("from {start} until before {end}", start=day_of(shift.since), end=day_of(shift.until))
+    by = say("{shift}, {agreement} {period}.", shift=size_of_shift(shift), agreement=seen, period=when)
     if shift.quantity == AXES:
         return (
-            say("It turns every block by {by}", by=by)
+            say("It turns every block by {size}", size=by)
             if shift.until is None
-            else say("It turned every block by {by}", by=by)
+            else say("It turned every block by {size}", size=by)
         )
     return (
-        say("It changes every scale factor by {by}", by=by)
+        say("It changes every scale factor by {size}", size=by)
         if shift.until is None
-        else say("It changed every scale factor by {by}", by=by)
+        else say("It changed every scale factor by {size}", size=by)
     )
 
 
@@ -56,19 +56,19 @@ def size_of_shift(shift: StandEvidence) -> str:
 def kind_of_shift(kind: str, quantity: str) -> str:
     """``Turn of every block``: what a stand does, by the sensors that show it."""
     what = "Turn of every block" if quantity == AXES else "Change of every scale factor"
-    return what if kind == ACCELEROMETER else say("{what}, by gyros", what=what)
+    return what if kind == ACCELEROMETER else say("{quantity}, by gyros", quantity=what)
 
 
 def scatter_of(own: StandSeating) -> str:
     """``±0.4 arcsec about each axis``: from one mounting to the next, ± U."""
     parameter, of = ("axis", "about each axis") if own.quantity == AXES else ("scale", "of all scale factors")
-    return say("±{size} {of}", size=in_words(own.kind, parameter, COVERAGE * own.tau), of=of)
+    return say("±{size} {place}", size=in_words(own.kind, parameter, COVERAGE * own.tau), place=of)
 
 
 def _seating(seating: Sequence[StandSeating]) -> Sequence[str]:
     """How blocks are seated, ± U."""
     return [
-        say("From one mounting to the next a block sits within {own}.", own=scatter_of(own))
+        say("From one mounting to the next a block sits within {scatter}.", scatter=scatter_of(own))
         for own in seating
         if own.quantity == AXES
     ][:1]

@@ -49,7 +49,7 @@ class UnitType:
 
 @dataclass(frozen=True)
 class ToleranceRevision:
-    """Tolerances of a type as they held from a time on."""
+    """Tolerances of a type from a time on."""
 
     revision: int
     since: datetime
@@ -68,7 +68,7 @@ class TypeUse:
 
 @dataclass(frozen=True)
 class WantedTolerances:
-    """What somebody thinks of setting."""
+    """Tolerances that somebody tries."""
 
     tolerances: Tolerances
     gyro_tolerances: Tolerances | None
@@ -76,7 +76,7 @@ class WantedTolerances:
 
 @dataclass(frozen=True)
 class LatestSession:
-    """The session that a unit's verdict is of."""
+    """The session of a unit's verdict."""
 
     unit: str
     key: int

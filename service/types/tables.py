@@ -10,7 +10,7 @@ from service.storage.tables import Base
 
 
 class UnitTypeRow(Base):
-    """A kind of unit; its tolerances are in `ToleranceRow`, the largest revision holds."""
+    """A kind of unit; its tolerances are in `ToleranceRow`, where the largest revision is in force."""
 
     __tablename__ = "unit_types"
     id: Mapped[int] = mapped_column(primary_key=True)

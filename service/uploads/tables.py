@@ -1,4 +1,4 @@
-"""The tables of layouts that are known, and of refusals."""
+"""The tables of remembered layouts and of refusals."""
 
 from datetime import datetime
 from typing import Any
@@ -11,7 +11,7 @@ from service.storage.tables import Base
 
 
 class RefusalRow(Base):
-    """An upload that could not be used; its bytes are not kept."""
+    """An upload that could not be used; its bytes are not stored."""
 
     __tablename__ = "refusals"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -23,7 +23,7 @@ class RefusalRow(Base):
 
 
 class LayoutRow(Base):
-    """How files of one layout were read last, without what differs from session to session."""
+    """How files of a layout were read last, without what differs from session to session."""
 
     __tablename__ = "layouts"
     id: Mapped[int] = mapped_column(primary_key=True)

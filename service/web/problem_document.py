@@ -47,5 +47,5 @@ def faults(problems: Iterable[Problem]) -> list[Fault]:
 
 
 def errors(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """OpenAPI entries of the problems that a route can answer with; any route can find the database away."""
+    """OpenAPI entries of a route's problems; any route can find the database unavailable."""
     return {status: {"model": ProblemDocument} for status in (*statuses, 503)}

@@ -46,13 +46,13 @@ def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
             cause.identifier,
             None if lacking else (),
             (),
-            lacking and say("the session lacks {lacking}", lacking=lacking),
+            lacking and say("the session lacks {missing}", missing=lacking),
         )
     if not isinstance(cause, Signature):
         return excess_limit(state, cause)
     if traces is None:
         lacking = missing(state, cause) or cause.lacking
-        return Limit(cause.identifier, None, cause.units, say("the session lacks {lacking}", lacking=lacking))
+        return Limit(cause.identifier, None, cause.units, say("the session lacks {missing}", missing=lacking))
     norms = np.linalg.norm(traces.columns, axis=1)
     raw = traces.raw[:, : norms.shape[1]]
     visible = (norms > INVISIBLE * raw) & (raw > 0)

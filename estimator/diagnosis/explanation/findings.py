@@ -144,8 +144,8 @@ def common_course(course: AppliedCourse) -> Structure:
     what = joined(" and ", course.components) or "the vector"
     return Structure(
         say(
-            "an error of stand, fixture or reference that no known cause explains ({what}, along {order})",
-            what=what,
+            "an error of stand, fixture or reference that no known cause explains ({quantity}, along {order})",
+            quantity=what,
             order=course.order,
         ),
         (),
@@ -198,8 +198,8 @@ def notes(state: SearchState) -> tuple[str, ...]:
     far = max(f.best.strength for f in state.in_tails)
     return (
         say(
-            "Single readings lie up to {far} standard errors off. The errors of all readings have "
+            "Single readings lie up to {distance} standard errors off. The errors of all readings have "
             "such tails: no cause is named for them.",
-            far=f"{far:.1f}",
+            distance=f"{far:.1f}",
         ),
     )

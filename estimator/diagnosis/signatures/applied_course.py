@@ -147,7 +147,7 @@ def changes(setting: Setting) -> Iterator[tuple[str, Array]]:
         yield words, fixed
         if 0 < setting.flipped.sum() < setting.rows:
             yield (
-                say("{words}, each run for itself", words=words),
+                say("{course}, each run for itself", course=words),
                 np.concatenate([fixed * flipped, fixed * ~flipped], axis=-1),
             )
 

@@ -165,7 +165,7 @@ def _alone(finding: Finding) -> str:
     return joined(
         "; ",
         (
-            say("{who}: {shape}", who=who, shape=shape)
+            say("{sensor}: {shape}", sensor=who, shape=shape)
             for who, shape in zip(finding.sensors, shapes, strict=False)
             if shape
         ),
@@ -193,7 +193,7 @@ def more_of(finding: Finding) -> tuple[str, ...]:
     return (
         sizes
         if len(shared.more) > 1
-        else tuple(say("{who}: {shape}", who=shared.more[0], shape=size) for size in sizes)
+        else tuple(say("{sensor}: {shape}", sensor=shared.more[0], shape=size) for size in sizes)
     )
 
 

@@ -82,10 +82,12 @@ def summary_of(answer: Answer) -> str:
 def nothing_of(answer: Answer) -> str:
     """That nothing is wrong, unless it is what the file says of the noise, or nothing is left to judge by."""
     if answer.calibration.fit.is_exact:
-        return say("{nothing_left}. {taken_up}", nothing_left=NOTHING_LEFT, taken_up=TAKEN_UP)
+        return say("{summary}. {fits}", summary=NOTHING_LEFT, fits=TAKEN_UP)
     if answer.noise:
-        return say("{nothing}{but}.", nothing=NOTHING, but=but_wrong_errors(answer.noise, _kinds(answer)))
-    return say("{nothing}: the simulation explains the readings.", nothing=NOTHING)
+        return say(
+            "{summary}{reservation}.", summary=NOTHING, reservation=but_wrong_errors(answer.noise, _kinds(answer))
+        )
+    return say("{summary}: the simulation explains the readings.", summary=NOTHING)
 
 
 def errors_of(answer: Answer) -> tuple[str, ...]:
@@ -101,7 +103,7 @@ def _named(findings: Sequence[Finding]) -> str:
     """The first findings; two that are one choice are told once."""
     said = tuple(dict.fromkeys(what_is_wrong(finding, findings) for finding in findings))
     more = len(said) - MOST_FINDINGS
-    return joined(" ", said[:MOST_FINDINGS]) + (say(" And {more} more.", more=more) if more > 0 else "")
+    return joined(" ", said[:MOST_FINDINGS]) + (say(" And {number} more.", number=more) if more > 0 else "")
 
 
 CANNOT = "The session cannot be diagnosed: {fault}"
@@ -132,7 +134,7 @@ def headline(answer: Answer) -> str:
         return headline_of(answer.structures)
     if answer.calibration.fit.is_exact:
         return NOTHING_LEFT
-    return say("{nothing}{but}", nothing=NOTHING, but=but_wrong_errors(answer.noise, _kinds(answer)))
+    return say("{summary}{reservation}", summary=NOTHING, reservation=but_wrong_errors(answer.noise, _kinds(answer)))
 
 
 def what_to_do(answer: Answer) -> str:

@@ -193,17 +193,17 @@ def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) 
 def evidence_together(strength: float, over: OverSessions) -> str:
     """How strong an effect is that no session shows alone, and how likely this one has it."""
     return say(
-        "{strength} over {sessions} sessions of the unit together; that this one has it too: {here}",
+        "{strength} over {sessions} sessions of the unit together; that this one has it too: {probability}",
         strength=standard_errors(strength),
         sessions=over.sessions,
-        here=percent(over.here),
+        probability=percent(over.here),
     )
 
 
 def since_together(over: OverSessions) -> str:
     """Whether earlier sessions had it."""
     if over.since is not None:
-        return say("It began on {since}.", since=day_of(moment(over.since)))
+        return say("It began on {date}.", date=day_of(moment(over.since)))
     if over.form == "since":
         return "It began in one of the earlier sessions."
     if over.form == "varying":
@@ -224,7 +224,11 @@ def _chance(p_value: float) -> str:
     if p_value < 1e-3:
         exponent = str(floor(-log10(p_value))).translate(SUPERSCRIPT)
         return say("by chance alone in fewer than 1 of 10{exponent} sound sessions", exponent=exponent)
-    return say("by chance alone in {p_value}{hard}% of sound sessions", p_value=number(100 * p_value, 2), hard=HARD)
+    return say(
+        "by chance alone in {p_value}{nbsp}% of sound sessions",
+        p_value=number(100 * p_value, 2),
+        nbsp=HARD,
+    )
 
 
 def _parity(split: ParitySplit | None) -> str:
@@ -236,12 +240,12 @@ def _parity(split: ParitySplit | None) -> str:
         return ""
     seen, left = number(split.range_before, 0), number(split.range_after, 0)
     return say(
-        "χ² in parity space {before} → {after}, along the axes {seen} → {left}. An error of the "
+        "χ² in parity space {before} → {after}, along the axes {axes} → {remaining_axes}. An error of the "
         "stand leaves nothing in parity space; a fault of one sensor does.",
         before=before,
         after=after,
-        seen=seen,
-        left=left,
+        axes=seen,
+        remaining_axes=left,
     )
 
 
@@ -297,7 +301,9 @@ def told(structures: Sequence[Structure]) -> str:
     """What is there, in whom and where, in one line."""
     first = leading(structures)
     who = say(" in {sensors}", sensors=joined(", ", first.sensors)) if first.sensors and not first.of_record else ""
-    return say("{structures}{who}: {first}.", structures=headline_of(structures), who=who, first=where_of(first))
+    return say(
+        "{structures}{sensors}: {place}.", structures=headline_of(structures), sensors=who, place=where_of(first)
+    )
 
 
 def summed_up(structures: Sequence[Structure]) -> str:
@@ -315,7 +321,7 @@ def summed_up(structures: Sequence[Structure]) -> str:
         else ""
     )
     if any(not structure.sensors for structure in structures):
-        return say("{common}.{beside}", common=COMMON, beside=beside)
+        return say("{common}.{individual_parts}", common=COMMON, individual_parts=beside)
     return say("{unexplained} in {sensors}.", unexplained=UNEXPLAINED, sensors=joined(", ", sensors))
 
 
@@ -342,5 +348,5 @@ def course_in_words(course: Course) -> str:
         return course.order
     what = joined(" and ", course.components)
     if course.order.startswith("no order"):
-        return say("is off in {what}, anew at every row", what=what)
-    return say("is off in {what}, smoothly along {order}", what=what, order=course.order)
+        return say("is off in {quantity}, anew at every row", quantity=what)
+    return say("is off in {quantity}, smoothly along {order}", quantity=what, order=course.order)

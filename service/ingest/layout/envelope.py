@@ -1,8 +1,8 @@
 """The uploaded bytes, unchanged, and the mapping that reads them, in one file: a ZIP archive of two parts.
 
-Neither is anything without the other, so they are stored, backed up, checked and handed on as one. The archive is not
-compressed and has no dates: the same bytes under the same mapping are the same file, and another mapping of the same
-bytes is another file, as it may be another session. Whether it is another one, its content tells.
+Neither is of use without the other, so they are stored, backed up, checked and passed on as one. The archive is
+uncompressed and undated: the same bytes under the same mapping are the same file; under another mapping they are
+another file. Whether that is another session is decided by its content.
 """
 
 import json
@@ -35,7 +35,7 @@ UNREADABLE = (
     EOFError,  # its end comes too soon
     RuntimeError,  # a part that claims to be encrypted, or packed in a way that zipfile does not know
 )
-"""What zipfile ends in at an archive that anybody may have made."""
+"""Raised by zipfile for archives that are not ours."""
 
 
 def wrapped(mapping: Mapping[str, Any], content: bytes) -> bytes:
@@ -50,7 +50,7 @@ def wrapped(mapping: Mapping[str, Any], content: bytes) -> bytes:
 
 
 def is_wrapped(content: bytes | Path) -> bool:
-    """Whether a file is one of these."""
+    """Whether a file is such an archive."""
     name = MAPPING.encode()
     start = content[: NAME_AT + len(name)] if isinstance(content, bytes) else _start(content, NAME_AT + len(name))
     return start.startswith(XLSX) and start[NAME_AT:] == name
@@ -62,7 +62,7 @@ def _start(path: Path, count: int) -> bytes:
 
 
 def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
-    """The mapping and the uploaded bytes; FormatError where the archive is none of ours."""
+    """The mapping and the uploaded bytes; FormatError for a damaged archive."""
     try:
         with ZipFile(BytesIO(content)) as archive:
             parts = archive.infolist()
@@ -78,7 +78,7 @@ def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
 
 
 def mapping_of(text: bytes, filename: str) -> dict[str, Any]:
-    """The mapping that a JSON text holds, not yet checked."""
+    """The mapping in a JSON text, not yet checked."""
     if len(text) > LONGEST_MAPPING:
         raise refusal(
             filename, say("is longer than {longest_mapping} bytes", longest_mapping=LONGEST_MAPPING), "mapping"

@@ -21,7 +21,7 @@ DAMAGED = (
     LookupError,
     OverflowError,
 )
-"""What the libraries raise on files that were cut off or written over."""
+"""Raised by the libraries for truncated or overwritten files."""
 UNREADABLE = "is damaged or breaks off before its end; record or copy it again, or mend it with `mcap recover`"
 
 

@@ -173,7 +173,7 @@ def _state(report: SessionReport) -> str:
     if state is RecordState.ACCEPTED:
         return ""
     said = state_in_words(report.states[-1]) if report.states else STATES[state]
-    return say("{said}. {meaning}", said=without_stop(said), meaning=MEANINGS[state])
+    return say("{verdict}. {meaning}", verdict=without_stop(said), meaning=MEANINGS[state])
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:
@@ -282,4 +282,4 @@ def _probability(decision: Decision | None) -> str:
         return ""
     percent = 100 * decision.probability_out
     words = "more than 99" if percent > 99 else "less than 1" if percent < 1 else f"{percent:.0f}"
-    return say("{words} % chance to be out", words=words)
+    return say("{probability} % chance to be out", probability=words)

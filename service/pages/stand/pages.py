@@ -24,7 +24,7 @@ from service.models.rules import in_force
 from service.models.sections import AcceptedCause, accepted_causes
 from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, flags_in_words, fleet_row
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
 from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.store import Sessions
@@ -213,9 +213,9 @@ def _shifts(condition: StandCondition) -> tuple[ShiftRow, ...]:
 def _shift(one: StandEvidence) -> ShiftRow:
     lasts = one.until is None
     when = (
-        say("since {since}", since=day_of(one.since))
+        say("since {date}", date=day_of(one.since))
         if one.until is None
-        else say("{since} to before {until}", since=day_of(one.since), until=day_of(one.until))
+        else say("{start} to before {end}", start=day_of(one.since), end=day_of(one.until))
     )
     word, tone = ("shifted", "conditional-fail") if lasts else ("back where it was", "conditional-pass")
     return _shift_row(one, when, word, tone)
@@ -223,12 +223,12 @@ def _shift(one: StandEvidence) -> ShiftRow:
 
 def _steady(one: StandEvidence) -> ShiftRow:
     return _shift_row(
-        one, say("most evident since {since}", since=day_of(one.since)), "steady: no more than chance", "pass"
+        one, say("most evident since {date}", date=day_of(one.since)), "steady: no more than chance", "pass"
     )
 
 
 def _shift_row(one: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
-    units = say("{agreeing} of {units}", agreeing=one.agreeing, units=one.units)
+    units = say("{number} of {units}", number=one.agreeing, units=one.units)
     return ShiftRow(kind_of_shift(one.kind, one.quantity), size_of_shift(one), when, units, word, tone)
 
 
@@ -237,7 +237,7 @@ def _seating(condition: StandCondition) -> tuple[tuple[str, str], ...]:
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Said = Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)]
+Said = Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]
 Day = Annotated[date, Form()]
 
 

@@ -207,7 +207,9 @@ def type_page(report: TypeReport, now: datetime, group: GroupSection | None = No
 
 def _row(line: TypeLine) -> TypeRow:
     known = line.unit_type
-    named = [say("{what} {text}", what=what, text=text) for what, text in _limits(known) if text != NOT_JUDGED]
+    named = [
+        say("{quantity} {amount}", quantity=what, amount=text) for what, text in _limits(known) if text != NOT_JUDGED
+    ]
     return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
 
 

@@ -262,7 +262,7 @@ def set_tolerances(
             current = UnitTypes(store).set_interval(name, interval_days)
             undated = tuple(Units(store).of_type(name))
             for serial in undated:
-                WorkQueue(store, WorkKind.OUTLOOK).ask_again(serial, now)
+                WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, now)
             Audit(store).write(
                 now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days} | said
             )

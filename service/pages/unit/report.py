@@ -13,7 +13,7 @@ from service.sessions.states import RecordState, StateChange
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 from service.types.records import UnitType
-from service.units.records import NOTHING_SAID, Said, Service
+from service.units.records import NO_EVENTS, Service, UnitEvents
 from service.units.remarks_store import SaidOf
 
 
@@ -36,7 +36,7 @@ class UnitReport:
     """Sessions that are still to be judged again after a change of the records."""
     outlook: UnitOutlook | None = None
     """None before a session was judged."""
-    said: Said = NOTHING_SAID
+    said: UnitEvents = NO_EVENTS
 
 
 LATEST = 50

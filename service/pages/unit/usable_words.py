@@ -38,7 +38,7 @@ def flagged(flag: Flag) -> str:
 
 def reserved(one: Reservation) -> str:
     """What a verdict is said with, as a sentence of its own."""
-    return say("{text}: {advice}.", text=capitalised(one.text), advice=one.advice)
+    return say("{problem}: {advice}.", problem=capitalised(one.text), advice=one.advice)
 
 
 def on(sentence: str, at: datetime, **more: str) -> str:

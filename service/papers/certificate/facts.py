@@ -125,15 +125,17 @@ def _site(source: CalibrationSession) -> str:
     if site.latitude is not None:
         parts.append(
             say(
-                "latitude {latitude}°, height {height}{thin}m",
+                "latitude {latitude}°, height {height}{thin_space}m",
                 latitude=number(degrees(site.latitude), 4),
                 height=number(site.height),
-                thin=THIN,
+                thin_space=THIN,
             )
         )
     if any(s.kind == ACCELEROMETER for s in source.sensors):
         origin = "measured" if site.gravity is not None else "by formula"
-        parts.append(say("g = {size}{thin}m/s² ({origin})", size=number(gravity(site), 6), thin=THIN, origin=origin))
+        parts.append(
+            say("g = {size}{thin_space}m/s² ({origin})", size=number(gravity(site), 6), thin_space=THIN, origin=origin)
+        )
     return joined(", ", parts) or stated("")
 
 
@@ -142,7 +144,7 @@ def _temperature(source: CalibrationSession) -> str:
         return "not recorded"
     low, high = float(source.temperature.min()), float(source.temperature.max())
     return (
-        say("{low} to {high}{thin}°C", low=number(low, 1), high=number(high, 1), thin=THIN)
+        say("{low} to {high}{thin_space}°C", low=number(low, 1), high=number(high, 1), thin_space=THIN)
         if high - low > STEADY
         else f"{number(low, 1)}{THIN}°C"
     )
@@ -158,7 +160,7 @@ def _judged_against(found: CertifiedSession) -> str:
 def _state(found: CertifiedSession) -> str:
     """As found or as left, and what was last done to the unit."""
     last = (
-        say("last service: {kind}, {at}", kind=found.services[-1].kind, at=day_of(found.services[-1].at))
+        say("last service: {kind}, {date}", kind=found.services[-1].kind, date=day_of(found.services[-1].at))
         if found.services
         else ""
     )

@@ -76,9 +76,9 @@ def _whole_chain(found: CertifiedSession) -> str:
     if found.reference is None:
         return found.traceability.text
     return say(
-        "{text} Of the reference session: {text2}",
-        text=found.traceability.text,
-        text2=found.reference.traceability.text,
+        "{traceability} Of the reference session: {reference_traceability}",
+        traceability=found.traceability.text,
+        reference_traceability=found.reference.traceability.text,
     )
 
 

@@ -14,7 +14,7 @@ from service.sessions.words.conditions import CONDITIONS, Condition, condition_o
 
 HEIGHT = 120
 """Pixels: the whole fleet in one low strip above its table."""
-TITLE = say("tolerance used by the worst parameter, U included, %; the last bar holds all from {last} on", last=LAST)
+TITLE = say("tolerance used by the worst parameter, U included, %; the last bar holds all from {limit} on", limit=LAST)
 TICKS = list(range(0, LAST + 1, 2 * STEP))
 """Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
 

@@ -217,7 +217,7 @@ def _counts(fleet: FleetCondition) -> tuple[Count, ...]:
 def _since(one: DueDate, report: FleetReport) -> str:
     """``since 3 Mar 2026 (263 days)``."""
     due = one.at
-    return say("since {due} ({days})", due=day_of(due), days=counted((report.at - due).days, "day"))
+    return say("since {date} ({days})", date=day_of(due), days=counted((report.at - due).days, "day"))
 
 
 def _standing_out(store: Store) -> tuple[Notice, ...]:

@@ -116,7 +116,10 @@ def _units(kind: str, parameter: str) -> tuple[Measure, Measure]:
 
 
 def _about(report: FleetReport, sessions: int, only: int | None) -> Iterator[tuple[Cell, ...]]:
-    yield "Made", say("{at} UTC by imu-health {software}", at=f"{report.at:%Y-%m-%d %H:%M}", software=report.software)
+    yield (
+        "Made",
+        say("{time} UTC by imu-health {software}", time=f"{report.at:%Y-%m-%d %H:%M}", software=report.software),
+    )
     yield (
         "Units",
         say(
@@ -132,11 +135,15 @@ def _about(report: FleetReport, sessions: int, only: int | None) -> Iterator[tup
     else:
         yield (
             "Sheet Parameters",
-            say("The latest session of each of the {only} units at the top of the sheet Fleet.", only=only),
+            say("The latest session of each of the {number} units at the top of the sheet Fleet.", number=only),
         )
         yield (
             "Sheet Histories",
-            say("The newest sessions of these {only} units, at most {sessions} of each.", only=only, sessions=sessions),
+            say(
+                "The newest sessions of these {number} units, at most {sessions} of each.",
+                number=only,
+                sessions=sessions,
+            ),
         )
     yield "U", "Expanded uncertainty, k times the standard one."
     yield "Deviation", "From the unit's reference session, without what all sensors did together."

@@ -54,10 +54,10 @@ def require_valid(pair: KeyPair, now: datetime) -> None:
     if not since <= now <= until:
         raise ConflictError(
             say(
-                "The certificate of the laboratory's seal holds from {since} to {until}: whoever runs "
+                "The certificate of the laboratory's seal holds from {start} to {end}: whoever runs "
                 "the service must set a valid one. Nothing was signed.",
-                since=f"{since:%Y-%m-%d}",
-                until=f"{until:%Y-%m-%d}",
+                start=f"{since:%Y-%m-%d}",
+                end=f"{until:%Y-%m-%d}",
             )
         )
 

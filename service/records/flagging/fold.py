@@ -102,7 +102,7 @@ def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: R
         return
     before = condition_of(was.before, is_reference=was.was_reference).word
     now = verdict_in_words(condition_of(latest.verdict, is_reference=latest.is_reference), latest.reservations)
-    text = say("{before} → {now}. {reason}", before=before, now=now, reason=latest.reason)
+    text = say("{before} → {after}. {reason}", before=before, after=now, reason=latest.reason)
     Notices(store).add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=latest.id)
 
 
@@ -133,7 +133,7 @@ def _verdict_concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
     """The worst parameter in a sentence, the others by name."""
     severity = max(d.verdict.severity for d in failed)
     others = [d.parameter for d in failed if d is not worst_of(failed)]
-    more = say(" Also out of tolerance: {others}.", others=joined(", ", others)) if others else ""
+    more = say(" Also out of tolerance: {parameters}.", parameters=joined(", ", others)) if others else ""
     return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
 
 

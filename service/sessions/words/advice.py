@@ -15,10 +15,10 @@ def what_to_add(calibration: Calibration) -> str:
         return "more or other positions would tell it"
     up = joined(", ", (f"({', '.join(number(x, 2) for x in direction)})" for direction in add))
     return say_count(
-        "add {n} still orientation with up, in block axes, along {up}",
-        "add {n} still orientations with up, in block axes, along {up}",
+        "add {n} still orientation with up, in block axes, along {directions}",
+        "add {n} still orientations with up, in block axes, along {directions}",
         len(add),
-        up=up,
+        directions=up,
     )
 
 
@@ -28,10 +28,10 @@ def too_few(calibration: Calibration) -> str:
     if not add:
         return ""
     return say(
-        "Too few positions to give an uncertainty: add {add}, or state the standard errors of "
+        "Too few positions to give an uncertainty: add {positions}, or state the standard errors of "
         "the readings. The parameters take all that the readings tell, and nothing is left to "
         "estimate the noise by.",
-        add=add,
+        positions=add,
     )
 
 
@@ -45,8 +45,8 @@ def left_open(calibration: Calibration) -> str:
     missing = [name for name in needed if any(not s.observable[name] for s in felt)]
     who = "every accelerometer" if len(blind) == len(felt) else joined(", ", blind)
     return say(
-        "It does not show {missing} of {who}: {calibration}.",
+        "It does not show {missing} of {sensors}: {calibration}.",
         missing=joined(", ", missing),
-        who=who,
+        sensors=who,
         calibration=what_to_add(calibration),
     )

@@ -95,7 +95,7 @@ def said_with(condition: Condition, reservations: Reservations) -> Condition:
         return condition
     return replace(
         condition,
-        word=say("{word}, {with_reservation}", word=condition.word, with_reservation=WITH_RESERVATION),
+        word=say("{verdict}, {with_reservation}", verdict=condition.word, with_reservation=WITH_RESERVATION),
         reserved=True,
     )
 
@@ -117,11 +117,11 @@ MEANINGS = {
 def state_in_words(change: StateChange) -> str:
     """``Withdrawn on 21 Nov 2026 by K. Ito: wrong unit``."""
     return say(
-        "{states} on {at} by {who}: {why}",
+        "{states} on {date} by {who}: {reason}",
         states=STATES[change.state],
-        at=day_of(change.at),
+        date=day_of(change.at),
         who=change.who,
-        why=change.why,
+        reason=change.why,
     )
 
 
@@ -137,7 +137,7 @@ def but(reservations: Reservations) -> str:
         return STILL_LOOKING
     if not reservations:
         return ""
-    return say(", {but}", but=but_alone(reservations))
+    return say(", {reservations}", reservations=but_alone(reservations))
 
 
 def but_alone(reservations: Reservations) -> str:
@@ -145,12 +145,12 @@ def but_alone(reservations: Reservations) -> str:
     if reservations is None:
         return LOOKING
     told, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
-    rest = say("; and {more} more", more=more) if more > 0 else ""
+    rest = say("; and {number} more", number=more) if more > 0 else ""
     return say(
-        "but {text}{rest}: {told}",
-        text=joined("; and ", (one.text for one in told)),
+        "but {reservations}{rest}: {advice}",
+        reservations=joined("; and ", (one.text for one in told)),
         rest=rest,
-        told=joined(" and ", _advice(told)),
+        advice=joined(" and ", _advice(told)),
     )
 
 

@@ -50,21 +50,21 @@ def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> 
     if motion.quantity == AXES:
         size = measured(motion.size, coverage * motion.sigma, _turn_measure(motion))
         return say(
-            "The whole block{whose} turned by {size} about {motion} {since}: it sits "
+            "The whole block{kinds} turned by {size} about {motion} {date}: it sits "
             "otherwise, or the stand has turned. {judged}",
-            whose=whose,
+            kinds=whose,
             size=size,
             motion=_about(motion),
-            since=since,
+            date=since,
             judged=JUDGED,
         )
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
     return say(
-        "All scale factors{whose} changed together by {size} {since}: that is of {cause}. {judged}",
-        whose=whose,
+        "All scale factors{kinds} changed together by {size} {date}: that is of {cause}. {judged}",
+        kinds=whose,
         size=size,
-        since=since,
+        date=since,
         cause=cause,
         judged=JUDGED,
     )
@@ -93,11 +93,11 @@ def _alone(motion: CommonMotion) -> str:
     what = "input axis" if motion.quantity == AXES else "scale factor"
     *others, last = motion.left_out
     if not others:
-        return say(" Beside that, the {what} of {last} moved on its own.", what=what, last=last)
+        return say(" Beside that, the {kind} of {last} moved on its own.", kind=what, last=last)
     several = "input axes" if motion.quantity == AXES else "scale factors"
     return say(
-        " Beside that, the {several} of {others} and {last} moved on their own.",
-        several=several,
+        " Beside that, the {kinds} of {others} and {last} moved on their own.",
+        kinds=several,
         others=joined(", ", others),
         last=last,
     )
@@ -105,9 +105,9 @@ def _alone(motion: CommonMotion) -> str:
 
 def _undivided(motion: CommonMotion, whose: str) -> str:
     turn = (
-        say("a turn of the whole block{whose}", whose=whose)
+        say("a turn of the whole block{kinds}", kinds=whose)
         if motion.quantity == AXES
-        else say("a change of all scale factors{whose}", whose=whose)
+        else say("a change of all scale factors{kinds}", kinds=whose)
     )
     one = "a change of one sensor"
     judged = "every sensor is judged on its whole change"
@@ -118,9 +118,9 @@ def _undivided(motion: CommonMotion, whose: str) -> str:
             judged=judged,
         )
     return say(
-        "{sensors} to tell {turn} from {one}: {judged}.",
+        "{sensors} to tell {turn} from {scaling}: {judged}.",
         sensors=few(len(motion.sensors), "sensor"),
         turn=turn,
-        one=one,
+        scaling=one,
         judged=judged,
     )

@@ -43,9 +43,9 @@ def size_in_words(kind: str, name: str, value: float | None, sigma: float | None
     digits = decimals(sigma * measure.factor)
     low, high = (number(in_measure(end, measure), digits) for end in interval_of(value, sigma))
     return say(
-        "{digits}{thin}{label} ({low} to {high})",
+        "{digits}{thin_space}{label} ({low} to {high})",
         digits=number(in_measure(value, measure), digits),
-        thin=THIN,
+        thin_space=THIN,
         label=measure.label,
         low=low,
         high=high,
@@ -90,12 +90,12 @@ def _sentences(courses: Sequence[Points], found: Sequence[Growth]) -> tuple[str,
     sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
     return (
         say(
-            "{names} is larger in all {sensors}: {least} to {most} times what it was. Look at the "
+            "{names} is larger in all {sensors}: {least} to {greatest} times what it was. Look at the "
             "bench and at what runs beside it first.",
             names=NAMES[last.parameter],
             sensors=sensors,
             least=least,
-            most=most,
+            greatest=most,
         ),
     )
 
@@ -107,13 +107,13 @@ def _place(point: HistoryPoint) -> tuple[str, str]:
 def _sentence(last: HistoryPoint, found: Growth) -> str:
     measure = NOISE[last.kind, last.parameter]
     return say(
-        "{names} of {sensor} is {times} times what it was: {last}, before {usual}{thin}{label}.",
+        "{names} of {sensor} is {times} times what it was: {value}, before {usual_value}{thin_space}{label}.",
         names=NAMES[last.parameter],
         sensor=last.sensor,
         times=number(found.times, 2),
-        last=term_in_words(last),
-        usual=number(in_measure(found.usual, measure)),
-        thin=THIN,
+        value=term_in_words(last),
+        usual_value=number(in_measure(found.usual, measure)),
+        thin_space=THIN,
         label=measure.label,
     )
 
@@ -142,7 +142,7 @@ def but_wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> str
 
 def _clauses(noise: Sequence[NoiseScale], kinds: Collection[str]) -> list[str]:
     return [
-        say("stated standard errors{some} are {factor}", some=_whose(n, kinds), factor=_how_far_off(n.factor))
+        say("stated standard errors{subset} are {factor}", subset=_whose(n, kinds), factor=_how_far_off(n.factor))
         for n in noise
     ]
 
@@ -163,7 +163,7 @@ def _how_far_off(factor: float) -> str:
     if not isfinite(factor) or factor <= 0:
         return "wrong by more than can be told"
     side = "small" if factor > 1 else "large"
-    return say("about {factor} times too {side}", factor=_rounded(max(factor, 1 / factor)), side=side)
+    return say("about {factor} times too {size}", factor=_rounded(max(factor, 1 / factor)), size=side)
 
 
 def _rounded(times: float) -> str:

@@ -58,7 +58,7 @@ def test_every_format_gives_the_same_result(run: Run, tmp_path: Path, reference:
 
 
 def test_a_file_comes_in_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.ingest.long_log.STRETCH", 50_000)
+    monkeypatch.setattr("service.ingest.long_log.CHUNK_BYTES", 50_000)
     head, *chunks = recording(columnar(tmp_path / "flight.csv"), "flight.csv")
     assert sum(len(chunk) for chunk in chunks) == 2400
     assert len(chunks) > 1

@@ -10,7 +10,7 @@ from service.outlook.reading import outlook_of
 from service.outlook.records import Action, ParameterTrend, UnitOutlook
 from service.sessions.store import Sessions
 from service.storage import Storage
-from service.work.watch import relearn
+from service.work.watch import update_outlooks
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import MICRO_G, session_bytes
@@ -89,11 +89,11 @@ def test_a_fleet_does_not_depend_on_the_order_in_which_its_sessions_came(storage
     measure(storage, {1: 0.0, 3: 0.0, 5: 0.0})
     alone = outlook(storage)
     measure(storage, {1: 0.0, 3: 10.0, 5: 25.0}, unit="BA-018")
-    assert relearn(storage, NOW) == 1
+    assert update_outlooks(storage, NOW) == 1
     together = outlook(storage)
     assert together.learned_from == 2 * alone.learned_from
     assert together.risk != alone.risk
-    assert relearn(storage, NOW + timedelta(hours=1)) == 0
+    assert update_outlooks(storage, NOW + timedelta(hours=1)) == 0
 
 
 def test_the_temperature_of_a_session_is_kept(storage: Storage) -> None:

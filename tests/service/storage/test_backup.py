@@ -327,7 +327,7 @@ def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
         new = Settings(database_url=other.empty(), data_folder=tmp_path / str(revoke), sign_in="required")
         doors = restore(
             _backup(settings, tmp_path, str(revoke)), new.database, new.files, NOW, revoke_tokens=revoke
-        ).doors
+        ).access
         assert (doors.browsers, doors.tokens, doors.revoked) == (2, 4, revoke)
         with http_client(create_app(new, clock=lambda: NOW)) as client:
             units = "/api/v1/units"
