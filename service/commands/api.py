@@ -18,9 +18,11 @@ from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, Lis
 from service.commands.speech import said, spoken
 from service.errors import ServiceError
 from service.flags.records import FlagState
+from service.judging.use import Use, in_words
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
 """Red asks for somebody."""
+USE_COLOURS = {Use.YES: "green", Use.RESERVED: "yellow", Use.NO: "bold red", Use.PENDING: "bold red"}
 SESSION_ID = re.compile("[0-9a-f]{20}")
 """What a session's id looks like; a serial number may look like one as well."""
 
@@ -188,9 +190,11 @@ def _show_stand(kept: Answer) -> None:
 
 
 def _show_usable(answer: Answer) -> None:
-    word = f"[green]{said('usable')}[/]" if answer["usable"] else f"[bold red]{said('not usable')}[/]"
+    colour = USE_COLOURS[Use(answer["use"])]
+    word = said(in_words(Use(answer["use"]), answer["action"]))
     lines = (answer["why"], *answer["reasons"][1:], *(f"But: {line}" for line in answer["reservations"]))
-    screen().print(f"[bold]{escape(answer['unit'])}[/]  {word}", *(escape(said(line)) for line in lines), sep="\n  ")
+    head = f"[bold]{escape(answer['unit'])}[/]  [{colour}]{escape(word)}[/]"
+    screen().print(head, *(escape(said(line)) for line in lines), sep="\n  ")
 
 
 FLAG_CELLS = {

@@ -29,7 +29,9 @@ from service.storage.queries import Queries, lists
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
-Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str]
+Summaries = Select[
+    UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str, Any, *tuple[Any, ...]
+]
 
 Columns = TypeVarTuple("Columns")
 """Of whatever is asked of units."""
@@ -49,6 +51,8 @@ def _by_condition(wanted: FleetQuery) -> list[ColumnElement[bool]]:
         found.append(ConditionRow.severity == wanted.verdict.severity)
     if wanted.reserved is not None:
         found.append(said_with.is_not(None) if wanted.reserved else said_with.is_(None))
+    if wanted.reference is not None:
+        found.append(SessionRow.is_reference.is_(wanted.reference))
     if wanted.unfit:
         worst = Verdict.UNDECIDABLE.severity
         found.append((ConditionRow.severity > worst) | ((ConditionRow.severity == worst) & ~SessionRow.is_reference))

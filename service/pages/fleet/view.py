@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 
 from service.fleet.records import FleetQuery, Order
 from service.sessions.decision import Verdict
-from service.sessions.words.conditions import RESERVED
+from service.sessions.words.conditions import REFERENCE, RESERVED
 from service.web.list_view import Asked, ListView, known_order
 
 PAGE_SIZE = 50
@@ -29,6 +29,8 @@ NAMES = {
 """Fields of a view as they are called in an address."""
 PLAIN = {"page": 1, "sort": Order.CONDITION.value}
 """What an address need not say."""
+REFERENCES = {REFERENCE.key: True, Verdict.UNDECIDABLE.value: False}
+"""Conditions that tell whether the latest session is a reference."""
 FIRST: dict[str, str | int] = {"page": 1, "after": "", "before": ""}
 """What leads to the first page."""
 
@@ -79,7 +81,7 @@ class FleetView(ListView):
         return cls(
             sort=known_order(asked.sort, ORDERS, Order.CONDITION.value),
             text=asked.q.strip(),
-            condition=asked.condition if asked.condition in {*Verdict, RESERVED.key} else "",
+            condition=asked.condition if asked.condition in {*Verdict, RESERVED.key, REFERENCE.key} else "",
             due=asked.due if asked.due in DUE else "",
             unit_type=asked.type,
             stand=asked.stand,
@@ -101,6 +103,7 @@ class FleetView(ListView):
             before=self.before or None,
             limit=PAGE_SIZE + 1,
             reserved=True if self.condition == RESERVED.key else None,
+            reference=REFERENCES.get(self.condition),
             due_before=until.get(self.due),
             undated=self.due == "now",
             unit_type=self.unit_type or None,
