@@ -6,7 +6,7 @@ from urllib.parse import quote
 
 import segno
 
-from estimator.message import say
+from estimator.message import capitalised, say
 from service.fleet.condition import UnitSummary
 from service.judging.records import Usable
 from service.judging.use import Use, in_words
@@ -27,10 +27,11 @@ class Label:
     unit_type: str
     use: str
     """What must be said before anything else; empty where the unit is plainly usable, or the state was not wanted."""
+    is_usable: bool
     due: str
     """Empty where it was not wanted, or where something else must be done first."""
     why: str
-    """The rule that set the date, or what speaks against the use; empty where the label states neither."""
+    """The rule that set the date, what to do, or what speaks against the use; empty where the label states none."""
     stated: str
     """The day on which it was printed: everything else is that of this day."""
     address: str
@@ -48,6 +49,7 @@ def label_of(unit: UnitSummary, use: Usable, base: str, *, with_due: bool) -> La
         serial=unit.serial,
         unit_type=unit.unit_type,
         use=_use(use) if with_due else "",
+        is_usable=use.usable,
         due=_due(use) if with_due else "",
         why=_why(use) if with_due else "",
         stated=day_of(use.as_of),
@@ -58,7 +60,7 @@ def label_of(unit: UnitSummary, use: Usable, base: str, *, with_due: bool) -> La
 
 
 def _use(use: Usable) -> str:
-    return "" if use.use is Use.YES else in_words(use.use, use.action if use.usable else "")
+    return "" if use.use is Use.YES else in_words(use.use, "")
 
 
 def _due(use: Usable) -> str:
@@ -70,7 +72,11 @@ def _due(use: Usable) -> str:
 
 
 def _why(use: Usable) -> str:
-    return use.due_reason if use.due is not None else use.why
+    if use.use is Use.RESERVED and use.action:
+        return say("{action}.", action=capitalised(use.action))
+    if use.usable:
+        return use.due_reason
+    return "" if use.due is not None and len(use.reasons) == 1 else use.why
 
 
 def _held(day: datetime) -> str:

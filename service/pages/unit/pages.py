@@ -178,7 +178,8 @@ class UnitPage:
     use: Use
     said: str
     """What it may be used for, and what to do."""
-    why: str
+    sentence: str
+    """Why."""
     reason: str
     """Why the verdict is what it is; empty where the answer says it already."""
     failed: str
@@ -238,7 +239,7 @@ def unit_page(
         report=report,
         use=usable.use,
         said=in_words(usable.use, usable.action),
-        why=usable.why,
+        sentence=usable.why,
         reason=_reason(report.summary.reason or condition.meaning, usable),
         failed=unit_failed(report.summary.failed) if report.summary.failed else "",
         condition=condition,

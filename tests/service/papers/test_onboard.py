@@ -27,8 +27,8 @@ def block(tilt: float) -> Document:
     return accelerometer_block(sensors=true_sensors(3, bias=0.05, tilt=tilt), positions=24)
 
 
-def text(client: httpx.Client, id: str, system: str) -> str:
-    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": system})
+def text(client: httpx.Client, id: str, system: str, **more: str) -> str:
+    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": system, **more})
     assert answer.status_code == 200, answer.text
     return answer.text
 
@@ -92,12 +92,12 @@ def test_a_flight_controller_s_file_says_what_it_leaves(client: httpx.Client) ->
 
 def test_gyros_go_with_the_accelerometers(client: httpx.Client) -> None:
     id = send(client, mixed_block())
-    imu = yaml.safe_load(text(client, id, "kalibr"))["imu0"]
+    imu = yaml.safe_load(text(client, id, "kalibr", force="true"))["imu0"]
     rotation = np.array(imu["gyroscopes"]["C_gyro_i"])
     assert rotation @ rotation.T == pytest.approx(np.eye(3), abs=1e-12)
-    assert "CAL_GYRO0_XOFF" in text(client, id, "px4")
-    assert "INS_GYROFFS_Z" in text(client, id, "ardupilot")
-    assert "angular_velocity" in text(client, id, "ros2")
+    assert "CAL_GYRO0_XOFF" in text(client, id, "px4", force="true")
+    assert "INS_GYROFFS_Z" in text(client, id, "ardupilot", force="true")
+    assert "angular_velocity" in text(client, id, "ros2", force="true")
 
 
 def test_every_file_says_whose_it_is(client: httpx.Client) -> None:
@@ -119,9 +119,9 @@ def test_exchanged_channels_are_refused_where_only_a_scale_can_be_given(client: 
     first, second, *_ = document["sensors"]
     first["nominal_axis"], second["nominal_axis"] = second["nominal_axis"], first["nominal_axis"]
     id = send(client, document)
-    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": "px4"})
+    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": "px4", "force": "true"})
     assert (answer.status_code, "exchanged" in answer.json()["detail"]) == (409, True)
-    assert "SM" in text(client, id, "ros2")
+    assert "SM" in text(client, id, "ros2", force="true")
 
 
 def test_an_unfit_unit_has_none_unless_it_is_forced_and_then_the_file_says_so(client: httpx.Client) -> None:
