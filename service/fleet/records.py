@@ -1,14 +1,10 @@
-"""Which units are wanted and in which order, what the fleet page announces, and whether a unit may be used."""
+"""Which units are wanted and in which order, and what the fleet page announces."""
 
 from dataclasses import dataclass
-from datetime import date, datetime
+from datetime import datetime
 from enum import StrEnum
 
-from pydantic import computed_field
-
-from estimator.message import joined
 from service.groups.records import FoundTogether
-from service.kit.answer import answer
 from service.kit.listing import ListQuery
 from service.sessions.decision import Verdict
 from service.sessions.states import Questioned
@@ -46,6 +42,8 @@ class FleetQuery(ListQuery):
     lot: str | None = None
     flagged: bool = False
     """Only units with an open flag."""
+    reference: bool | None = None
+    """Whether the latest session is a reference; None where either will do."""
     unfit: bool = False
     """Only units that somebody must act on: unfit, probably unfit, or undecided."""
     order: Order = Order.CONDITION
@@ -102,40 +100,3 @@ class Announced:
     """What sessions show together: of stands before types before units."""
     groups: int
     """How many groups show something, those that are not named too."""
-
-
-@answer
-@dataclass(frozen=True)
-class Usable:
-    """Whether a unit may be used now, and why."""
-
-    usable: bool
-    """In doubt it is false."""
-    why: str
-    """In one sentence."""
-    reasons: tuple[str, ...]
-    """Everything that speaks against it; empty where it may be used."""
-    reservations: tuple[str, ...]
-    """What must be known although it does not forbid the use."""
-    until: datetime | None
-    """The next calibration is due then, UTC."""
-    verdict: Verdict | None
-    """Of the session that the answer rests on."""
-    session: str | None
-    """The latest judged one; null where there is none since the last service."""
-    correction: str | None
-    """Id of the session whose correction firmware applies; null where no session calibrates every sensor."""
-    as_of: datetime
-    """When it was asked, UTC."""
-
-    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
-    @property
-    def reservation(self) -> str:
-        """The same as one text; empty where there is none."""
-        return joined(" ", self.reservations)
-
-    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
-    @property
-    def next_calibration(self) -> date | None:
-        """The day of it."""
-        return None if self.until is None else self.until.date()

@@ -39,7 +39,7 @@ from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.store import is_waiting, session_record, session_rows
-from service.sessions.tables import SessionRow
+from service.sessions.tables import DecisionRow, SessionRow
 from service.stands.tables import StandRow
 from service.storage.columns import RESOLVED
 from service.storage.queries import Queries
@@ -213,6 +213,15 @@ _Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
 Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str]
 
 
+_WORST = (
+    (DecisionRow.session_id == SessionRow.id)
+    & (DecisionRow.revision == SessionRow.revision)
+    & (DecisionRow.sensor == SessionRow.worst_sensor)
+    & (DecisionRow.parameter == SessionRow.worst_parameter)
+)
+"""What was decided of the parameter that a verdict hangs on."""
+
+
 def _summaries(*, measured: bool = True) -> Summaries:
     """Units with their latest accepted session; those without one too where they need not be measured."""
     return (
@@ -226,12 +235,14 @@ def _summaries(*, measured: bool = True) -> Summaries:
             _Outlook.ticket,
             func.coalesce(_Outlook.failed, _Derivation.failed),
             OutlookRow.reason,
+            func.abs(DecisionRow.deviation) / DecisionRow.tolerance,
         )
         .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+        .outerjoin(DecisionRow, _WORST)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
         .outerjoin(_Outlook, (_Outlook.kind == WorkKind.OUTLOOK) & (_Outlook.key == UnitRow.serial))
         .outerjoin(_Derivation, (_Derivation.kind == WorkKind.DERIVATION) & (_Derivation.key == UnitRow.serial))
@@ -289,6 +300,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         is_undated=row[6] is not None,
         failed=row[7] or "",
         due_reason=row[8] or "",
+        deviation=row[9],
     )
 
 

@@ -54,6 +54,7 @@ UNITS: Listing[FleetQuery] = Listing(
     conditions={
         "verdict": lambda verdict: ConditionRow.severity == verdict.severity,
         "reserved": _is_reserved,
+        "reference": lambda is_so: SessionRow.is_reference.is_(is_so),
         "unfit": _is_unfit,
         "flagged": lambda _: ConditionRow.flags > 0,
         "undated": lambda _: OutlookRow.due.is_(None),

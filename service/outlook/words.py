@@ -170,19 +170,10 @@ def was_due(due: datetime, reason: str) -> str:
     return say("Calibration was due on {date}. {reason}", date=day_of(due), reason=reason)
 
 
-def needed_now(verdict: Verdict | None, *, known: bool) -> str:
-    """In a table, of a unit that waits for no date."""
-    if verdict in UNFIT:
-        return "act now"
-    return "repeat" if known else "not known"
-
-
 FAR = 5.0
 """Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
 """From today on: a quarter, half a year and a year, as calibrations are put off."""
-TONES = {Action.NOW: "fail", Action.REPEAT: "conditional-fail"}
-"""Where the unit waits for no date."""
 
 
 @dataclass(frozen=True)
@@ -197,8 +188,6 @@ class Wait:
 class NextCalibration:
     """What a unit's page says of its future."""
 
-    tone: str
-    headline: str
     reason: str
     """The rule that set the date."""
     foreseen: str
@@ -213,26 +202,12 @@ class NextCalibration:
 def next_calibration(outlook: UnitOutlook, now: datetime) -> NextCalibration:
     """The words of an outlook, as of today."""
     return NextCalibration(
-        tone="fail" if outlook.overdue else TONES.get(outlook.action, "reference"),
-        headline=_headline(outlook),
         reason=outlook.reason,
         foreseen=foreseen(outlook),
         moving=_moving(outlook.trends),
         together=outlook.together,
         waits=_waits(outlook, now),
     )
-
-
-def _headline(outlook: UnitOutlook) -> str:
-    if outlook.action is Action.NOW:
-        return "Act now"
-    if outlook.action is Action.REPEAT:
-        return "Repeat the calibration"
-    if outlook.due is None:
-        return "Next calibration: not known"
-    if outlook.overdue:
-        return say("Calibration overdue since {date}", date=day_of(outlook.due))
-    return say("Next calibration: {date}", date=day_of(outlook.due))
 
 
 def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
 from service.groups.sections import MOST_FOUND, found_line, group_section
 from service.ingest import is_own_layout
+from service.judging.usable_reading import usable_of
 from service.kit.arriving_files import where
 from service.kit.limits import in_force
 from service.models.rules import model_as_of
@@ -69,12 +70,12 @@ def show_fleet(
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
     announced = Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
-    condition = Fleet(store).condition_at(now)
+    condition, units = Fleet(store).condition_at(now), Fleet(store).units(view.query(now))
     shown = fleet_page(
         condition,
-        Fleet(store).units(view.query(now)),
+        units,
+        usable_of(store, units, now),
         view,
-        now,
         overdue=condition.overdue,
         together=found_line(announced),
         unlike=fleet_standouts(store, MOST_STANDOUTS),
@@ -105,7 +106,7 @@ def show_unit(
         unit_page(
             report,
             recent_history(store, serial, HISTORY_LIMIT, raw=raw, noise=True),
-            now=now,
+            usable_of(store, (report.summary,), now)[serial],
             raw=raw,
             flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,

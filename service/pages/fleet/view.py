@@ -7,11 +7,13 @@ from pydantic import Field
 
 from service.fleet.records import FleetQuery, Order
 from service.sessions.decision import Verdict
-from service.sessions.words.conditions import RESERVED
+from service.sessions.words.conditions import REFERENCE, RESERVED
 from service.web.list_view import Asked, ListView, Words, one_of
 
 DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Act now or repeat"}
 """Choices of the next calibration's date, in words."""
+REFERENCES = {REFERENCE.key: True, Verdict.UNDECIDABLE.value: False}
+"""Conditions that tell whether the latest session is a reference."""
 
 
 class FleetView(ListView):
@@ -26,7 +28,7 @@ class FleetView(ListView):
         Order.LAST.value: "by last session",
     }
     q: Words = ""
-    condition: Annotated[Asked, one_of({*Verdict, RESERVED.key})] = ""
+    condition: Annotated[Asked, one_of({*Verdict, RESERVED.key, REFERENCE.key})] = ""
     due: Annotated[Asked, one_of(DUE)] = ""
     type: Asked = ""
     stand: Asked = ""
@@ -42,6 +44,7 @@ class FleetView(ListView):
             verdict=Verdict(self.condition) if self.condition in set(Verdict) else None,
             text=self.q or None,
             reserved=True if self.condition == RESERVED.key else None,
+            reference=REFERENCES.get(self.condition),
             due_before=until.get(self.due),
             undated=self.due == "now",
             unit_type=self.type or None,

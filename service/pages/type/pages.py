@@ -20,6 +20,8 @@ from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.groups.records import Level
 from service.groups.sections import GroupSection, group_section
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
 from service.kit.measures import deviation_measure, heading, in_measure, limit, number, scale_measure
 from service.models.records import ModelRevision, Scope
 from service.models.rules import in_force
@@ -76,6 +78,8 @@ class TypeReport:
     """Open ones on what its sessions show together."""
     units: tuple[UnitSummary, ...]
     """Worst first."""
+    uses: Mapping[str, Usable]
+    """What they may be used for."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
 
@@ -86,17 +90,18 @@ def every_type(store: Store) -> tuple[TypeLine, ...]:
     return tuple(TypeLine(known, uses[known.name]) for known in UnitTypes(store).page(0, MOST_TYPES))
 
 
-def type_report(store: Store, name: str) -> TypeReport:
+def type_report(store: Store, name: str, now: datetime) -> TypeReport:
     """One type; NotFoundError where there is none of that name."""
     unit_type = UnitTypes(store).get(name)
-    revisions = UnitTypes(store).revisions(name)
+    revisions, units = UnitTypes(store).revisions(name), Fleet(store).units(FleetQuery(unit_type=name, limit=MOST + 1))
     return TypeReport(
         line=TypeLine(unit_type, UnitTypes(store).uses(name)[name]),
         kinds=UnitTypes(store).kinds(name),
         revisions=revisions,
         setters=Audit(store).who_did("tolerances", name, [revision.since for revision in revisions]),
         flags=Flags(store).page(FlagQuery(unresolved=True, unit_type=name)),
-        units=Fleet(store).units(FleetQuery(unit_type=name, limit=MOST + 1)),
+        units=units,
+        uses=usable_of(store, units, now),
         models=in_force(Models(store).of_subject(Scope.UNIT_TYPE, name)),
     )
 
@@ -183,7 +188,7 @@ def types_page(types: Sequence[TypeLine]) -> TypesPage:
     return TypesPage(tuple(map(_row, types)))
 
 
-def type_page(report: TypeReport, now: datetime, group: GroupSection | None = None) -> TypePage:
+def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage:
     """The page of one type."""
     known = report.line.unit_type
     kinds = {name: report.kinds.get(name, known.block) for name in known.sensors}
@@ -195,7 +200,7 @@ def type_page(report: TypeReport, now: datetime, group: GroupSection | None = No
             _sensor(name, kinds[name], axis, scale)
             for name, axis, scale in zip(known.sensors, known.nominal_axes, known.nominal_scales, strict=True)
         ),
-        units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
+        units=tuple(fleet_row(unit, report.uses[unit.serial]) for unit in report.units[:MOST]),
         more=len(report.units) > MOST,
         flags=flag_cards(report.flags),
         causes=accepted_causes(report.models),
@@ -315,5 +320,5 @@ def preview_limits(
 def show_type(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
     """One unit type: what is allowed and who allowed it, the nominal model, its units."""
     return render(
-        request, "unit_type.html", type_page(type_report(store, name), now, group_section(store, Level.TYPE, name))
+        request, "unit_type.html", type_page(type_report(store, name, now), group_section(store, Level.TYPE, name))
     )

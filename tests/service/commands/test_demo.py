@@ -14,6 +14,7 @@ from service.demo.history import files_of
 from service.flags.store import FlagQuery, Flags
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
+from service.judging.use import Use, in_words
 from service.outlook.reading import outlook_of
 from service.sessions.decision import Verdict
 from service.sessions.records import SessionQuery
@@ -27,7 +28,9 @@ from service.units.store import Services
 from service.uploads.receive import upload
 from tests.conftest import StockOf
 from tests.databases import Databases
-from tests.service.commands.conftest import COMMAND, started
+from tests.service.commands.conftest import COMMAND, Run, started
+from tests.service.commands.said_alike import check_unit, fleet_of
+from tests.serving import serving
 from tests.stock import stores
 
 CONDITIONS = {
@@ -134,6 +137,19 @@ def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Set
         fleet = httpx.get(f"{address}/api/v1/fleet").json()
         sessions = httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]
     assert (fleet["units"], fleet["simulated"], len(sessions)) == (len(CAST), len(CAST), FILES)
+
+
+def test_every_unit_is_said_alike_everywhere(served: Settings, run: Run) -> None:
+    """On its page, in the list, on its label, in the calendar, the report, an export, over HTTP and in the terminal."""
+    with serving(served) as url, httpx.Client(base_url=url) as client:
+        for member in CAST:
+            client.get(f"/api/v1/units/{member.serial}/usable").raise_for_status()  # its dates are worked out
+        fleet = fleet_of(client)
+        for member in CAST:
+            answer = check_unit(client, member.serial, fleet)
+            ran = run("usable", member.serial, "--server", url)
+            assert ran.code == (0 if answer["usable"] else 1)
+            assert in_words(Use(answer["use"]), answer["action"]) in " ".join(ran.out.split())
 
 
 def test_a_flight_shows_what_the_stand_has_not_seen_yet(empty: Storage) -> None:
