@@ -9,6 +9,7 @@ from hashlib import sha256
 from estimator.health.pooled import Prior, learn
 from service.kit.lock_order import outside_writing
 from service.kit.measures import COVERAGE
+from service.outlook.explained import left_of
 from service.outlook.records import UnitOutlook
 from service.outlook.rules.forecast import Past, forecast
 from service.outlook.rules.histories import Histories, histories
@@ -21,7 +22,7 @@ from service.units.store import Services, Units
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
-RULE = b"5"
+RULE = b"6"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
@@ -45,7 +46,8 @@ def known_of(store: Store, serial: str) -> Histories:
     """A unit's own histories since its last break."""
     unit = Units(store).key(serial)
     since, _ = Services(store).around(unit, END_OF_TIME)
-    return histories(Outlooks(store).changes(unit, since), Outlooks(store).references(unit, since))
+    changes, references = Outlooks(store).changes(unit, since), Outlooks(store).references(unit, since)
+    return histories(changes, references, left_of(store, serial, changes, references))
 
 
 def gathered(store: Store, serial: str, known: Histories) -> Sources:
