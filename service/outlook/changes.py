@@ -14,6 +14,7 @@ from service.outlook.records import UnitOutlook
 from service.outlook.rules.forecast import Past, forecast
 from service.outlook.rules.histories import Histories, histories
 from service.outlook.store import Outlooks, unpacked
+from service.outlook.words import explained_in_words
 from service.sessions.store import Sessions
 from service.sessions.words.motion import motions_in_words
 from service.storage.queries import Store
@@ -39,7 +40,7 @@ class Sources:
     """The unit's own."""
     told: TypeHistories
     together: tuple[str, ...]
-    """What all sensors did together, in words."""
+    """What all sensors did together, and what a diagnosis explains of the latest changes, in words."""
 
 
 def known_of(store: Store, serial: str) -> Histories:
@@ -63,7 +64,11 @@ def gathered(store: Store, serial: str, known: Histories) -> Sources:
         shown=None if shown is None else Sessions(store).get(shown),
     )
     together = () if last is None else motions_in_words(Sessions(store).motions(last[0]), COVERAGE)
-    return Sources(past, known, of_type(store, unit), tuple(line.text for line in together))
+    said = tuple(line.text for line in together)
+    if past.latest is not None:
+        parts = known.explained_in(past.latest.id)
+        said += (explained_in_words(past.latest.started_at, parts),) if parts else ()
+    return Sources(past, known, of_type(store, unit), said)
 
 
 @outside_writing

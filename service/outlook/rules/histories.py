@@ -1,8 +1,9 @@
 """Step: judged changes since the last break → a history of each parameter, and what it tells of the unit's type."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
+from math import hypot
 
 import numpy as np
 
@@ -97,16 +98,6 @@ class TrackKey:
     parameter: str
 
 
-@dataclass(frozen=True, eq=False)
-class Histories:
-    """Every parameter of a unit since its last break."""
-
-    keys: tuple[TrackKey, ...]
-    tracks: tuple[Track, ...]
-    dates: tuple[tuple[datetime, ...], ...]
-    """Of every track's sessions, the reference included."""
-
-
 Place = tuple[str, str, str]
 """A session, a sensor and a parameter."""
 
@@ -124,9 +115,29 @@ class Left:
 
 
 NOTHING_EXPLAINED: dict[Place, Left] = {}
-Group = tuple[list[ChangeRow], ReferenceRow]
-Point = tuple[datetime, list[float], list[float], float | None, float | None]
-"""Date, change, its uncertainty with its degrees of freedom, temperature."""
+WORTH_TELLING = 0.1
+"""Part of the tolerance from which on it is said that a diagnosis explains it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Histories:
+    """Every parameter of a unit since its last break."""
+
+    keys: tuple[TrackKey, ...]
+    tracks: tuple[Track, ...]
+    dates: tuple[tuple[datetime, ...], ...]
+    """Of every track's sessions, the reference included."""
+    left: Mapping[Place, Left] = field(default_factory=dict)
+    """Of changes that a diagnosis explains in part."""
+
+    def explained_in(self, session: str) -> tuple[tuple[TrackKey, float], ...]:
+        """What a diagnosis explains of a session's changes, the lengths SI or relative, where it is worth telling."""
+        each = ((key, track, self.left.get((session, key.sensor, key.parameter))) for key, track in self._tracks())
+        sizes = ((key, track, hypot(*left.part)) for key, track, left in each if left is not None)
+        return tuple((key, size) for key, track, size in sizes if size >= WORTH_TELLING * track.tolerance)
+
+    def _tracks(self) -> Iterable[tuple[TrackKey, Track]]:
+        return zip(self.keys, self.tracks, strict=True)
 
 
 def histories(
@@ -136,7 +147,12 @@ def histories(
     what is left."""
     groups = _groups(changes, references)
     dated = [_track(key, rows, reference, left) for key, (rows, reference) in groups.items()]
-    return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated))
+    return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated), left)
+
+
+Group = tuple[list[ChangeRow], ReferenceRow]
+Point = tuple[datetime, list[float], list[float], float | None, float | None]
+"""Date, change, its uncertainty with its degrees of freedom, temperature."""
 
 
 def told_of_type(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
