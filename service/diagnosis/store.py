@@ -2,7 +2,7 @@
 
 import json
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from sqlalchemy import delete, select, update
@@ -84,6 +84,16 @@ class Diagnoses(Queries):
             reservations=reservations_from_list(row.session_id, row.reservations) or (),
             gain_in_words=row.gain_in_words or "",
         )
+
+    def with_findings(self, sessions: Iterable[str]) -> dict[str, Diagnosed]:
+        """What was named in those of some sessions in which anything was, in one query."""
+        query = select(DiagnosisRow.session_id, DiagnosisRow.document).where(
+            DiagnosisRow.session_id.in_(tuple(sessions)),
+            DiagnosisRow.state.in_((DiagnosisState.NAMED, DiagnosisState.UNDECIDED)),
+            DiagnosisRow.document.is_not(None),
+        )
+        read = {id: read_diagnosis(zlib.decompress(held).decode()) for id, held in self._session.execute(query) if held}
+        return {id: found for id, found in read.items() if found is not None and found.findings}
 
     def summary(self, session: str) -> DiagnosisSummary | None:
         """The diagnosis of a session in one line; None while it is still to be made."""

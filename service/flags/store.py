@@ -16,6 +16,8 @@ from service.kit.listing import ListQuery
 from service.models.records import Scope
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
+from service.sessions.tables import SessionRow
+from service.stands.tables import StandRow
 from service.storage.listing import Key, Listing
 from service.storage.queries import Queries
 from service.units.tables import UnitRow
@@ -139,6 +141,13 @@ class Flags(Queries):
         """The flags of a unit that are not resolved, without their lives."""
         found = self._session.execute(_OPEN_OF, {"unit": unit})
         return tuple(_flag(row, serial) for row, serial in found)
+
+    def open_stands_of(self, unit: int) -> tuple[str, ...]:
+        """Stands that a unit was ever measured on, and that have an open flag for what sessions found on them."""
+        on = select(StandRow.name).join(SessionRow, SessionRow.stand_id == StandRow.id)
+        own = (FlagRow.matter == Matter.STAND, FlagRow.scope == Scope.STAND, FlagRow.state != FlagState.RESOLVED)
+        query = select(FlagRow.place).where(*own, FlagRow.place.in_(on.where(SessionRow.unit_id == unit)))
+        return tuple(self._session.scalars(query.distinct()))
 
     def open_about(self, *matters: Matter) -> tuple[Flag, ...]:
         """All flags on some matters that are not resolved, without their lives."""

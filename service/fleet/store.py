@@ -210,7 +210,9 @@ FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, D
 
 _Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
 """What is still to be made of a unit."""
-Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str]
+Summaries = Select[
+    UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str, Any, *tuple[Any, ...]
+]
 
 
 _WORST = (

@@ -22,6 +22,11 @@ from service.sessions.states import RecordState
 from service.sessions.words.conditions import LOOKING, QUESTIONED, condition_of
 from service.stands.records import StandCertificate
 
+Key = tuple[str, str]
+"""Matter and place of a flag."""
+Moment = tuple[datetime, str]
+"""When a session was measured, and its id: the order of records."""
+
 
 @dataclass(frozen=True)
 class Counted:
@@ -73,6 +78,23 @@ class Told:
     concerns: tuple[Concern, ...]
     clear: tuple[tuple[str, str, str], ...]
     """Matter, place (``*`` is any) and why a flag on it could be resolved."""
+
+
+@dataclass(frozen=True)
+class ToldSession:
+    """What an accepted session tells of flags."""
+
+    at: Moment
+    verdict: Told | None
+    """By its verdict; None where that was not kept."""
+    diagnosis: Told | None
+    """By its diagnosis; None where there is none. Of a session that could not decide it clears nothing."""
+    is_old: bool = False
+    """Whether it was judged before it was kept what it tells."""
+    unit: str = ""
+    """Serial number, where several units tell."""
+    block: str = ""
+    """The same of the kind of block."""
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,11 @@
 """How a unit or a production lot drifts unlike the others of its type, in words."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import floor, log10
 
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.wording import counted
 from service.kit.measures import (
     COVERAGE,
@@ -27,6 +28,7 @@ from service.outlook.records import (
     TemperatureCoefficient,
     UnitOutlook,
 )
+from service.outlook.rules.histories import TrackKey
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession
 
@@ -78,6 +80,30 @@ def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
         before=day_of(change.before),
         moved=rate if change.kind == "drift" else _sized(trend, change.size, change.sigma),
         allowed=in_words(trend.kind, trend.parameter, trend.tolerance),
+    )
+
+
+MOST_NAMED = 6
+"""Parameters, by name, before the rest are counted."""
+
+
+def explained_in_words(at: datetime, parts: Sequence[tuple[TrackKey, float]]) -> str:
+    """What a diagnosis gives to the stand, or to what sensors share, of the changes of a session."""
+    named = [
+        say(
+            "{sensor} {parameter_names} {size}",
+            sensor=key.sensor,
+            parameter_names=PARAMETER_NAMES[key.parameter],
+            size=in_words(key.kind, key.parameter, size),
+        )
+        for key, size in parts[:MOST_NAMED]
+    ]
+    more = [say("{more} more", more=len(parts) - MOST_NAMED)] if len(parts) > MOST_NAMED else []
+    return say(
+        "By its diagnosis, the session of {day} owes these changes to the stand or to another shared cause, and they "
+        "do not count as changes of the sensors: {parts}.",
+        day=day_of(at),
+        parts=joined(", ", [*named, *more]),
     )
 
 

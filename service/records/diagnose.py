@@ -24,6 +24,7 @@ from service.kit.failure import with_last_try
 from service.kit.lock_order import outside_writing
 from service.kit.log import log
 from service.models.store import Models
+from service.outlook.explained import explains
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.changes import question_diagnosed
@@ -112,6 +113,9 @@ def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket:
         details = {"state": made.state.value, "summary": made.summary}
         Audit(store).write(way.at, "diagnosis", "diagnose", made.session, details)
         flag_diagnosis(store, made, way.at)
+        is_counted = Sessions(store).get(made.session).state is RecordState.ACCEPTED
+        if made.found is not None and is_counted and explains(made.found):
+            WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(unit, way.at)
         if made.found is not None:
             derived = question_diagnosed(store, way, made.session, made.found)
     return derived or NOTHING_LEFT

@@ -35,6 +35,7 @@ from service.pages.type.tolerances import (
     preview_page,
     preview_tolerances,
     set_tolerances,
+    share,
     tolerance_fields,
     wanted,
 )
@@ -181,6 +182,8 @@ class TypePage:
     """Of the form that sets other tolerances."""
     days: str
     """The longest interval, in the form."""
+    share: str
+    """Of the tolerance, %, from which on a change has a flag, in the form."""
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:
@@ -207,6 +210,7 @@ def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage
         group=group,
         fields=tolerance_fields(known),
         days=days(known),
+        share=share(known),
     )
 
 
@@ -295,11 +299,11 @@ def set_limits(
     storage: StorageOf,
     now: Now,
 ) -> RedirectResponse:
-    """Other tolerances from the next session on, and another longest interval at once."""
+    """Other tolerances from the next session on, and the interval and the share at once."""
     with storage.database.reading() as store:
         asked = wanted(UnitTypes(store).get(name), form)
-    limits, days = (asked.tolerances, asked.gyro_tolerances), asked.interval_days
-    set_tolerances(storage, name, *limits, now, interval_days=days, who=by, why=why, seen=seen)
+    limits, watch = (asked.tolerances, asked.gyro_tolerances), asked.watch
+    set_tolerances(storage, name, *limits, now, watch=watch, who=by, why=why, seen=seen)
     return RedirectResponse(f"/unit-types/{quote(name)}#tolerances", SEE_OTHER)
 
 

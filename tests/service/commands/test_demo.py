@@ -1,5 +1,6 @@
 """The demonstration fleet: what it shows, that it is always the same, and that it is never mixed with real units."""
 
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -15,7 +16,10 @@ from service.flags.store import FlagQuery, Flags
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.judging.use import Use, in_words
+from service.models.records import Scope
 from service.outlook.reading import outlook_of
+from service.records.flagging.overdue_units import flag_overdue
+from service.records.flagging.stands import flag_shifted_stands
 from service.sessions.decision import Verdict
 from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
@@ -26,6 +30,7 @@ from service.storage.schema import upgrade
 from service.units.remarks_store import Notes
 from service.units.store import Services
 from service.uploads.receive import upload
+from service.work.watch import relearn
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.commands.conftest import COMMAND, Run, started
@@ -128,6 +133,25 @@ def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
     assert outlooks["BG-201"].overdue
     assert any(t.step_dates for t in outlooks["BA-102"].trends if (t.sensor, t.parameter) == ("A5", "bias"))
     assert [s.is_reference for s in sessions].count(True) == 2, "a new reference after the service"
+
+
+def test_a_unit_has_one_flag_at_most_and_none_where_it_is_fit_without_a_reservation(demonstration: Storage) -> None:
+    """Faults of stands are flags of the stands."""
+    relearn(demonstration, END)
+    flag_overdue(demonstration, END)
+    flag_shifted_stands(demonstration, END)
+    with demonstration.database.reading() as store:
+        units = Fleet(store).units(FleetQuery())
+        about = Counter(flag.scope for flag in Flags(store).page(FlagQuery(unresolved=True)))
+    flags = {unit.serial: unit.flags for unit in units}
+    fit = {unit.serial for unit in units if unit.verdict is Verdict.PASS and not unit.reservations}
+    assert max(flags.values()) == 1, flags
+    assert {serial: flags[serial] for serial in fit} == dict.fromkeys(fit, 0)
+    assert {"BA-107", "BA-109"} <= fit
+    assert {serial for serial in ("BA-105", "BA-106", "BA-111", "RT-301") if flags[serial]} == {
+        "BA-105", "BA-106", "BA-111", "RT-301",
+    }  # fmt: skip
+    assert (about[Scope.UNIT], about[Scope.STAND]) == (sum(flags.values()), 3)
 
 
 def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Settings) -> None:
