@@ -19,7 +19,7 @@ class CubicNonlinearity(SensorCause):
     scope = "sensor"
     equation = "k·a³"
     units = ("(m/s²)⁻²",)
-    sentence = "{sensors} bends with the cube of the input."
+    sentence = "{sensors} has a cubic nonlinearity."
     advice = (
         "Model the cubic term for this sensor; a rise since earlier sessions points to its suspension or electronics."
     )
@@ -34,8 +34,8 @@ class OddQuadratic(SensorCause):
     scope = "sensor"
     equation = "k·a·|a|"
     units = ("(m/s²)⁻¹",)
-    sentence = "{sensors} bends with the square of the input, oppositely for the two signs (K_oq)."
-    advice = "Model the odd quadratic term for this sensor; inputs beyond 1 g tell it from a cubic term."
+    sentence = "{sensors} has a sign-dependent quadratic nonlinearity (K_oq)."
+    advice = "Model the odd quadratic term of this sensor; inputs above 1 g separate it from a cubic term."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 1) a·|a|, (m/s²)²."""

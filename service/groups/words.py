@@ -59,11 +59,11 @@ def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained:
 
 
 def statement(finding: GroupFinding) -> str:
-    """What is wrong, and what it may be instead: ``A2 bends with the cube, unless it is odd quadratic.``"""
+    """What is wrong, and what it may be instead: ``A2 has a cubic nonlinearity; it could also be odd quadratic.``"""
     if not finding.alternatives:
         return finding.sentence
     others = joined(" or ", dict.fromkeys(map(cause_name, finding.alternatives)))
-    return say("{sentence}, unless it is {others}.", sentence=without_stop(finding.sentence), others=others)
+    return say("{sentence}; it could also be {others}.", sentence=without_stop(finding.sentence), others=others)
 
 
 def place_in_words(place: str, subject: str) -> str:
@@ -265,7 +265,7 @@ class GroupView:
 def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
     """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
     return GroupView(
-        heading=say("What the simulation gets wrong, {sessions}", sessions=uncapitalised(over(shown.sessions))),
+        heading=say("Diagnosis {sessions}", sessions=uncapitalised(over(shown.sessions))),
         summary="" if shown.findings or not shown.sessions else SHARED if shown.structures else SOUND,
         left_out=shown.left_out,
         effects=tuple(_effect(finding, accepted) for finding in shown.findings),

@@ -69,17 +69,17 @@ def unexplained(structures: Sequence[Structure], size: str) -> str:
 
 
 def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *, named: bool = False) -> str:
-    """``it would be unfit with warm up (A2) in the model``; without a cause: if none of those named acted.
+    """``Unfit with warm up (A2) corrected``; without a cause: if none of those named acted.
 
     ``named``: the causes are those that the diagnosis names.
     """
-    word = uncapitalised(condition_of(verdict).word)
+    word = condition_of(verdict).word
     if named:
-        return say("it would be {word} with what was found in the model", word=word)
+        return say("{word} with these effects corrected", word=word)
     if not causes:
-        return say("it would be {word} if what acts were none of the known causes", word=word)
+        return say("{word} if the cause is none of the known ones", word=word)
     names = [cause_on(causes[0], sensors), *(cause_on(cause, ()) for cause in causes[1:])]
-    return say("it would be {word} with {names} in the model", word=word, names=joined(" and ", names))
+    return say("{word} with {names} corrected", word=word, names=joined(" and ", names))
 
 
 def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], tolerance: float) -> str:
@@ -391,7 +391,7 @@ def _limit(unseen: list[Decision], result: ParityResult) -> str:
     allowed = in_words(worst.kind, worst.parameter, worst.tolerance)
     longer = "record longer, with slower turns, or set a tolerance that can be decided"
     return say(
-        "{sensor} {parameter_names} must change by {needed} to be seen, and {allowed} are allowed: {longer}",
+        "a change of {sensor} {parameter_names} is detected from {needed} on, tolerance ±{allowed}: {longer}",
         sensor=worst.sensor,
         parameter_names=PARAMETER_NAMES[worst.parameter],
         needed=needed,

@@ -53,11 +53,10 @@ def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
 
 
 CHANGED = {
-    "jump": "{what} has jumped between {after} and {before} by {moved}; {allowed} are allowed.",
-    "drift": "{what} has been drifting since {after} by {moved}; {allowed} are allowed.",
-    "aging": "{what} is aging since {after}, by {moved} in the first year and slower from then on; "
-    "{allowed} are allowed.",
-    "walk": "{what} has moved since {after}, at no steady rate; by {moved} so far; {allowed} are allowed.",
+    "jump": "{what} jumped by {moved} between {after} and {before}; tolerance ±{allowed}.",
+    "drift": "{what} has drifted at {moved} since {after}; tolerance ±{allowed}.",
+    "aging": "{what} has aged since {after}: {moved} in the first year, then more slowly; tolerance ±{allowed}.",
+    "walk": "{what} has changed by {moved} since {after}, at no steady rate; tolerance ±{allowed}.",
 }
 
 
@@ -69,7 +68,7 @@ def changes_of(trend: ParameterTrend) -> tuple[str, ...]:
 
 
 def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
-    """``A3 bias has jumped between 2 Mar 2026 and 4 May 2026 by +40 ± 3 µg; 50 µg are allowed.``"""
+    """``A3 bias jumped by +40 ± 3 µg between 2 Mar 2026 and 4 May 2026; tolerance ±50 µg.``"""
     rate = _sized(trend, change.size, change.sigma, "{rate} a year")
     return say(
         CHANGED[change.kind],
@@ -173,7 +172,7 @@ def was_due(due: datetime, reason: str) -> str:
 def needed_now(verdict: Verdict | None, *, known: bool) -> str:
     """In a table, of a unit that waits for no date."""
     if verdict in UNFIT:
-        return "act now"
+        return "Do not use: recalibrate or repair"
     return "repeat" if known else "not known"
 
 
@@ -225,7 +224,7 @@ def next_calibration(outlook: UnitOutlook, now: datetime) -> NextCalibration:
 
 def _headline(outlook: UnitOutlook) -> str:
     if outlook.action is Action.NOW:
-        return "Act now"
+        return "Do not use: recalibrate or repair"
     if outlook.action is Action.REPEAT:
         return "Repeat the calibration"
     if outlook.due is None:
@@ -251,7 +250,7 @@ def _wandered(trend: ParameterTrend) -> str:
     moved = signed(trend.level, COVERAGE * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return say(
-        "{trend} has moved by {moved}, at no steady rate; {allowed} are allowed.",
+        "{trend} has changed by {moved}, at no steady rate; tolerance ±{allowed}.",
         trend=place_of(trend),
         moved=moved,
         allowed=allowed,

@@ -60,18 +60,14 @@ def kind_of_shift(kind: str, quantity: str) -> str:
 
 
 def scatter_of(own: StandSeating) -> str:
-    """``±0.4 arcsec about each axis``: from one mounting to the next, ± U."""
-    parameter, of = ("axis", "about each axis") if own.quantity == AXES else ("scale", "of all scale factors")
+    """``±0.4 arcsec per axis``, ± U."""
+    parameter, of = ("axis", "per axis") if own.quantity == AXES else ("scale", "of all scale factors")
     return say("±{size} {of}", size=in_words(own.kind, parameter, COVERAGE * own.tau), of=of)
 
 
 def _seating(seating: Sequence[StandSeating]) -> Sequence[str]:
     """How blocks are seated, ± U."""
-    return [
-        say("From one mounting to the next a block sits within {own}.", own=scatter_of(own))
-        for own in seating
-        if own.quantity == AXES
-    ][:1]
+    return [say("Mounting repeatability: {own}.", own=scatter_of(own)) for own in seating if own.quantity == AXES][:1]
 
 
 NONE = "No certificate on record: sessions on this stand state no traceability."

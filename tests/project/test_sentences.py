@@ -9,7 +9,7 @@ SENTENCES = {
     "Something is there that no known cause explains": "service.diagnosis.words.findings",
     "Something common to all sensors": "service.diagnosis.words.findings",
     "stated standard errors": "service.sessions.words.noise",
-    "one that is not in the catalogue": "service.diagnosis.words.causes",
+    "a cause outside the catalogue": "service.diagnosis.words.causes",
     "by chance alone in": "service.diagnosis.words.findings",
     "a sound model would give this much": "service.sessions.words.readings",
     "cannot be seen without motion": "service.judging.words",

@@ -21,6 +21,9 @@ PERIOD = 120.0
 FINE = 12
 """β steps a turn that a proposal makes at least: the 30° steps of a usual programme."""
 
+REPEATS = 4
+"""Times that anybody would repeat a session: what needs more, the stand cannot separate."""
+
 Proposal = Callable[[Baseline], Iterator[tuple[str, Baseline]]]
 
 
@@ -151,11 +154,7 @@ def repeated(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     Longer readings would not do: a zero that differs from position to position stays what it is while it is read.
     """
     planned = planned_on_stand(schedule(baseline.session, *rows_of(baseline.session)), baseline)
-    for times in (4, 16, 64):
-        yield (
-            say("repeat the session {times} times over", times=times),
-            replace(planned, variance=planned.variance / times),
-        )
+    yield say("repeat the session {times} times", times=REPEATS), replace(planned, variance=planned.variance / REPEATS)
 
 
 PROPOSALS: tuple[Proposal, ...] = (

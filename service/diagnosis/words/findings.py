@@ -75,7 +75,7 @@ def _apart(separation: Separation | None) -> tuple[str, str]:
         return "", ""
     expected = separation.then or 0.0
     if not separation.measurement or expected < DISTINGUISHED:
-        return _sigmas(separation.now), "no further session of this kind would; look at the hardware"
+        return _sigmas(separation.now), "this stand or programme cannot separate them; inspect the hardware"
     return _sigmas(separation.now), say(
         "{measurement} (expected {expected} apart)", measurement=separation.measurement, expected=_sigmas(expected)
     )

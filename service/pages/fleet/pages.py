@@ -56,7 +56,7 @@ class FleetRow:
     due: datetime | None
     """Of the next calibration."""
     next: str
-    """What is needed where no date is set: ``act now``."""
+    """What is needed where no date is set: ``repeat``."""
     overdue: bool
 
 

@@ -13,7 +13,7 @@ from service.web.list_view import Asked, ListView, known_order
 
 PAGE_SIZE = 50
 """Units on a page: two screens."""
-DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Act now or repeat"}
+DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Do not use, or repeat"}
 """Choices of the next calibration's date, in words."""
 ORDERS: dict[str, str] = {
     Order.CONDITION.value: "by condition, least margin to tolerance first",

@@ -50,8 +50,8 @@ def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> 
     if motion.quantity == AXES:
         size = measured(motion.size, coverage * motion.sigma, _turn_measure(motion))
         return say(
-            "The whole block{whose} turned by {size} about {motion} {since}: it sits "
-            "otherwise, or the stand has turned. {judged}",
+            "The whole block{whose} turned by {size} about {motion} {since}: it was mounted differently, or the "
+            "stand has turned. {judged}",
             whose=whose,
             size=size,
             motion=_about(motion),
@@ -61,7 +61,7 @@ def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> 
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
     return say(
-        "All scale factors{whose} changed together by {size} {since}: that is of {cause}. {judged}",
+        "All scale factors{whose} changed together by {size} {since}; cause: {cause}. {judged}",
         whose=whose,
         size=size,
         since=since,

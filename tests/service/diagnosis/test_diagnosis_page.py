@@ -1,4 +1,4 @@
-"""The page "What the simulation gets wrong" over HTTP: what it says first, and the forms that it holds."""
+"""The page of a diagnosis over HTTP: what it says first, and the forms that it holds."""
 
 import json
 import zlib

@@ -43,7 +43,7 @@ def test_a_cause_that_an_unknown_one_may_be_raises_its_flag_with_the_doubt(holdi
     assert ("cause", "G2", "raised") in flagged(client, id)
     said = [flag["summary"] for flag in client.get("/api/v1/flags").json()["flags"] if flag["place"] == "G2"]
     assert said == [
-        "Two causes at once, or one that is not in the catalogue (G2): cubic nonlinearity and scale asymmetry."
+        "Two causes at once, or a cause outside the catalogue (G2): cubic nonlinearity and scale asymmetry."
     ]
 
 

@@ -98,7 +98,7 @@ def test_the_fleet_says_what_was_found_while_it_is_of_the_sessions_of_now(flagge
     assert line is not None
     ((home, whose, what),) = line.found
     assert (home, whose, line.more) == ("/units/BA-017#together", "unit BA-017", 0)
-    assert what.startswith("A2 bends with the cube")
+    assert what.startswith("A2 has a cubic nonlinearity")
     upload(flagged, GROUP[4], "a.json", NOW)
     with flagged.database.reading() as store:
         assert found_line(Announcements(store).all(9, 4)) is None

@@ -32,12 +32,10 @@ def twelve(holding: Holding) -> httpx.Client:
 @one_engine
 def test_the_page_says_what_they_show_how_large_and_in_which_session(twelve: httpx.Client) -> None:
     page = words(twelve)
-    assert "What the simulation gets wrong, over 12 sessions" in page
+    assert "Diagnosis over 12 sessions" in page
     assert re.search(r"\d\.\d ± \d\.\d.µg/g³ in all of these sessions; \d\.\d standard errors", page)
     assert re.search(r"Session Unit Amplitude 1 Dec 2023 BA-017 \d\.\d ± \d", page)
-    assert (
-        "A2 bends with the cube of the input, unless it is odd quadratic or one that is not in the catalogue." in page
-    )
+    assert "A2 has a cubic nonlinearity; it could also be odd quadratic or a cause outside the catalogue." in page
     assert re.search(r"What else it could be .* odd quadratic .* %", page)
 
 

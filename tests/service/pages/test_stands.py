@@ -44,7 +44,7 @@ def test_a_shift_is_told_with_its_size_and_units_and_what_is_steady_too() -> Non
     )  # fmt: skip
     assert shift.size == "12.00\u00a0±\u00a00.40\u202farcsec"
     assert (steady.what, steady.tone) == ("Change of every scale factor", "pass")
-    assert page.seating == (("Turn of every block", "±0.20 arcsec about each axis"),)
+    assert page.seating == (("Turn of every block", "±0.20 arcsec per axis"),)
 
 
 def test_a_shift_that_was_taken_back_says_until_when() -> None:

@@ -20,7 +20,7 @@ def said(motion: CommonMotion) -> list[str]:
 def test_a_turn_names_size_axis_and_cause() -> None:
     assert said(TURNED) == [
         "The whole block turned by 12.0\u00a0±\u00a01.0\u202farcsec about −Y since the reference: "
-        "it sits otherwise, or the stand has turned. The sensors are judged without it."
+        "it was mounted differently, or the stand has turned. The sensors are judged without it."
     ]
 
 
