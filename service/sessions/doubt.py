@@ -64,10 +64,10 @@ class Doubt:
         remedy = (
             ""
             if self.correction is None
-            else say(" A file with the {text} would put it right.", text=self.correction.text)
+            else say(" A file with the {text} would correct it.", text=self.correction.text)
         )
         if self.stands_for is not None:
-            remedy = " Together they would count twice: say which one counts."
+            remedy = " Together they would count twice: choose the one that counts."
         return say("{what}: {slip}.{remedy}", what=self.what, slip=self.slip, remedy=remedy)
 
 

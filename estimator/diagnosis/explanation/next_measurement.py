@@ -103,7 +103,7 @@ def mixed_order(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     beta, flipped = rows_of(baseline.session)
     order = np.concatenate([np.argsort((np.arange(len(beta)) * ratio) % 1.0) for ratio in (0.618034, 0.4142136)])
     planned = schedule(baseline.session, beta[order], flipped[order])
-    yield "visit the same positions twice in a scattered order", planned_on_stand(planned, baseline)
+    yield "measure the same positions twice in random order", planned_on_stand(planned, baseline)
 
 
 def more_positions(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
@@ -127,7 +127,7 @@ def temperature_cycle(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     cycle = mean + span / 2 * np.sin(2 * np.pi * 2.7 * np.arange(rows) / rows)
     planned = replace(schedule(session, beta, flipped), temperature=cycle, time=PERIOD * np.arange(rows))
     words = say(
-        "repeat the session while the temperature is cycled by {span} °C, almost three times", span=f"{span:.0f}"
+        "repeat the session while the temperature goes through almost three cycles of {span} °C", span=f"{span:.0f}"
     )
     yield words, planned_on_stand(planned, baseline)
 

@@ -93,7 +93,7 @@ FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
-NEW_REFERENCE = "The session of {day} is the reference that {sensor} is judged against now."
+NEW_REFERENCE = "{sensor} is now judged against the session of {day}."
 
 
 def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: Refreshed) -> None:
@@ -202,7 +202,7 @@ MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED, Matter.STAND)
 """That sessions tell of; the clock and the other units tell of the rest."""
 ANY = "*"
 """Every place."""
-NOT_SHOWN = "No accepted session shows it any more."
+NOT_SHOWN = "No accepted session shows it."
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ def overdue_by(outlook: UnitOutlook | None, now: datetime) -> Concern | None:
 
 MATTERS = {"jump": Matter.JUMP, "drift": Matter.DRIFT, "aging": Matter.DRIFT, "walk": Matter.DRIFT}
 """By kind of change; what moves at no steady rate moves on."""
-NO_LONGER_DRIFTS = "The history of the unit's accepted sessions does not show it any more."
+NO_LONGER_DRIFTS = "The unit's accepted sessions no longer show it."
 TOLD = "The sensor is out of tolerance."
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 """Verdicts that have a flag of their own."""
@@ -191,7 +191,7 @@ def _by_person(store: Store, flag: Flag) -> bool:
 
 EVERY = 10_000
 """Flags of one unit: more than any unit has."""
-NO_LONGER_SHIFTED = "The units measured on {stand} no longer show that it has shifted."
+NO_LONGER_SHIFTED = "The units measured on {stand} no longer show a shift."
 
 
 def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly) -> None:

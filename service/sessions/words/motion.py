@@ -10,7 +10,7 @@ from service.kit.measures import COARSE_MEASURES, DEGREE, Measure, deviation_mea
 
 SIGNIFICANT = 0.01
 """Chance of saying so of a block that did not move."""
-JUDGED = "The sensors are judged without it."
+JUDGED = "The sensors are judged without this effect."
 NEARLY = 0.94
 """Cosine of 20°: a turn this near to an axis of the block is named after it."""
 
@@ -93,10 +93,10 @@ def _alone(motion: CommonMotion) -> str:
     what = "input axis" if motion.quantity == AXES else "scale factor"
     *others, last = motion.left_out
     if not others:
-        return say(" Beside that, the {what} of {last} moved on its own.", what=what, last=last)
+        return say(" In addition, the {what} of {last} changed.", what=what, last=last)
     several = "input axes" if motion.quantity == AXES else "scale factors"
     return say(
-        " Beside that, the {several} of {others} and {last} moved on their own.",
+        " In addition, the {several} of {others} and {last} changed.",
         several=several,
         others=joined(", ", others),
         last=last,
@@ -110,15 +110,15 @@ def _undivided(motion: CommonMotion, whose: str) -> str:
         else say("a change of all scale factors{whose}", whose=whose)
     )
     one = "a change of one sensor"
-    judged = "every sensor is judged on its whole change"
+    judged = "every sensor is judged by its whole change"
     if motion.state == UNCLEAR:
         return say(
-            "The sensors do not agree on {turn}, and it cannot be told which of them moved: {judged}.",
+            "The sensors do not agree on {turn}, and which of them changed is not known: {judged}.",
             turn=turn,
             judged=judged,
         )
     return say(
-        "{sensors} to tell {turn} from {one}: {judged}.",
+        "{sensors} to separate {turn} from {one}: {judged}.",
         sensors=few(len(motion.sensors), "sensor"),
         turn=turn,
         one=one,

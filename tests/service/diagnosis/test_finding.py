@@ -106,9 +106,9 @@ def test_a_size_that_is_not_known_is_left_out() -> None:
 @pytest.mark.parametrize(
     ("p_value", "chance"),
     [
-        (0.02, "by chance alone in 2.00\u00a0% of sound sessions"),
-        (2.5e-5, "by chance alone in fewer than 1 of 10⁴ sound sessions"),
-        (1e-30, "by chance alone in fewer than 1 of 10¹² sound sessions"),
+        (0.02, "by chance in 2.00\u00a0% of sound sessions"),
+        (2.5e-5, "by chance in fewer than 1 of 10⁴ sound sessions"),
+        (1e-30, "by chance in fewer than 1 of 10¹² sound sessions"),
         (nan, "no probability is known"),
     ],
 )
@@ -124,7 +124,7 @@ def test_equal_causes_come_with_what_would_distinguish_them() -> None:
 
 def test_a_measurement_that_would_not_help_is_not_proposed() -> None:
     near = replace(JUMP.separations[0], then=2.0)
-    assert finding_view(replace(JUMP, separations=(near,))).choices[1].measurement.endswith("look at the hardware")
+    assert finding_view(replace(JUMP, separations=(near,))).choices[1].measurement.endswith("inspect the hardware")
 
 
 def test_redundancy_says_stand_or_sensor() -> None:

@@ -51,7 +51,7 @@ def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding)
     content = json.dumps(swaying_stand()).encode()
     (flag,) = holding(content, diagnosed=True).get("/api/v1/flags").json()["flags"]
     assert (flag["matter"], flag["place"]) == ("unexplained", "")
-    assert flag["summary"].startswith("Something common to all sensors, of the stand or fixture")
+    assert flag["summary"].startswith("An effect common to all sensors, of the stand or fixture")
 
 
 def test_a_cause_that_nobody_knows_cannot_be_accepted(holding: Holding) -> None:

@@ -61,7 +61,7 @@ def test_an_effect_is_flagged_once(flagged: Storage) -> None:
     upload(flagged, GROUP[4], "a.json", NOW)
     (flag,) = refreshed(flagged)
     assert (flag.unit, flag.place) == ("BA-017", "unit BA-017: cubic nonlinearity (A2)")
-    assert flag.summary.startswith("The sessions of unit BA-017 show together: A2 bends")
+    assert flag.summary.startswith("The sessions of unit BA-017 show together: A2 has a cubic")
     assert flag.session == session_id(GROUP[3])
 
 

@@ -45,7 +45,9 @@ def test_it_is_drawn_and_the_same_stands_in_tables(twelve: httpx.Client) -> None
     assert re.search(r"In each session .* \d\.\d ± \d\.\d.µg/g³ together", page)
     assert re.findall(r"(A2 with(?:out)? it) \d+ of \d+ outside ±2σ", page) == ["A2 without it", "A2 with it"]
     assert "input, of the applied vector without it with it" in page
-    assert re.search(r"Sizes fixed on the first 8 sessions, tried on the 4 that came later: .* is \d+\.\d more", page)
+    assert re.search(
+        r"Sizes estimated from the first 8 sessions, tested on the 4 later ones: .*, log score \d+\.\d more", page
+    )
 
 
 @one_engine
@@ -83,5 +85,5 @@ def test_a_learned_term_is_accepted_from_its_card_and_its_equation_stands_on_its
     form = {"level": "unit", "name": "BA-017", "cause": "empirical-term", "sensors": ["A2"], "by": "K. Ito"}
     made = client.post("/groups/accept", data=form, headers={"Accept": "text/html"})
     page = text_of(client, made.headers["Location"])
-    assert re.search(r"Empirical term \(A2\), unit BA-017 A2 reads more by \(.* sin 3β", page)
+    assert re.search(r"Empirical term \(A2\), unit BA-017 A2 reads high by \(.* sin 3β", page)
     assert "In the model of unit BA-017: revision 1" in words(client)
