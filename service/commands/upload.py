@@ -155,9 +155,7 @@ Mapping = Annotated[
     Path | None, typer.Option(help="JSON file that says how tables of your own layout are read: imu-mapping/1.")
 ]
 Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
-Check = Annotated[
-    bool, typer.Option("--check", help="Only a check: judged and kept, and the next calibration is due as before.")
-]
+Check = Annotated[bool, typer.Option("--check", help="Check only: judged and stored, does not change the due date.")]
 
 
 def upload_files(

@@ -1,4 +1,4 @@
-"""The page of a diagnosis, *What the simulation gets wrong*, and its forms."""
+"""The page of a diagnosis and its forms."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

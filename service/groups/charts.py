@@ -118,7 +118,7 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
     start = _iso(moment(since)) if since else span[0]
     reach = _reach(finding, element)
     beyond = sum(value > reach for value, _ in _spreads(finding, element))
-    left = say("; {beyond} too unsure to be drawn are in the table", beyond=beyond) if beyond else ""
+    left = say("; {beyond} too uncertain to plot are in the table", beyond=beyond) if beyond else ""
     return Panel(
         title=element.name,
         description=say(

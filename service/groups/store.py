@@ -216,7 +216,7 @@ def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:
 
 MOST_ATTEMPTS = 3
 """Tries at which the program may fail at one session's, or its process die: two could be a machine in need."""
-GIVEN_UP = "The program failed at it: a fault of the program, not of the session. The next version tries again."
+GIVEN_UP = "A fault of the program, not of the session. The next version tries again."
 
 
 class Statistics(Queries):

@@ -17,7 +17,7 @@ RECEIPT_EXAMPLE: JsonDict = {
     "id": "3f9a0c5be1d24786aa10",
     "unit": "BA-017",
     "verdict": "fail",
-    "reason": "A3 bias moved +62 µg (U 8.1 µg) beyond the tolerance of 50 µg.",
+    "reason": "A3 bias changed by +62 µg (U 8.1 µg), beyond the tolerance of ±50 µg.",
     "created": True,
     "is_reference": False,
     "reservations": [],

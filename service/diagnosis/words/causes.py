@@ -15,7 +15,7 @@ EVERY_SENSOR = "every sensor of its kind"
 """Where what a group shows acts on all of them."""
 LEARNED = "empirical term"
 """What a term is called that was learned, in place of a cause."""
-ONE_NOT_KNOWN = "one that is not in the catalogue"
+ONE_NOT_KNOWN = "a cause outside the catalogue"
 COMPARABLE = 3.0
 """Times that one share of probability may be another's and both still pass for equally likely: evidence below that is
 not worth a mention (Jeffreys)."""

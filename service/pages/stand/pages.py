@@ -197,7 +197,7 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
 
 def _row(line: StandLine, now: datetime) -> StandRow:
     latest = held(line.certificates, now.date())
-    until = "none on record" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
+    until = "none recorded" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
     return StandRow(line.use, _word(line, now), condition_in_words(line.condition), until, flags_in_words(line.flags))
 
 
@@ -223,13 +223,13 @@ def _shift(one: StandEvidence) -> ShiftRow:
         if one.until is None
         else say("{start} to before {end}", start=day_of(one.since), end=day_of(one.until))
     )
-    word, tone = ("shifted", "conditional-fail") if lasts else ("back where it was", "conditional-pass")
+    word, tone = ("shifted", "conditional-fail") if lasts else ("shift has ended", "conditional-pass")
     return _shift_row(one, when, word, tone)
 
 
 def _steady(one: StandEvidence) -> ShiftRow:
     return _shift_row(
-        one, say("most evident since {date}", date=day_of(one.since)), "steady: no more than chance", "pass"
+        one, say("most evident since {since}", since=day_of(one.since)), "stable: no significant change", "pass"
     )
 
 

@@ -67,7 +67,7 @@ def shown(spoilt: Storage, settings: Settings) -> Iterator[httpx.Client]:
 def test_the_verdict_says_that_it_was_not_checked(shown: httpx.Client) -> None:
     shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
     said = shown.get(f"/api/v1/sessions/{ID}").json()["said"]
-    assert said.endswith(", but it was not checked for causes: see what its diagnosis says")
+    assert said.endswith(", but causes were not checked: see its diagnosis")
 
 
 def test_the_page_says_that_it_is_a_fault_of_the_program_and_where_to_look(shown: httpx.Client) -> None:

@@ -61,7 +61,7 @@ def test_an_effect_is_flagged_once(flagged: Storage) -> None:
     upload(flagged, GROUP[4], "a.json", NOW)
     (flag,) = refreshed(flagged)
     assert (flag.unit, flag.place) == ("BA-017", "unit BA-017: cubic nonlinearity (A2)")
-    assert flag.summary.startswith("The sessions of unit BA-017 show together: A2 bends")
+    assert flag.summary.startswith("The sessions of unit BA-017 show together: A2 has a cubic")
     assert flag.session == session_id(GROUP[3])
 
 
@@ -98,7 +98,7 @@ def test_the_fleet_says_what_was_found_while_it_is_of_the_sessions_of_now(flagge
     assert line is not None
     ((home, whose, what),) = line.found
     assert (home, whose, line.more) == ("/units/BA-017#together", "unit BA-017", 0)
-    assert what.startswith("A2 bends with the cube")
+    assert what.startswith("A2 has a cubic nonlinearity")
     upload(flagged, GROUP[4], "a.json", NOW)
     with flagged.database.reading() as store:
         assert found_line(Announcements(store).all(9, 4)) is None

@@ -131,7 +131,7 @@ def test_an_interval_is_counted_from_the_day_in_the_sentence(client: httpx.Clien
     CASES["interval"](storage)
     allow(client, 100)
     found = said(client)
-    assert found.reason == "Last calibrated on 1 Oct 2026; calibrate every 100 days at least."
+    assert found.reason == "Last calibrated on 1 Oct 2026; calibrate at least every 100 days."
     assert found.due == date(2027, 1, 9)
 
 
@@ -140,7 +140,7 @@ def test_an_overdue_unit_is_refused_with_the_same_sentence(client: httpx.Client,
     allow(client, 30)
     found = said(client)
     assert found.rule == "interval"
-    assert found.reason == "Last calibrated on 1 Sep 2026; calibrate every 30 days at least."
+    assert found.reason == "Last calibrated on 1 Sep 2026; calibrate at least every 30 days."
     reasons = client.get(f"{UNIT}/usable").json()["reasons"]
     assert f"Its calibration was due on 1 Oct 2026: calibrate it. {found.reason}" in reasons
     assert "Calibration overdue since 1 Oct 2026" in found.page

@@ -44,7 +44,7 @@ def test_a_drift_brings_the_unit_back_before_its_tolerance(storage: Storage) -> 
     assert found.due < found.reach_50
     assert datetime(2026, 11, 1, tzinfo=UTC) < found.reach_50 < datetime(2027, 9, 1, tzinfo=UTC)
     assert found.risk_at_due == pytest.approx(0.05, abs=0.01)
-    assert found.reason.startswith("The chance that it is out of tolerance reaches 5 % on ")
+    assert found.reason.startswith("The risk that it is out of tolerance reaches 5 % on ")
     assert found.reason.endswith("A3 bias contributes most.")
 
 

@@ -45,13 +45,13 @@ def test_a_jump_within_the_tolerance_has_a_flag_of_its_own(storage: Storage) -> 
     assert (change.kind, change.after.month, change.before.month) == ("jump", 4, 5)
     assert change.size == pytest.approx(25 * MICRO_G, abs=3 * change.sigma)
     assert list(flags(storage)) == [Matter.JUMP]
-    assert flags(storage)[Matter.JUMP].startswith("A3 bias has jumped between 1 Apr 2026 and 1 May 2026 by +")
+    assert flags(storage)[Matter.JUMP].startswith("A3 bias jumped by +")
 
 
 def test_a_drift_within_the_tolerance_is_flagged_with_its_beginning(storage: Storage) -> None:
     measure(storage, {1: 0.0, 3: 6.0, 5: 12.0, 7: 18.0, 9: 24.0, 10: 27.0})
     assert list(flags(storage)) == [Matter.DRIFT]
-    assert flags(storage)[Matter.DRIFT].startswith("A3 bias has been drifting since 1 Jan 2026 by +")
+    assert flags(storage)[Matter.DRIFT].startswith("A3 bias has drifted at +")
 
 
 def test_nothing_is_flagged_where_nothing_happens(storage: Storage) -> None:

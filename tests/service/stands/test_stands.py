@@ -69,7 +69,7 @@ def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storag
     latest = client.get("/api/v1/units/BA-1").json()["sessions"][0]["id"]
     page = client.get(f"/sessions/{latest}", headers={"Accept": "text/html"}).text
     assert "The whole block turned by 15" in page
-    assert "it sits otherwise, or the stand has turned" in page
+    assert "it was mounted differently, or the stand has turned" in page
 
 
 @pytest.fixture

@@ -145,7 +145,7 @@ def test_a_reference_that_leaves_something_open_says_what_to_add(storage: Storag
     document = arbitrary_orientations(orientations=7)
     receipt = upload(storage, json.dumps(document).encode(), "seven.json", NOW)
     assert receipt.is_reference
-    assert "It does not show scale, bias, axis of every accelerometer: add 2 still orientations" in receipt.reason
+    assert "It does not observe scale, bias, axis of every accelerometer: add 2 still orientations" in receipt.reason
 
 
 def test_a_reference_that_shows_everything_says_no_more(storage: Storage) -> None:
