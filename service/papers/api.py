@@ -13,7 +13,15 @@ from service.judging.usable_reading import usable_of
 from service.papers.changes import Signing
 from service.papers.correction import correction_document
 from service.papers.dependencies import DeskOf
-from service.papers.desk import HandedOut, Papers, hand_out, hand_out_approved, hand_out_together, papers_of, sign
+from service.papers.desk import (
+    CertificateDocument,
+    Papers,
+    hand_out,
+    hand_out_approved,
+    hand_out_together,
+    papers_of,
+    sign,
+)
 from service.papers.label import Label, label_of, label_pdf, label_svg
 from service.papers.records import NOT_STATED, Signature
 from service.papers.schemas import CorrectionDocument, NewSignature
@@ -97,7 +105,7 @@ def sign_certificate(
     return signature
 
 
-def _file(paper: HandedOut, format: str) -> Response:
+def _file(paper: CertificateDocument, format: str) -> Response:
     media, ending = (XML, "xml") if format == "dcc" else (PDF, "pdf")
     return as_file(paper.content, media, f"{paper.name}.{ending}")
 

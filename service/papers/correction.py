@@ -1,4 +1,4 @@
-"""The correction that a session's calibration gives, for firmware: formula, numbers and a worked example."""
+"""The correction from a session's calibration, for firmware: formula, numbers and a worked example."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -34,14 +34,14 @@ ALWAYS_LEFT = (
     "temperature: the parameters are those at the session's temperature",
     "nonlinearity beyond the quadratic term, asymmetry, hysteresis, cross-coupling",
 )
-"""What no such correction can take out."""
+"""Errors that no such correction can remove."""
 DIGITS = 9
 """Of the worked example's numbers in words."""
 
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """A stored session with the correction that it gives."""
+    """A stored session with its correction."""
 
     stored: StoredSession
     calibration: Calibration
@@ -49,7 +49,7 @@ class Corrected:
     """Averaged."""
     found: Correction
     revisions: tuple[ModelRevision, ...]
-    """Accepted causes that the parameters were estimated with."""
+    """Accepted causes in the estimation of the parameters."""
 
 
 def corrected(storage: Storage, id: str) -> Corrected:
@@ -60,27 +60,27 @@ def corrected(storage: Storage, id: str) -> Corrected:
     if stored.programme not in CALIBRATIONS:
         raise NotFoundError(f"Session {id!r} gives no correction: {stored.programme} does not calibrate a block.")
     session = averaged(read_upload(storage.files.content(stored.sha256), stored.filename))
-    found = correction_of(session, calibration)
-    if not found.blocks:
-        raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(found))}.")
-    return Corrected(stored, calibration, session, found, revisions)
+    correction = correction_of(session, calibration)
+    if not correction.blocks:
+        raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(correction))}.")
+    return Corrected(stored, calibration, session, correction, revisions)
 
 
 def correction_document(storage: Storage, id: str) -> dict[str, Any]:
     """imu-correction/1; NotFoundError where the session's programme gives none."""
-    one = corrected(storage, id)
+    result = corrected(storage, id)
     return {
-        **_identity(one.stored, one.calibration),
+        **_identity(result.stored, result.calibration),
         "formula": list(FORMULA),
-        "blocks": [_block(block, one.session) for block in one.found.blocks],
-        "left_out": [{"sensor": name, "why": why} for name, why in one.found.left_out],
-        "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in one.found.blocks if _assumed(block)],
-        "extended_model": [_revision(revision) for revision in one.revisions],
+        "blocks": [_block(block, result.session) for block in result.found.blocks],
+        "left_out": [{"sensor": name, "why": why} for name, why in result.found.left_out],
+        "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in result.found.blocks if _assumed(block)],
+        "extended_model": [_revision(revision) for revision in result.revisions],
     }
 
 
-def _reasons(found: Correction) -> Iterator[str]:
-    yield from (f"{name}: {why}" for name, why in found.left_out)
+def _reasons(correction: Correction) -> Iterator[str]:
+    yield from (f"{name}: {why}" for name, why in correction.left_out)
 
 
 def _identity(stored: StoredSession, calibration: Calibration) -> dict[str, Any]:
