@@ -47,6 +47,9 @@ def test_it_is_drawn_and_the_same_stands_in_tables(twelve: httpx.Client) -> None
     assert re.search(r"In each session .* \d\.\d ± \d\.\d.µg/g³ together", page)
     assert re.findall(r"(A2 with(?:out)? it) \d+ of \d+ outside ±2σ", page) == ["A2 without it", "A2 with it"]
     assert "input, of the applied vector without it with it" in page
+    assert re.search(
+        r"In the latest session the error of A2 [^;]*µg \(sizes as the first 8 sessions fixed them\)", page
+    )
     assert re.search(r"Sizes fixed on the first 8 sessions, tried on the 4 that came later: .* is \d+\.\d more", page)
 
 
