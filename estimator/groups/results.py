@@ -107,7 +107,7 @@ class Moved:
 
 
 @dataclass(frozen=True)
-class GroupGain:
+class GroupGain(Document, optional=("before", "after")):
     """Prediction of sessions that took no part in the fit, without and with the findings."""
 
     fitted: int
@@ -119,6 +119,11 @@ class GroupGain:
     chi2_per_dof_before: float
     chi2_per_dof_after: float
     moved: tuple[Moved, ...]
+    before: dict[str, dict[str, float]] | None = None
+    """Root mean square residual, m/s² (rad/s), of every sensor in the latest session, by kind and name, without the
+    findings; None where that session was not at hand."""
+    after: dict[str, dict[str, float]] | None = None
+    """The same with them, at the amplitudes that earlier sessions fixed."""
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,8 @@ class GroupDocument(BaseModel):
         description="Smallest amplitude of each cause that the pool would have found; `one_session`: its latest one."
     )
     gain: dict[str, Any] | None = Field(
-        description="Prediction of the later sessions with and without the findings; null without findings."
+        description="Prediction of the later sessions with and without the findings; null without findings. `before`, "
+        "`after`: rms residual of every sensor in the latest session, SI, by kind and name."
     )
     e_value: float = Field(description="Evidence for anything beside the findings; a name needs 100.")
     notes: list[str] = Field(description="What else is worth knowing.")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
+from estimator.groups.layout import EVERY
 from estimator.groups.results import EmpiricalTerm, GroupGain, PoolLimit, Rival, SessionAmplitude
 from estimator.message import Message, capitalised, joined, say, say_count, uncapitalised, without_stop
 from estimator.moments import moment
@@ -14,6 +15,7 @@ from service.diagnosis.words.amplitudes import amplitude_measure, amplitudes_of
 from service.diagnosis.words.causes import cause_name, cause_on, percent
 from service.diagnosis.words.diagnosis import size_of
 from service.diagnosis.words.findings import standard_errors
+from service.diagnosis.words.gain import errors_in_words
 from service.groups.records import Group, GroupAnswer, GroupShown
 from service.kit.measures import COVERAGE, HARD, day_of, measured, number
 from service.models.records import SCOPES, ModelRevision, Scope
@@ -183,6 +185,25 @@ def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
         yield TURNS.get(target, say(READS, sensor=joined(", ", term.sensors))), joined(" + ", parts)
 
 
+def latest_in_words(shown: GroupShown) -> str:
+    """What the findings take out of the latest session at the sizes that earlier ones fixed; empty where that is not
+    known."""
+    gain = shown.gain
+    if gain is None or gain.before is None or gain.after is None:
+        return ""
+    names = {sensor for f in shown.findings for sensor in f.sensors or (EVERY,)}
+    parts = errors_in_words(gain.before, gain.after, () if EVERY in names else tuple(names))
+    return (
+        say(
+            "In the latest session the error {parts} (sizes as the first {fitted} sessions fixed them).",
+            parts=parts,
+            fitted=gain.fitted,
+        )
+        if parts
+        else ""
+    )
+
+
 def gain_in_words(gain: GroupGain | None) -> str:
     """What the findings are worth for sessions that came later; empty where there were too few."""
     if gain is None:
@@ -266,6 +287,8 @@ class GroupView:
     structures: tuple[str, ...]
     """Where structure lives that no cause explains."""
     terms: tuple[TermView, ...]
+    error: str
+    """What the findings take out of the latest session, one number a sensor."""
     gain: str
     notes: tuple[str, ...]
     limits: tuple[tuple[str, str, str], ...]
@@ -281,6 +304,7 @@ def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelR
         effects=tuple(_effect(finding, accepted) for finding in shown.findings),
         structures=shown.structures,
         terms=tuple(term_view(term, accepted) for term in shown.terms),
+        error=latest_in_words(shown),
         gain=gain_in_words(shown.gain),
         notes=tuple(map(with_days, shown.notes)),
         limits=tuple(_limit(limit) for limit in shown.limits if limit.amplitude),

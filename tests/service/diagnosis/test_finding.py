@@ -21,7 +21,7 @@ def test_two_shape_parameters_of_one_unit_are_told_apart() -> None:
     each = nonlinear(("s", "row", "s"), (60.0, 3.0, 900.0))
     assert each == {"s 1": 60.0, "row": 4.0, "s 2": 900.0}
     assert nonlinear(("row", "s"), (3.0, 60.0)) == {"row": 4.0, "s": 60.0}
-    words = shape_of(replace(JUMP, cause="warm-up", nonlinear_each=(each,)))
+    words = shape_of(replace(JUMP, cause="thermal-lag", nonlinear_each=(each,)))
     assert words == f"time constant 60{THIN}s and row 4 and 900{THIN}s"
 
 

@@ -46,6 +46,9 @@ def test_it_is_drawn_and_the_same_stands_in_tables(twelve: httpx.Client) -> None
     assert re.findall(r"(A2 with(?:out)? it) \d+ of \d+ outside ±2σ", page) == ["A2 without it", "A2 with it"]
     assert "input, of the applied vector without it with it" in page
     assert re.search(
+        r"In the latest session the error of A2 [^;]*µg \(sizes as the first 8 sessions fixed them\)", page
+    )
+    assert re.search(
         r"Sizes estimated from the first 8 sessions, tested on the 4 later ones: .*, log score \d+\.\d more", page
     )
 
