@@ -109,6 +109,8 @@ class FleetPage:
     """Choices of the next calibration's date, in words."""
     orders: Mapping[str, str]
     """Of the list, in words."""
+    pending: str
+    """What is still being worked out; empty where nothing is."""
     saved: Saved
     """Views of the list that were kept."""
 
@@ -135,6 +137,7 @@ def fleet_page(
     stands: Sequence[StandCondition] = (),
     questioned: Sequence[Questioned] = (),
     choices: FleetChoices = NO_CHOICES,
+    pending: str = "",
     kept: Saved = NONE_SAVED,
 ) -> FleetPage:
     """One page of units; one more than fit on it says that there are others in the direction of reading."""
@@ -159,6 +162,7 @@ def fleet_page(
         choices=choices,
         dates=DUE,
         orders=ORDERS,
+        pending=pending,
         saved=kept,
     )
 
