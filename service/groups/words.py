@@ -227,7 +227,7 @@ def gain_in_words(gain: GroupGain | None) -> str:
 
 FORMS = {
     "same": "in all of these sessions",
-    "varying": "in these sessions, with a different size each time",
+    "varying": "on average in these sessions, with a different size each time",
 }
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
 """A moment as files state it, ISO 8601."""
@@ -269,6 +269,8 @@ class LastingEffect:
     statement: str
     amplitudes: tuple[str, ...]
     since: str
+    spread: str
+    """From session to session, one standard deviation; empty of one that is always the same."""
     evidence: str
     advice: str
     choices: tuple[Choice, ...]
@@ -321,11 +323,18 @@ def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> Lasting
         statement=statement(finding),
         amplitudes=tuple(amplitudes_of(finding)),
         since=since_in_words(finding.form, finding.since),
+        spread=_spread(finding) if finding.form == "varying" else "",
         evidence=say("{strength} over all of them", strength=standard_errors(finding.strength)),
         advice=RULE_OUT if finding.alternatives else finding.advice,
         choices=tuple(map(_choice, finding.rivals)),
         rows=tuple(_row(finding, one) for one in reversed(finding.sessions)),
     )
+
+
+def _spread(finding: GroupFinding) -> str:
+    """The largest of its sensors, or of what it acts on."""
+    largest = max(finding.spread, default=0.0)
+    return measured(largest, None, amplitude_measure(finding.cause, finding.units[0], largest))
 
 
 def holds(revision: ModelRevision, finding: GroupFinding) -> bool:

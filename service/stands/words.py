@@ -12,6 +12,7 @@ from service.stands.records import StandCertificate, StandCondition, StandEviden
 
 STEADY = "No change common to all units measured on it."
 TOO_FEW = "Measured with fewer than three units."
+PENDING = "The results of its units are still being computed."
 JUDGED = "The units are judged without this effect."
 
 
@@ -121,9 +122,11 @@ def stand_word(
     return min(found, key=WORDS.index)
 
 
-def condition_in_words(condition: StandCondition | None) -> str:
-    """What the units measured on it show."""
-    return TOO_FEW if condition is None else condition.reason
+def condition_in_words(condition: StandCondition | None, *, is_pending: bool) -> str:
+    """What the units measured on it show; ``is_pending``: it is being worked out."""
+    if condition is None:
+        return PENDING if is_pending else TOO_FEW
+    return condition.reason
 
 
 def _certificate_word(latest: StandCertificate | None, today: date) -> StandWord:

@@ -40,6 +40,16 @@ def cause_on(identifier: str, sensors: Sequence[str]) -> str:
     return cause_name(identifier) + _on(sensors)
 
 
+def weighty_first(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """As they are told: how the block sits in its fixture since earlier sessions, without which it is judged, last."""
+    return tuple(sorted(findings, key=_is_seating))
+
+
+def _is_seating(finding: Finding) -> bool:
+    known = find(finding.cause)
+    return known is not None and known.scope == "fixture" and known.between
+
+
 def is_lone(finding: Finding) -> bool:
     """Whether it is the only known cause that fits, beside one that is not in the catalogue."""
     return finding.alternatives == (UNKNOWN_CAUSE,)

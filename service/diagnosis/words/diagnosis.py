@@ -13,7 +13,15 @@ from estimator.message import joined, say
 from estimator.results import Calibration
 from estimator.session import GYROSCOPE
 from service.diagnosis.words.amplitudes import amplitude_measure
-from service.diagnosis.words.causes import ONE_NOT_KNOWN, at_once_with, cause_name, is_level, is_lone, what_is_wrong
+from service.diagnosis.words.causes import (
+    ONE_NOT_KNOWN,
+    at_once_with,
+    cause_name,
+    is_level,
+    is_lone,
+    weighty_first,
+    what_is_wrong,
+)
 from service.diagnosis.words.findings import UNEXPLAINED, headline_of, told, what_to_do_about
 from service.kit.measures import THIN, leading_kind, number
 from service.sessions.records import DiagnosisState
@@ -73,7 +81,7 @@ def summary_of(answer: Answer) -> str:
     """One line that a technician understands."""
     if answer.findings:
         common = [s for s in answer.structures if not s.sensors]
-        return joined(" ", (_named(answer.findings), *([told(common)] if common else [])))
+        return joined(" ", (_named(weighty_first(answer.findings)), *([told(common)] if common else [])))
     if answer.structures:
         return joined(" ", (told(answer.structures), *errors_of(answer)))
     return nothing_of(answer)
@@ -127,7 +135,7 @@ def fault_of_the_program(session: str) -> str:
 def headline(answer: Answer) -> str:
     """The first cause or the choice that cannot be made; without one what the diagnosis came to."""
     if answer.findings:
-        return what_is_wrong(answer.findings[0], answer.findings)
+        return what_is_wrong(weighty_first(answer.findings)[0], answer.findings)
     if answer.structures:
         return headline_of(answer.structures)
     if answer.calibration.fit.is_exact:
@@ -138,7 +146,7 @@ def headline(answer: Answer) -> str:
 def what_to_do(answer: Answer) -> str:
     """What a technician does next."""
     if answer.findings:
-        return _about(answer.findings[0], answer.findings)
+        return _about(weighty_first(answer.findings)[0], answer.findings)
     if answer.structures:
         return what_to_do_about(answer.structures)
     if answer.calibration.fit.is_exact:

@@ -27,17 +27,17 @@ CONDITION = StandCondition(
     seating=(StandSeating("accelerometer", "axes", 0.1 * ARCSEC),),
     unreadable=(),
 )
-LINE = StandLine(StandUse("S2", 9, 5, NOON), CONDITION, (CERTIFICATE,), 0)
+LINE = StandLine(StandUse("S2", 9, 5, NOON), CONDITION, (CERTIFICATE,), 0, is_pending=False)
 
 
 def test_what_needs_a_hand_comes_first() -> None:
-    ready = StandLine(StandUse("S1", 9, 5, NOON), None, (CERTIFICATE,), 0)
+    ready = StandLine(StandUse("S1", 9, 5, NOON), None, (CERTIFICATE,), 0, is_pending=False)
     page = stands_page([ready, LINE], NOON)
     assert [(row.use.stand, row.word.word) for row in page.rows] == [("S2", "Check before use"), ("S1", "Ready to use")]
 
 
 def test_a_shift_is_told_with_its_size_and_units_and_what_is_steady_too() -> None:
-    page = stand_page(StandReport(LINE, (), (), (), ()), NOON)
+    page = stand_page(StandReport(LINE, (), (), {}, (), ()), NOON)
     shift, steady = page.shifts
     assert (shift.what, shift.when, shift.units, shift.word) == (
         "Turn of every block", "since 1 Mar 2026", "4 of 5", "shifted",
