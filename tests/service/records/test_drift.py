@@ -4,12 +4,16 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from service.flags.records import Matter
+from service.flags.changes import resolve_flag
+from service.flags.records import FlagState, Matter
 from service.flags.store import FlagQuery, Flags
 from service.outlook.reading import outlook_of
 from service.outlook.records import Action, ParameterTrend, UnitOutlook
+from service.outlook.words import next_calibration
+from service.pages.type.tolerances import Watch, set_tolerances
 from service.sessions.store import Sessions
 from service.storage import Storage
+from service.types.store import UnitTypes
 from service.work.watch import update_outlooks
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.dated import upload_and_date
@@ -52,6 +56,27 @@ def test_a_drift_within_the_tolerance_is_flagged_with_its_beginning(storage: Sto
     measure(storage, {1: 0.0, 3: 6.0, 5: 12.0, 7: 18.0, 9: 24.0, 10: 27.0})
     assert list(flags(storage)) == [Matter.DRIFT]
     assert flags(storage)[Matter.DRIFT].startswith("A3 bias has drifted at +")
+
+
+def test_a_small_jump_is_a_remark_until_the_type_says_that_it_matters(storage: Storage) -> None:
+    measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 13.0, 6: 13.0, 7: 13.0})
+    assert flags(storage) == {}
+    assert any(line.startswith("A3 bias has jumped") for line in next_calibration(outlook(storage), NOW).moving)
+    with storage.database.reading() as store:
+        known = UnitTypes(store).of_unit("BA-017")
+    set_tolerances(storage, known.name, known.tolerances, None, NOW, watch=Watch(flag_share=0.2))
+    assert list(flags(storage)) == [Matter.JUMP]
+
+
+def test_a_jump_that_a_person_resolved_does_not_come_back_with_later_sessions(storage: Storage) -> None:
+    measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 25.0, 6: 25.0})
+    with storage.database.reading() as store:
+        [flag] = Flags(store).page(FlagQuery("BA-017"))
+    resolve_flag(storage, flag.id, "K. Ito", "dropped in April, looked at", NOW)
+    measure(storage, {7: 25.0})
+    assert a3_bias(storage).changes
+    with storage.database.reading() as store:
+        assert [flag.state for flag in Flags(store).page(FlagQuery("BA-017"))] == [FlagState.RESOLVED]
 
 
 def test_nothing_is_flagged_where_nothing_happens(storage: Storage) -> None:
