@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 from scipy.spatial.transform import Rotation
 
-from estimator import calibrate, calibrate_many
+from estimator import Calibration, calibrate, calibrate_many
 from estimator.session import Array
 from tests.estimator.calibration.bound import bound
 from tests.estimator.calibration.cases import CASES, Case, at_rows, estimates
@@ -113,7 +113,7 @@ def agree(a: Array, b: Array) -> bool:
     return bool(np.allclose(a / np.outer(sigma, sigma), b / np.outer(sigma, sigma), atol=1e-4, equal_nan=True))
 
 
-def moved(plain: object, other: object, turn: Array) -> Array:
+def moved(plain: Calibration, other: Calibration, turn: Array) -> Array:
     """Differences of the observed parameters in the first one's sigmas, axes turned back first."""
     a, b = estimates(plain), estimates(other)
     b = replace(b, axis=b.axis @ turn)
