@@ -45,7 +45,7 @@ def allow(client: httpx.Client, days: int) -> None:
 def measure(storage: Storage, moved: dict[int, float], **changes: object) -> None:
     """Sessions by month of 2026, with how far A3's bias has moved, µg; 50 are allowed."""
     for month, micro_g in moved.items():
-        content = session_bytes(seed=month, month=month, a3_moved=micro_g, **changes)  # type: ignore[arg-type]
+        content = session_bytes(seed=month, month=month, a3_moved=micro_g, **changes)
         upload_and_date(storage, content, "a.json", NOW)
 
 
@@ -86,7 +86,7 @@ def said(client: httpx.Client) -> Said:
         page=unescape(page),
         label=" ".join(label.split()),
         calendar=str(events[0]["DESCRIPTION"]) if events else None,
-        called_for=events[0]["DTSTART"].dt if events else None,
+        called_for=events[0].decoded("DTSTART") if events else None,
     )
 
 

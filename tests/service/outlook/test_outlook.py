@@ -21,7 +21,7 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 def measure(storage: Storage, months: dict[int, float], unit: str = "BA-017", **changes: object) -> None:
     """Sessions of a unit by month of 2026, with how far A3's bias has moved, µg."""
     for month, moved in months.items():
-        content = session_bytes(seed=month, month=month, a3_moved=moved, unit=unit, **changes)  # type: ignore[arg-type]
+        content = session_bytes(seed=month, month=month, a3_moved=moved, unit=unit, **changes)
         upload_and_date(storage, content, "a.json", NOW, outlook=month == max(months))
 
 
