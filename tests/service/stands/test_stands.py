@@ -15,7 +15,8 @@ from service.models.records import Scope
 from service.records.changes import withdraw_session
 from service.records.flagging.acts import Occasion, raise_flag
 from service.records.flagging.stands import OF_STAND, flag_shifted_stands
-from service.sessions.store import SessionQuery, Sessions
+from service.sessions.records import SessionQuery
+from service.sessions.store import Sessions
 from service.storage import Storage
 from service.units.store import Units
 from service.uploads.receive import upload
