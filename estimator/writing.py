@@ -8,6 +8,8 @@ import numpy as np
 from estimator.reading.keys import FORMAT, SIGMA
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Stand, StandErrors
 
+TIME_DECIMALS = 6
+"""The time since power-on is written to a microsecond."""
 ANGLE_DECIMALS = 10
 """Degrees and arcsec are written to 1e-10: 30.0, not 29.999999999999996."""
 
@@ -25,6 +27,7 @@ def session_document(session: CalibrationSession) -> dict[str, Any]:
             "block": session.block,
             "programme": session.programme,
             "started_at": session.started_at,
+            "time_since_power_on_s": _rounded(session.time_since_power_on, TIME_DECIMALS),
             "operator": session.operator or None,
             "notes": session.notes or None,
             "stage": session.stage,
@@ -53,7 +56,11 @@ def _stated(fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _degrees(angle: float | None) -> float | None:
-    return None if angle is None else round(float(np.degrees(angle)), ANGLE_DECIMALS)
+    return None if angle is None else _rounded(float(np.degrees(angle)), ANGLE_DECIMALS)
+
+
+def _rounded(value: float | None, decimals: int) -> float | None:
+    return None if value is None else round(value, decimals)
 
 
 def _stand(stand: Stand) -> dict[str, Any]:

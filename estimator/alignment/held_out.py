@@ -33,6 +33,8 @@ class Prediction:
     """Of a piece."""
     log_score: float
     """Mean log density of a piece, in units of its own sigma."""
+    rms_by_sensor: dict[str, float]
+    """m/s², by the sensor's name."""
 
 
 def held_out(arms: LeverArms) -> str:
@@ -43,9 +45,18 @@ def held_out(arms: LeverArms) -> str:
 def prediction(arms: LeverArms, *, named: bool) -> Prediction:
     """Of all turns; ``named``: with the named lever arms in the model."""
     parts = arms.pieces
-    scores = [_scores(parts, arm, arms.lean, fold, named=named) for arm in arms.estimates for fold in _folds(parts)]
+    scores, each = [], {}
+    for arm in arms.estimates:
+        own = [_scores(parts, arm, arms.lean, fold, named=named) for fold in _folds(parts)]
+        each[arm.sensor.name] = root_mean_square(np.concatenate([errors for errors, _, _ in own]))
+        scores += own
     errors, squares, logs = (np.concatenate(column) for column in zip(*scores, strict=True))
-    return Prediction(float(np.sqrt(np.mean(errors**2))), float(squares.mean()), float(logs.mean()))
+    return Prediction(root_mean_square(errors), float(squares.mean()), float(logs.mean()), each)
+
+
+def root_mean_square(errors: Array) -> float:
+    """Of errors (n,), m/s²."""
+    return float(np.sqrt(np.mean(errors**2)))
 
 
 def _folds(parts: Pieces) -> list[NDArray[np.bool_]]:

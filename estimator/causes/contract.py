@@ -83,6 +83,8 @@ class Setting:
     """Whether the applied vectors are known apart from the sensors, so that a common turn of all axes shows."""
     vibration: Array | None = None
     """(R, m) variance of the input within a row, (m/s²)² or (rad/s)²; None where unknown."""
+    switched_on: float | None = None
+    """s, by the clock of ``time``: when the unit was switched on; None where unknown."""
 
     @property
     def rows(self) -> int:
@@ -198,6 +200,10 @@ class Cause(ABC):
     shared_advice: ClassVar[str] = ""
     clips: ClassVar[bool] = False
     """Whether it cuts readings off at a limit, beyond which they tell nothing."""
+    since_power_on: ClassVar[bool] = False
+    """Whether its time counts from switching on, where the session says when that was."""
+    lacking: ClassVar[str] = "a sensor it acts on"
+    """What a session lacks that has all that the cause needs, and no shape of it."""
     always_modelled: ClassVar[bool] = False
     """Whether the model of its programme holds it in every session, so that nothing is left to accept."""
     shape_words: ClassVar[str] = ""
@@ -264,6 +270,10 @@ class Signature(Cause):
         The parameter's own error belongs to the amplitude's sigma.
         """
         return np.zeros((*shape.columns.shape[:2], 0))
+
+    def left(self, setting: Setting, shape: Shape) -> float:
+        """Share of the amplitude that is there at the first row, dimensionless."""
+        return 1.0
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
         """Amplitude (q,) and sigma (q,) in SI as `units` names them, from those of the signature's columns."""

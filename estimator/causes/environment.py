@@ -16,9 +16,11 @@ def elapsed(setting: Setting) -> Array:
 
 
 def since_on(setting: Setting) -> Array:
-    """(R,) t, s; where the clock reads less than 0, counted from the first moment that it reads."""
+    """(R,) t, s since switching on; where that is not known by the session's clock, or, where the clock reads less than
+    0, from the first moment that it reads."""
     assert setting.time is not None
-    return setting.time - min(float(setting.time.min()), 0.0)
+    on = min(float(setting.time.min()), 0.0) if setting.switched_on is None else setting.switched_on
+    return setting.time - on
 
 
 def warmth(setting: Setting) -> Array:
@@ -127,8 +129,18 @@ class AxisCreep(SensorCause):
         return column(p * elapsed(setting), o * elapsed(setting))
 
 
+SETTLED = 7.0
+"""Time constants after which a warm-up is over: a thousandth of it is left, of a whole mg 1 µg."""
+
+
+def settled(setting: Setting) -> float:
+    """s: time constants up to this one are over before the first row; 0 where nobody knows when it was switched on."""
+    assert setting.time is not None
+    return 0.0 if setting.switched_on is None else float(setting.time[0] - setting.switched_on) / SETTLED
+
+
 class WarmUp(GridCause):
-    """The nonlinear parameter is τ, s."""
+    """The nonlinear parameter is τ, s. The amplitude is that at switching on, where the session says when that was."""
 
     identifier = "warm-up"
     scope = "environment"
@@ -142,19 +154,28 @@ class WarmUp(GridCause):
     advice = "Switch the unit on earlier and wait for several time constants before the first position."
     shared_sentence = "The zeros of {sensors} settle together after switching on."
     shared_advice = "Switch the unit on earlier and wait for three time constants, or record its temperature."
+    since_power_on = True
+    lacking = "the time soon after switching on"
     steps = 10
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        """From the rows' spacing to the span; no τ that is over before the first row."""
         assert setting.time is not None
         span = float(np.ptp(setting.time))
-        if span <= 0:
+        shortest = max(span / max(setting.rows, 2), settled(setting))
+        if not 0 < shortest <= span:
             return
-        for tau in np.geomspace(span / max(setting.rows, 2), span, self.steps):
+        for tau in np.geomspace(shortest, span, self.steps):
             yield (float(tau),)
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
-        """(S, R, 1) exp(−t/τ), dimensionless."""
-        return column(np.exp(-since_on(setting) / np.array(grid)))
+        """(S, R, 1) exp(−t/τ), dimensionless; 0 of a τ that is over long before the first row."""
+        tau = np.array(grid)
+        return column(np.where(tau < settled(setting) / 2, 0.0, np.exp(-since_on(setting) / tau)))
+
+    def left(self, setting: Setting, shape: Shape) -> float:
+        """exp(−t/τ) at the first row after switching on, dimensionless; 1 where nobody knows when that was."""
+        return float(np.exp(-SETTLED * settled(setting) / shape.nonlinear[0]))
 
     def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         (tau,) = shape.nonlinear

@@ -145,7 +145,13 @@ def _gain(arms: LeverArms) -> Gain:
 
 
 def _score(prediction: Prediction) -> Score:
-    return Score(prediction.rms, prediction.chi2, prediction.log_score, {ACCELEROMETER: prediction.rms})
+    return Score(
+        rms=prediction.rms,
+        chi2_per_dof=prediction.chi2,
+        log_score=prediction.log_score,
+        rms_by_kind={ACCELEROMETER: prediction.rms},
+        rms_by_sensor={ACCELEROMETER: prediction.rms_by_sensor},
+    )
 
 
 def _limit(arms: LeverArms) -> Limit:

@@ -17,9 +17,11 @@ from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, Lis
 from service.commands.speech import output_language, translated
 from service.errors import ServiceError
 from service.flags.records import FlagState
+from service.judging.use import Use, in_words
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
 """Red needs attention."""
+USE_COLOURS = {Use.YES: "green", Use.RESERVED: "yellow", Use.NO: "bold red", Use.PENDING: "bold red"}
 SESSION_ID = re.compile("[0-9a-f]{20}")
 """Pattern of a session's id; a serial number may match as well."""
 
@@ -188,11 +190,11 @@ def _show_stand(stand: Answer) -> None:
 
 
 def _show_usable(answer: Answer) -> None:
-    condition = f"[green]{translated('usable')}[/]" if answer["usable"] else f"[bold red]{translated('not usable')}[/]"
+    colour = USE_COLOURS[Use(answer["use"])]
+    word = translated(in_words(Use(answer["use"]), answer["action"]))
     lines = (answer["why"], *answer["reasons"][1:], *(f"But: {line}" for line in answer["reservations"]))
-    screen().print(
-        f"[bold]{escape(answer['unit'])}[/]  {condition}", *(escape(translated(line)) for line in lines), sep="\n  "
-    )
+    head = f"[bold]{escape(answer['unit'])}[/]  [{colour}]{escape(word)}[/]"
+    screen().print(head, *(escape(translated(line)) for line in lines), sep="\n  ")
 
 
 FLAG_CELLS = {

@@ -15,7 +15,7 @@ from rich.text import Text
 
 from estimator import diagnose
 from estimator.diagnosis import Diagnosis
-from estimator.diagnosis.results import Gain, Limit, Score, Structure
+from estimator.diagnosis.results import Limit, Score, Structure
 from estimator.session import DIAGNOSED, CalibrationSession
 from estimator.wording import counted
 from service.commands.console import AsJson, Files, for_each, print_json, screen, usable
@@ -24,6 +24,7 @@ from service.diagnosis.records import state_of
 from service.diagnosis.store import inapplicable_to_dict
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE, blind_causes, errors_of, nothing_of, what_to_do
 from service.diagnosis.words.findings import FindingView, finding_view, standard_errors, told
+from service.diagnosis.words.gain import concerned, gain_in_words
 from service.ingest import read_file
 from service.kit.measures import number
 from service.sessions.records import DiagnosisState
@@ -93,7 +94,7 @@ def _lines_of(diagnosis: Diagnosis) -> Iterator[RenderableType]:
         yield from (Text(translated(sentence), "yellow") for sentence in errors_of(diagnosis))
     yield from (Text(translated(note)) for note in diagnosis.notes)
     if diagnosis.findings:
-        yield Text(_gain(diagnosis.gain))
+        yield from _gain(diagnosis)
     yield from _unseen(diagnosis.limits)
 
 
@@ -125,12 +126,16 @@ def _structure(structure: Structure) -> str:
     return f"{told([structure]).rstrip('.')} ({standard_errors(structure.strength)})"
 
 
-def _gain(gain: Gain) -> str:
-    lines = [_scores(f"Predicting {gain.held_out} held out of the estimation", gain.before, gain.after)]
+def _gain(diagnosis: Diagnosis) -> Iterator[Text]:
+    """One sentence for everybody, then the scores for experts."""
+    gain = diagnosis.gain
+    if sentence := gain_in_words(gain, concerned(diagnosis.findings)):
+        yield Text(f"  {translated(sentence)}")
+    yield Text(_scores(f"Predicting {gain.held_out} held out of the estimation", gain.before, gain.after), "dim")
     if gain.session is not None:
         started = gain.session.started_at or "no stated date"
-        lines.append(_scores(f"Predicting the session before ({started})", gain.session.before, gain.session.after))
-    return "\n".join(lines)
+        before = f"Predicting the session before ({started})"
+        yield Text(_scores(before, gain.session.before, gain.session.after), "dim")
 
 
 def _scores(label: str, before: Score, after: Score) -> str:

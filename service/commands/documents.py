@@ -81,11 +81,13 @@ def export(
     system: Annotated[System, typer.Option("--system", help="px4, ardupilot, kalibr or ros2.")],
     server: Server = DEFAULT_SERVER,
     out: Out = None,
+    *,
+    force: Annotated[bool, typer.Option("--force", help="Also where the unit must not be used.")] = False,
 ) -> None:
     """Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."""
     with connect(server, language=output_language()) as client:
         path = in_address("/sessions/{session}/export", {"session": session})
-        deliver(client.get(path, system=system.value).content, out)
+        deliver(client.get(path, system=system.value, force=str(force).lower()).content, out)
 
 
 report = typer.Typer(add_completion=False, rich_markup_mode="markdown", invoke_without_command=True)

@@ -60,7 +60,10 @@ def fleet(
 def _summary(condition: Answer) -> str:
     """``12 units, 12 of them simulated: 1 Unfit, …``"""
     counts = {Verdict(name): count for name, count in condition["verdicts"].items() if count}
-    parts = (_counted(verdict, counts[verdict], condition) for verdict in reversed(Verdict) if verdict in counts)
+    references = condition["references"]
+    counts[Verdict.UNDECIDABLE] = counts.get(Verdict.UNDECIDABLE, 0) - references
+    parts = [_counted(verdict, counts[verdict], condition) for verdict in reversed(Verdict) if counts.get(verdict)]
+    parts += [f"{references} {coloured(Verdict.UNDECIDABLE, is_reference=True)}"] if references else []
     simulated = f", {condition['simulated']} of them simulated" if condition["simulated"] else ""
     return f"{counted(condition['units'], 'unit')}{simulated}: {', '.join(parts)}\n"
 

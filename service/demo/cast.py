@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
 from service.demo.blocks import Change, Hidden
-from service.flags.records import FlagState
+from service.flags.records import FlagState, Matter
 
 START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
 """Three years before the end."""
@@ -51,13 +51,14 @@ class Intervention:
 
 @dataclass(frozen=True)
 class Handled:
-    """What somebody did about a flag on a sensor that was out of tolerance."""
+    """What somebody did about a flag on a sensor."""
 
     at: datetime
     sensor: str
     state: FlagState
     who: str
     why: str
+    matter: Matter = Matter.TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -136,6 +137,12 @@ CAST = (
     Member(
         "BA-102", ACCELEROMETER, "bias of A5 jumped one day; the axis of A3 crept during the last session", 12,
         jumps=(Jump(Change(4, "bias", 24.0), 1.5),),
+        handled=(
+            Handled(
+                datetime(2026, 11, 13, 10, 0, tzinfo=UTC), "A5", FlagState.RESOLVED, "R. Duarte",
+                "A5 was dropped with its box in May 2025; it has held its zero since.", Matter.JUMP,
+            ),
+        ),
         hidden=Hidden("axis-creep", (5e-8, 3e-8), sensor=2),
     ),
     Member(

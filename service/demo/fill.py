@@ -8,7 +8,7 @@ from service.demo.blocks import unit_type
 from service.demo.cast import CAST, START, Handled, Intervention, Member, Remark
 from service.demo.history import files_of
 from service.flags.changes import acknowledge_flag, resolve_flag
-from service.flags.records import FlagState, Matter
+from service.flags.records import FlagState
 from service.flags.store import Flags
 from service.fleet.store import Fleet
 from service.kit.arriving_files import DEMONSTRATION
@@ -79,8 +79,8 @@ def _do(storage: Storage, serial: str, done: Done) -> None:
 
 
 def _handle(storage: Storage, serial: str, done: Handled) -> None:
-    """The open flag on the sensor's tolerance."""
+    """The open flag on the matter of the sensor."""
     with storage.database.reading() as store:
         opened = {flag.key: flag.id for flag in Flags(store).open_of(Units(store).key(serial))}
     act = acknowledge_flag if done.state is FlagState.ACKNOWLEDGED else resolve_flag
-    act(storage, opened[(Matter.TOLERANCE.value, done.sensor)], done.who, done.why, done.at)
+    act(storage, opened[(done.matter.value, done.sensor)], done.who, done.why, done.at)

@@ -27,11 +27,14 @@ from service.diagnosis.words.diagnosis import (
     what_to_do,
 )
 from service.diagnosis.words.findings import FindingView, evidence, finding_view, where_of, who_of
+from service.diagnosis.words.gain import gain_in_words
 from service.models.records import ModelRevision, NewModel, Scope
 from service.models.rules import in_force
 from service.models.store import Models
 from service.people.dependencies import SEE_OTHER, By, Key, StorageOf
+from service.records.dependencies import ReceptionOf
 from service.records.models import accept_model, withdraw_model
+from service.records.recalibrate import recompute_beside
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.charts import ChartSet, noise_of
 from service.sessions.lines import ResidualTable, residual_table
@@ -92,6 +95,8 @@ class EvidenceView:
     left_out: int
     """Sensors that are not drawn."""
     residuals: ResidualTable
+    gains: tuple[str, ...]
+    """What every finding in turn gains for its sensors, in one sentence."""
     gain: GainView | None
     """None where no cause is named."""
     seen: tuple[SeenCause, ...]
@@ -117,6 +122,8 @@ class DiagnosisPage:
     revisions: tuple[RevisionView, ...]
     scopes: tuple[tuple[str, str], ...]
     made: str
+    gain: str
+    """What all causes that are named gain, in one sentence."""
 
 
 def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
@@ -132,6 +139,7 @@ def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
         revisions=tuple(_revision(r, session, report.revisions) for r in report.revisions if r.withdraws is None),
         scopes=_scopes(session),
         made="",
+        gain="",
     )
     return pending if made is None else _made(pending, report, made)
 
@@ -146,6 +154,7 @@ def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis
         follow=None,
         evidence=None if found is None else _evidence(report, made, found),
         made=say("Made by estimator {estimator_version}", estimator_version=made.estimator_version),
+        gain=made.gain_in_words,
     )
 
 
@@ -172,6 +181,7 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
         beta=before.beta is not None,
         left_out=max(0, len(after.sensors) - MOST_PANELS),
         residuals=residual_table(replace(after, residuals=before)),
+        gains=tuple(gain_in_words(found.gain, f.sensors) for f in found.findings),
         gain=gain_view(found.gain, report.calibration, after, *verdicts) if is_named else None,
         seen=seen_causes(found.limits, {sensor.kind for sensor in after.sensors}),
         blind=blind_causes(found.limits),
@@ -239,7 +249,7 @@ def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) 
 @router.post("/sessions/{id}/diagnosis/accept")
 def accept(
     id: Key,
-    storage: StorageOf,
+    reception: ReceptionOf,
     reader: ReaderOf,
     now: Now,
     *,
@@ -247,10 +257,12 @@ def accept(
     scope: Annotated[Scope, Form()],
     by: By,
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+    again: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
-    """Accepts a named cause, and shows the models that concern the session."""
-    accept_model(storage, reader.made(id), NewModel(cause, scope, by, note), now)
-    return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
+    """Accepts a named cause, and shows what it gains and, where stored sessions are computed again, what moves."""
+    made = accept_model(reception.storage, reader.made(id), NewModel(cause, scope, by, note, again=again), now)
+    recompute_beside(reception, now)
+    return RedirectResponse(f"/models/{made.id}", SEE_OTHER)
 
 
 @router.post("/sessions/{id}/diagnosis/withdraw/{revision}")

@@ -36,13 +36,19 @@ class DiagnosisLine:
 
     tone: str
     text: str
+    gain: str = ""
+    """What naming it gains, in one sentence."""
 
 
 def diagnosis_line(found: DiagnosisSummary | None, failed: str = "") -> DiagnosisLine:
     """What is known; None while it is still being examined, or where that ``failed``."""
     if found is None and failed:
         return DiagnosisLine(TONES[DiagnosisState.FAILED], session_failed(failed))
-    return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)
+    return (
+        DiagnosisLine("none", PENDING)
+        if found is None
+        else DiagnosisLine(TONES[found.state], found.summary, found.gain)
+    )
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,8 @@ class DiagnosisRow(Base):
     model_revision: Mapped[int]
     state: Mapped[str] = mapped_column(String(20))
     summary: Mapped[str] = mapped_column(Sentence)
+    gain_in_words: Mapped[str | None] = mapped_column(Sentence)
+    """NULL where no cause is named, and of earlier releases."""
     document: Mapped[bytes | None]
     verdict_after: Mapped[str | None] = mapped_column(String(20))
     estimator_version: Mapped[str] = mapped_column(String(40))

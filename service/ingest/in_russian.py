@@ -13,6 +13,7 @@ SHEETS = {"session": "сеанс", "readings": "показания", "example": 
 STEPS = {
     "format": "формат", "unit": "прибор", "unit_type": "тип прибора", "block": "блок", "programme": "программа",
     "started_at": "начало", "operator": "оператор", "notes": "примечания", "stage": "этап",
+    "powered_on_at": "включение", "time_since_power_on_s": "время от включения, с",
     "origin": "происхождение", "site": "место", "stand": "стенд", "mounting": "установка", "sensors": "датчики",
     "count_time_s": "время счёта, с",
     "counter": "счётчик", "sample_rate_hz": "частота отсчётов, Гц", "direction_sigma_deg": "сигма направлений, °",

@@ -25,8 +25,8 @@ def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> di
 
 
 TEXTS = (
-    "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes",
-    "id", "name", "kind", "reading_unit", "counter",
+    "format", "unit", "unit_type", "block", "programme", "started_at", "powered_on_at", "operator",
+    "notes", "id", "name", "kind", "reading_unit", "counter",
 )  # fmt: skip
 """Keys whose value is text even where it looks like a number, as a serial number may."""
 DEEPEST = 4

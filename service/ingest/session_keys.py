@@ -10,6 +10,8 @@ KEY_HINTS = {
     "block": "Kind of the sensors: accelerometer or gyroscope.",
     "programme": "How it was measured.",
     "started_at": "When the first row was measured, with its zone: 2026-03-01T09:00:00Z, or with +03:00 for Moscow.",
+    "powered_on_at": "When the unit was switched on, in the same way; empty where nobody knows.",
+    "time_since_power_on_s": "Seconds from switching on to the first row, where the moment itself is not given.",
     "stage": "as-found before the unit was worked on, as-left after it; empty otherwise.",
     "origin": "simulated where no hardware was measured; empty otherwise.",
     "operator": "Who measured.",

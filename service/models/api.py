@@ -52,8 +52,11 @@ class DiagnosisDocument(BaseModel):
         "they are too small (below 1 they are too large), and the degrees of `freedom` that tell it.",
     )
     gain: dict[str, Any] | None = Field(
-        description="Prediction of readings that were held out, before and after, with `rms_by_kind` of sensor; null "
-        "where causes are not looked for."
+        description="Prediction of readings that were held out, before and after, with `rms_by_kind` of sensor and "
+        "`rms_by_sensor`, by kind and name, in SI; null where causes are not looked for."
+    )
+    gain_in_words: str = Field(
+        default="", description="The same of the sensors concerned in one sentence; empty where no cause is named."
     )
     limits: list[dict[str, Any]] = Field(description="Smallest amplitude of each cause that would have been found.")
     calibration: dict[str, Any] | None = Field(

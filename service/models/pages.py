@@ -20,7 +20,7 @@ from service.groups.words import over, since_in_words
 from service.models.records import ModelRevision, NewLasting, Pooled, Progress, Recomputation, Scope
 from service.models.rules import in_force, pooled_of
 from service.models.store import Models, Recomputations
-from service.models.words import left_in_words, moved_in_words, progress_of
+from service.models.words import gain_of, left_in_words, moved_in_words, progress_of
 from service.people.dependencies import SEE_OTHER, By, Number, Why
 from service.records.dependencies import ReceptionOf
 from service.records.models import accept_lasting, withdraw_model
@@ -66,6 +66,8 @@ class ModelPage:
     statement: str
     amplitudes: tuple[str, ...]
     evidence: str
+    gain: str
+    """What it gained for its sensors, in one sentence."""
     withdrawn: ModelRevision | None
     """The revision that withdrew it."""
     holds: bool
@@ -89,6 +91,7 @@ def model_page(
         statement="" if evidence is None else evidence.sentence,
         amplitudes=_amplitudes(revision),
         evidence="" if evidence is None else _evidence(evidence.strength, pooled),
+        gain=gain_of(revision),
         withdrawn=next((r for r in of_subject if r.withdraws == revision.id), None),
         holds=revision in in_force(of_subject),
         progress=progress_of(recomputations),

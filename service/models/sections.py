@@ -6,6 +6,7 @@ from datetime import datetime
 
 from service.diagnosis.words.causes import cause_on
 from service.models.records import ModelRevision
+from service.models.words import gain_of
 
 
 @dataclass(frozen=True)
@@ -18,18 +19,21 @@ class AcceptedCause:
     who: str
     at: datetime
     note: str
+    gain: str
+    """What it gained, in one sentence."""
 
 
 def accepted_causes(revisions: Sequence[ModelRevision]) -> tuple[AcceptedCause, ...]:
     """Lines in the order of the revisions."""
     return tuple(
         AcceptedCause(
-            revision.id,
-            cause_on(revision.cause, revision.sensors),
-            revision.session,
-            revision.accepted_by,
-            revision.accepted_at,
-            revision.note,
+            revision=revision.id,
+            name=cause_on(revision.cause, revision.sensors),
+            session=revision.session,
+            who=revision.accepted_by,
+            at=revision.accepted_at,
+            note=revision.note,
+            gain=gain_of(revision),
         )
         for revision in revisions
     )

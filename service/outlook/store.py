@@ -100,6 +100,7 @@ class ChangeRow:
     """Degrees of freedom of the uncertainty; None where all noise is known."""
     temperature: float | None
     """°C"""
+    session: str = ""
 
 
 @dataclass(frozen=True)
@@ -111,6 +112,7 @@ class ReferenceRow:
     programme: str
     temperature: float | None
     """°C"""
+    session: str = ""
 
 
 class Outlooks(Queries):
@@ -123,6 +125,7 @@ class Outlooks(Queries):
                 SessionRow.started_at, SessionRow.block, SessionRow.programme, DecisionRow.sensor, DecisionRow.kind,
                 DecisionRow.parameter, DecisionRow.tolerance, DecisionRow.change, DecisionRow.change_own,
                 DecisionRow.change_origin, DecisionRow.dof, SessionRow.temperature,
+                SessionRow.id,
             )
             .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
             .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
@@ -134,7 +137,7 @@ class Outlooks(Queries):
 
     def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
         """The sessions since a time that others are judged against, oldest first."""
-        columns = (SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature)
+        columns = (SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature, SessionRow.id)
         query = select(*columns).where(SessionRow.is_reference)
         order = (SessionRow.started_at, SessionRow.id)
         found = self._session.execute(query.where(*_within(unit, since)).order_by(*order))

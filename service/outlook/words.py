@@ -1,10 +1,11 @@
 """How a unit or a production lot drifts unlike the others of its type, in words."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import floor, log10
 
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.wording import counted
 from service.kit.measures import (
     COVERAGE,
@@ -27,6 +28,7 @@ from service.outlook.records import (
     TemperatureCoefficient,
     UnitOutlook,
 )
+from service.outlook.rules.histories import TrackKey
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession
 
@@ -78,6 +80,30 @@ def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
         before=day_of(change.before),
         moved=rate if change.kind == "drift" else _sized(trend, change.size, change.sigma),
         allowed=in_words(trend.kind, trend.parameter, trend.tolerance),
+    )
+
+
+MOST_NAMED = 6
+"""Parameters, by name, before the rest are counted."""
+
+
+def explained_in_words(at: datetime, parts: Sequence[tuple[TrackKey, float]]) -> str:
+    """What a diagnosis gives to the stand, or to what sensors share, of the changes of a session."""
+    named = [
+        say(
+            "{sensor} {parameter_names} {size}",
+            sensor=key.sensor,
+            parameter_names=PARAMETER_NAMES[key.parameter],
+            size=in_words(key.kind, key.parameter, size),
+        )
+        for key, size in parts[:MOST_NAMED]
+    ]
+    more = [say("{more} more", more=len(parts) - MOST_NAMED)] if len(parts) > MOST_NAMED else []
+    return say(
+        "By its diagnosis, the session of {day} owes these changes to the stand or to another shared cause, and they "
+        "do not count as changes of the sensors: {parts}.",
+        day=day_of(at),
+        parts=joined(", ", [*named, *more]),
     )
 
 
@@ -170,19 +196,10 @@ def was_due(due: datetime, reason: str) -> str:
     return say("Calibration was due on {date}. {reason}", date=day_of(due), reason=reason)
 
 
-def needed_now(verdict: Verdict | None, *, known: bool) -> str:
-    """In a table, of a unit that waits for no date."""
-    if verdict in UNFIT:
-        return "act now"
-    return "repeat" if known else "not known"
-
-
 FAR = 5.0
 """Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
 """From today on: a quarter, half a year and a year, as calibrations are put off."""
-TONES = {Action.NOW: "fail", Action.REPEAT: "conditional-fail"}
-"""Where the unit waits for no date."""
 
 
 @dataclass(frozen=True)
@@ -197,8 +214,6 @@ class Wait:
 class NextCalibration:
     """What a unit's page says of its future."""
 
-    tone: str
-    headline: str
     reason: str
     """The rule that set the date."""
     foreseen: str
@@ -213,26 +228,12 @@ class NextCalibration:
 def next_calibration(outlook: UnitOutlook, now: datetime) -> NextCalibration:
     """The words of an outlook, as of today."""
     return NextCalibration(
-        tone="fail" if outlook.overdue else TONES.get(outlook.action, "reference"),
-        headline=_headline(outlook),
         reason=outlook.reason,
         foreseen=foreseen(outlook),
         moving=_moving(outlook.trends),
         together=outlook.together,
         waits=_waits(outlook, now),
     )
-
-
-def _headline(outlook: UnitOutlook) -> str:
-    if outlook.action is Action.NOW:
-        return "Act now"
-    if outlook.action is Action.REPEAT:
-        return "Repeat the calibration"
-    if outlook.due is None:
-        return "Next calibration: not known"
-    if outlook.overdue:
-        return say("Calibration overdue since {date}", date=day_of(outlook.due))
-    return say("Next calibration: {date}", date=day_of(outlook.due))
 
 
 def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
 from service.groups.sections import MOST_FOUND, found_line, group_section
 from service.ingest import is_own_layout
+from service.judging.usable_reading import usable_of
 from service.kit.arriving_files import where
 from service.kit.limits import in_force
 from service.models.rules import model_as_of
@@ -19,7 +20,7 @@ from service.models.store import Models
 from service.outlook.reading import dated
 from service.outlook.rules.populations import fleet_standouts
 from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
-from service.pages.fleet.view import FleetAsked, FleetView
+from service.pages.fleet.view import FleetView
 from service.pages.saved import saved
 from service.pages.session.pages import session_page
 from service.pages.unit.pages import unit_page
@@ -65,16 +66,16 @@ def show_fleet(
     store: ReadingFleet,
     now: Now,
     person: PersonOf,
-    asked: Annotated[FleetAsked, Query()],
+    view: Annotated[FleetView, Query()],
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
-    view, announced = FleetView.of(asked), Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
-    condition = Fleet(store).condition_at(now)
+    announced = Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
+    condition, units = Fleet(store).condition_at(now), Fleet(store).units(view.query(now))
     shown = fleet_page(
         condition,
-        Fleet(store).units(view.query(now)),
+        units,
+        usable_of(store, units, now),
         view,
-        now,
         overdue=condition.overdue,
         together=found_line(announced),
         unlike=fleet_standouts(store, MOST_STANDOUTS),
@@ -105,7 +106,7 @@ def show_unit(
         unit_page(
             report,
             recent_history(store, serial, HISTORY_LIMIT, raw=raw, noise=True),
-            now=now,
+            usable_of(store, (report.summary,), now)[serial],
             raw=raw,
             flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,

@@ -9,6 +9,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.store import Fleet
+from service.judging.usable_reading import usable_of
 from service.papers.changes import Signing
 from service.papers.correction import correction_document
 from service.papers.dependencies import DeskOf
@@ -144,7 +145,7 @@ LABEL_PDF, SVG = "application/pdf", "image/svg+xml"
 """Media types of the two forms."""
 
 
-Due = Annotated[bool, Query(description="Whether it says when the calibration is due.")]
+Due = Annotated[bool, Query(description="Whether it says if the unit may be used and when its calibration is due.")]
 
 
 @dataclass(frozen=True)
@@ -162,7 +163,8 @@ class Labels:
         if unit is None:
             raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         base = self.settings.public_url or str(self.request.base_url)
-        return label_of(unit, base, self.now, with_due=due)
+        use = usable_of(self.store, (unit,), self.now)[serial]
+        return label_of(unit, use, base, with_due=due)
 
 
 def _labels(request: Request, store: Reading, settings: SettingsOf, now: Now) -> Labels:
@@ -178,7 +180,7 @@ LabelsOf = Annotated[Labels, Depends(_labels)]
     response_class=Response,
 )
 def read_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
-    """A small label: serial number, due date, and a QR code that opens the unit's page.
+    """A small label: serial number, `DO NOT USE` or the due date, and a QR code that opens the unit's page.
 
     Its address is that of the setting `IMU_HEALTH_PUBLIC_URL`, or the one that this request was sent to.
     """

@@ -17,7 +17,7 @@ from service.outlook.changes import END_OF_TIME
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import Derived, Deriving, derive_again
-from service.records.flagging.fold import SERVICE
+from service.records.flagging.acts import SERVICE
 from service.records.follow import follow
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Judged

@@ -21,8 +21,10 @@ from service.judging.store import Derivations
 from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
-from service.records.flagging.fold import Occasion, settle_sessions, tell_verdict
-from service.records.flagging.lasting import flag_drift, no_longer_overdue
+from service.records.flagging.acts import Occasion
+from service.records.flagging.drift import flag_drift
+from service.records.flagging.fold import settle_sessions, tell_verdict
+from service.records.flagging.lasting import no_longer_overdue
 from service.records.judge_again import (
     Foreseen,
     Judging,

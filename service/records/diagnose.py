@@ -15,6 +15,7 @@ from estimator.session import DIAGNOSED, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis, state_of
 from service.diagnosis.store import Diagnoses, inapplicable_to_dict, read_diagnosis
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
+from service.diagnosis.words.gain import concerned, gain_in_words
 from service.groups.changes import as_evidence, keep_statistics, kept_before
 from service.ingest import read_upload
 from service.ingest.checked import dated
@@ -23,6 +24,7 @@ from service.kit.failure import with_last_try
 from service.kit.lock_order import outside_writing
 from service.kit.log import log
 from service.models.store import Models
+from service.outlook.explained import explains
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.changes import question_diagnosed
@@ -111,6 +113,9 @@ def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket:
         details = {"state": made.state.value, "summary": made.summary}
         Audit(store).write(way.at, "diagnosis", "diagnose", made.session, details)
         flag_diagnosis(store, made, way.at)
+        is_counted = Sessions(store).get(made.session).state is RecordState.ACCEPTED
+        if made.found is not None and is_counted and explains(made.found):
+            WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(unit, way.at)
         if made.found is not None:
             derived = question_diagnosed(store, way, made.session, made.found)
     return derived or NOTHING_LEFT
@@ -151,6 +156,7 @@ def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
         _nothing_found(task, state_of(found), summary_of(found), now),
         found=read,
         document=document,
+        gain_in_words=gain_in_words(found.gain, concerned(found.findings)) if found.findings else "",
         verdict_after=weighed.verdict_after,
         reservations=weighed.reservations,
     )

@@ -20,8 +20,10 @@ from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import AT_ONCE, Derived, Deriving, sum_up
-from service.records.flagging.fold import Occasion
-from service.records.flagging.lasting import flag_drift, no_longer_overdue
+from service.records.flagging.acts import Occasion
+from service.records.flagging.drift import flag_drift
+from service.records.flagging.fold import settle_sessions
+from service.records.flagging.lasting import no_longer_overdue
 from service.records.judge_again import fitting, judged, judging, places_of, put
 from service.records.weigh import weighable, weighed_again
 from service.sessions.store import NOT_JUDGED
@@ -157,6 +159,7 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
             summary = Fleet(store).unit(serial)
             session = None if summary is None else summary.last_session
             occasion, made = Occasion(unit, session, now), Outlooks(store).of_unit(serial)
-            flag_drift(store, occasion, made)
+            settle_sessions(store, occasion)
             no_longer_overdue(store, occasion, made, sources.past.latest)
+            flag_drift(store, occasion, made)
             return

@@ -63,6 +63,8 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
         )
         revision = Models(store).add(accepted)
         tell_own(store, revision.scope, revision.subject)
+        if new.again:
+            _compute_again(store, revision, now)
         details = {"cause": new.cause, "sensors": list(finding.sensors), "session": session.id, "note": new.note}
         Audit(store).write(
             now,
@@ -72,6 +74,13 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
             {"revision": revision.id, **details},
         )
         return revision
+
+
+def _compute_again(store: Store, changed: ModelRevision, now: datetime) -> int:
+    """Asks for the sessions of every unit that a changed model concerns; returns how many units those are."""
+    units = Recomputations(store).ask(changed.id, changed.scope, changed.subject, now)
+    add_model_job(store, changed, units, now)
+    return units
 
 
 def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
@@ -186,8 +195,7 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
         if isinstance(taken, GroupFinding):
             settle_accepted(store, revision, taken, now)
         tell_own(store, scope, taken.subject)
-        units = Recomputations(store).ask(revision.id, scope, taken.subject, now)
-        add_model_job(store, revision, units, now)
+        units = _compute_again(store, revision, now)
         details = {"revision": revision.id, "cause": new.cause, "sensors": list(taken.sensors), "units": units}
         shows = {
             "group": say("{scopes} {name}", scopes=SCOPES[group.level.value], name=group.name),
@@ -315,7 +323,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         )
         tell_own(store, known.scope, known.subject)
         if pooled_of(known) is not None:
-            add_model_job(store, made, Recomputations(store).ask(made.id, known.scope, known.subject, now), now)
+            _compute_again(store, made, now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
         Audit(store).write(
             now, by, "withdraw model", say("{scope} {subject}", scope=known.scope, subject=known.subject), details

@@ -7,6 +7,7 @@ from enum import StrEnum
 from pydantic import BaseModel, ConfigDict, Field, computed_field
 
 from service.kit.answer import Hidden, answer
+from service.kit.listing import ListQuery
 from service.kit.moments import epoch_ms
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
@@ -69,6 +70,8 @@ class StoredSession:
     """°C, the mean over the session; None where it was not recorded."""
     is_check: bool = False
     """Whether it is only a check, which moves no due date unless it is a reference."""
+    time_since_power_on: float | None = None
+    """Seconds from switching the unit on to the first row; null where the file does not say."""
 
 
 @dataclass(frozen=True)
@@ -134,8 +137,8 @@ class SessionOrder(StrEnum):
 
 
 @dataclass(frozen=True)
-class SessionQuery:
-    """Which sessions are wanted."""
+class SessionQuery(ListQuery):
+    """Which sessions are wanted, and after or before which identifier."""
 
     text: str | None = None
     """Part of the unit's serial number, small and capital letters alike."""
@@ -154,14 +157,6 @@ class SessionQuery:
     reserved: bool = False
     """Only those whose verdict is said with a reservation."""
     order: SessionOrder = SessionOrder.MEASURED
-    backwards: bool = False
-    after: str | None = None
-    """The session that the list goes on after; one that is not there begins the list anew."""
-    before: str | None = None
-    """The session that it ends before."""
-    offset: int = 0
-    """How many are left out first, where a page has a number instead of a place."""
-    limit: int = 100
 
 
 @answer
@@ -233,6 +228,8 @@ class DiagnosisSummary:
 
     state: DiagnosisState
     summary: str
+    gain: str = ""
+    """What the named causes gain, in one sentence."""
 
 
 UNWEIGHED = "~"

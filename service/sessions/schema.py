@@ -133,6 +133,13 @@ SESSION_FILE: JsonSchema = {
         {
             "unit_type": _text("Kind of unit, whose tolerances apply."),
             "started_at": {"type": "string", "format": "date-time", "description": "When, with its offset from UTC."},
+            "powered_on_at": {
+                "type": "string", "format": "date-time", "description": "When the unit was switched on, with its "
+                "offset; not after started_at, which it needs.",
+            },
+            "time_since_power_on_s": _number(
+                "Seconds from switching on to the first row; instead of powered_on_at.", "time_since_power_on_s"
+            ),
             "operator": {"type": "string", "description": "Who measured."},
             "notes": {"type": "string", "description": "Free text."},
             "stage": {"enum": ["as-found", "as-left"], "description": "Before or after the unit was worked on."},

@@ -47,6 +47,7 @@ class SessionRow(Base):
     basis: Mapped[str | None] = mapped_column(String(160), index=True)
     tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
     temperature: Mapped[float | None]
+    time_since_power_on: Mapped[float | None]
     is_check: Mapped[bool] = mapped_column(server_default=false())
 
 

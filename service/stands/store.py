@@ -36,6 +36,10 @@ class Stands(Queries):
         )
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
 
+    def hold(self, stand: str) -> None:
+        """Held until the transaction ends: what is derived of it is written by one after another."""
+        self._session.scalar(select(StandRow.id).where(StandRow.name == stand).with_for_update())
+
     def every(self) -> tuple[KnownStand, ...]:
         """How much each stand is used and its own health, by name, in one query."""
         return tuple(_known(*row) for row in self._session.execute(_stands().order_by(StandRow.name)))

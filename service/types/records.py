@@ -45,6 +45,8 @@ class UnitType:
     """Counts up with every change of tolerances; decisions name theirs."""
     maximum_interval_days: float = 365.0
     """Longest time from a session to the next calibration."""
+    flag_share: float = 0.3
+    """Part of the tolerance from which on a change within it has a flag; a smaller one is a remark."""
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,7 @@ class UnitTypes(Queries):
             nominal_scales=list(unit_type.nominal_scales),
             revision=unit_type.revision,
             maximum_interval_days=unit_type.maximum_interval_days,
+            flag_share=unit_type.flag_share,
         )
         if added:
             self._add_tolerances(self._row(unit_type.name), unit_type.tolerances, unit_type.gyro_tolerances, now)
@@ -116,10 +117,10 @@ class UnitTypes(Queries):
             raise _missing(name)
         return self._record(row)
 
-    def set_interval(self, name: str, days: float) -> UnitType:
-        """Sets the longest time from a session to the next calibration."""
+    def set_watch(self, name: str, *, days: float, share: float) -> UnitType:
+        """Another longest interval, and another part of the tolerance from which on a change has a flag."""
         row = self._row(name)
-        row.maximum_interval_days = days
+        row.maximum_interval_days, row.flag_share = days, share
         self._session.flush()
         return self._record(row)
 
@@ -203,6 +204,7 @@ def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
         gyro_tolerances=gyro,
         revision=tolerances.revision,
         maximum_interval_days=row.maximum_interval_days,
+        flag_share=row.flag_share,
     )
 
 

@@ -21,6 +21,7 @@ class UnitTypeRow(Base):
     nominal_scales: Mapped[list[Any]]
     revision: Mapped[int]
     maximum_interval_days: Mapped[float]
+    flag_share: Mapped[float]
 
 
 class ToleranceRow(Base):

@@ -301,6 +301,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         reservations=None,
         temperature=None if session.temperature is None else float(session.temperature.mean()),
         is_check=received.is_check,
+        time_since_power_on=session.time_since_power_on,
     )
 
 

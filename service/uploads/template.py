@@ -57,8 +57,10 @@ def _unchanged(text: str) -> str:
 
 
 DOCUMENT = dict[str, Any]
-FILLED_IN = ("unit", "started_at", "stage", "operator", "notes")
+FILLED_IN = ("unit", "started_at", "powered_on_at", "stage", "operator", "notes")
 """Fields that differ from session to session, in the order of the sheet."""
+NOT_COPIED = ("table", "origin", "time_since_power_on_s", *FILLED_IN)
+"""Fields of the pattern that say nothing of the next session."""
 MEASURED = ("time_s", "temperature_c", "vibration_m_s2")
 """Columns that are measured with the readings, and not planned."""
 CHOICES = {
@@ -77,7 +79,10 @@ ROOM = 1000
 """Rows with choices and limits: more than any session of positions."""
 MOST_SHOWN = 100
 """Rows of the example: a session of positions, or the beginning of a log."""
-EXAMPLE = {"unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "operator": "K. Ito", "notes": "after transport"}
+EXAMPLE = {
+    "unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "powered_on_at": "2026-03-01T08:20:00Z",
+    "operator": "K. Ito", "notes": "after transport",
+}  # fmt: skip
 """Values of the example."""
 AXIS_DIGITS = 10
 """Decimals of axes: 2e-5 arcsec."""
@@ -137,7 +142,7 @@ def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
 
 def _rows(document: DOCUMENT) -> Iterator[tuple[str, Any]]:
     """Keys and known values, the fields to fill in after the format; the origin is "measured"."""
-    known = {key: value for key, value in document.items() if key not in ("table", "origin", *FILLED_IN)}
+    known = {key: value for key, value in document.items() if key not in NOT_COPIED}
     yield "format", known.pop("format")
     yield from ((key, "") for key in FILLED_IN)
     yield from _flat(known, "")

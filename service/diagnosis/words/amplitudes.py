@@ -11,6 +11,7 @@ from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Shared
 from estimator.message import joined, say
+from estimator.moments import duration
 from service.kit.measures import (
     ARCSEC,
     COVERAGE,
@@ -142,7 +143,19 @@ def part_of(cause: str, k: int) -> str:
 
 
 def shape_of(finding: Finding) -> str:
-    """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ."""
+    """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ. Of what settles
+    also when its size is counted from."""
+    shape, known = _alone(finding), find(finding.cause)
+    if known is None or not known.since_power_on or not shape:
+        return shape
+    if finding.since_power_on is None:
+        return say("{shape}; size at the session's start", shape=shape)
+    begun = duration(finding.since_power_on)
+    return say("{shape}; size at switching on, {begun} before the first reading", shape=shape, begun=begun)
+
+
+def _alone(finding: Finding) -> str:
+    """What it is of each sensor."""
     if finding.shared is not None:
         return _shared_shape(finding.cause, finding.shared)
     each = finding.nonlinear_each

@@ -20,7 +20,9 @@ MOST_ROW = 1_048_576
 """Rows of a spreadsheet."""
 LONGEST = 1000
 """Characters of a heading or a word."""
-PER_FILE_FIELDS = ("unit", "started_at", "operator", "notes", "stage", "origin")
+PER_FILE_FIELDS = (
+    "unit", "started_at", "powered_on_at", "time_since_power_on_s", "operator", "notes", "stage", "origin",
+)  # fmt: skip
 """Fields of a session that differ from file to file; the others are kept for the next one."""
 
 

@@ -1,8 +1,9 @@
 """Step: judged changes since the last break → a history of each parameter, and what it tells of the unit's type."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
+from math import hypot
 
 import numpy as np
 
@@ -97,6 +98,27 @@ class TrackKey:
     parameter: str
 
 
+Place = tuple[str, str, str]
+"""A session, a sensor and a parameter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What is left of a change without what a diagnosis explains of it."""
+
+    change: list[float]
+    own: list[float]
+    """Its standard uncertainty that the session brings."""
+    dof: float | None
+    part: list[float]
+    """That was taken off; all SI or relative."""
+
+
+NOTHING_EXPLAINED: dict[Place, Left] = {}
+WORTH_TELLING = 0.1
+"""Part of the tolerance from which on it is said that a diagnosis explains it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Histories:
     """Every parameter of a unit since its last break."""
@@ -105,18 +127,32 @@ class Histories:
     tracks: tuple[Track, ...]
     dates: tuple[tuple[datetime, ...], ...]
     """Of every track's sessions, the reference included."""
+    left: Mapping[Place, Left] = field(default_factory=dict)
+    """Of changes that a diagnosis explains in part."""
+
+    def explained_in(self, session: str) -> tuple[tuple[TrackKey, float], ...]:
+        """What a diagnosis explains of a session's changes, the lengths SI or relative, where it is worth telling."""
+        each = ((key, track, self.left.get((session, key.sensor, key.parameter))) for key, track in self._tracks())
+        sizes = ((key, track, hypot(*left.part)) for key, track, left in each if left is not None)
+        return tuple((key, size) for key, track, size in sizes if size >= WORTH_TELLING * track.tolerance)
+
+    def _tracks(self) -> Iterable[tuple[TrackKey, Track]]:
+        return zip(self.keys, self.tracks, strict=True)
+
+
+def histories(
+    changes: Sequence[ChangeRow], references: Sequence[ReferenceRow], left: Mapping[Place, Left] = NOTHING_EXPLAINED
+) -> Histories:
+    """In the order in which sensors and parameters were first judged; of changes that a diagnosis explains in part,
+    what is left."""
+    groups = _groups(changes, references)
+    dated = [_track(key, rows, reference, left) for key, (rows, reference) in groups.items()]
+    return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated), left)
 
 
 Group = tuple[list[ChangeRow], ReferenceRow]
 Point = tuple[datetime, list[float], list[float], float | None, float | None]
 """Date, change, its uncertainty with its degrees of freedom, temperature."""
-
-
-def histories(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) -> Histories:
-    """In the order in which sensors and parameters were first judged."""
-    groups = _groups(changes, references)
-    dated = [_track(rows, reference) for rows, reference in groups.values()]
-    return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated))
 
 
 def told_of_type(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
@@ -142,14 +178,20 @@ def _groups(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) ->
     return groups
 
 
-def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, tuple[datetime, ...]]:
+def _track(
+    key: TrackKey, rows: Sequence[ChangeRow], reference: ReferenceRow, left: Mapping[Place, Left]
+) -> tuple[Track, tuple[datetime, ...]]:
     """The sessions of a parameter with its reference among them, in order of time.
 
     A change's degrees of freedom are those of both its sessions; the reference counts with the fewest.
     """
     fewest = min((row.dof for row in rows if row.dof is not None), default=None)
-    origin: Point = (reference.at, [0.0] * len(rows[-1].change), rows[-1].origin, fewest, reference.temperature)
-    points = sorted([origin, *((row.at, row.change, row.own, row.dof, row.temperature) for row in rows)], key=_date)
+    still = Left([0.0] * len(rows[-1].change), rows[-1].origin, fewest, [])
+    origin = _point(reference, left.get((reference.session, key.sensor, key.parameter), still))
+    own = (Left(row.change, row.own, row.dof, []) for row in rows)
+    places = ((row.session, key.sensor, key.parameter) for row in rows)
+    rest = [_point(row, left.get(place, whole)) for row, place, whole in zip(rows, places, own, strict=True)]
+    points = sorted([origin, *rest], key=_date)
     start = points[0][0]
     track = Track(
         time=np.array([(at - start) / YEAR for at, *_ in points]),
@@ -160,6 +202,10 @@ def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, t
         temperature=np.array([np.nan if warm is None else warm for *_, warm in points]),
     )
     return track, tuple(at for at, *_ in points)
+
+
+def _point(of: ChangeRow | ReferenceRow, left: Left) -> Point:
+    return of.at, left.change, left.own, left.dof, of.temperature
 
 
 def _date(point: Point) -> datetime:

@@ -15,6 +15,7 @@ from estimator.message import joined, say
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 from service.errors import ConflictError
+from service.fleet.condition import ToleranceUsed
 from service.judging.judge import judge
 from service.kit.measures import PARAMETER_NAMES, day_of, measured
 from service.pages.fleet.pages import Margin, margin_of
@@ -256,9 +257,16 @@ def _row(
         change=NOT_COMPARED if known is None else deviation_in_words(known),
         on_one_stand="" if known is None or own is None else _own(known, own),
         tolerance=tolerance_in_words(decision),
-        used=None if known is None else margin_of(known.margin),
+        used=None if known is None else _used(known),
         condition=None if known is None else condition_of(known.verdict),
     )
+
+
+def _used(decision: Decision) -> Margin | None:
+    if decision.deviation is None or decision.expanded is None:
+        return None
+    used = ToleranceUsed(abs(decision.deviation) / decision.tolerance, decision.expanded / decision.tolerance)
+    return margin_of(used)
 
 
 def _own(decision: Decision, spread: float) -> str:

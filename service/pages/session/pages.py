@@ -40,7 +40,7 @@ from service.sessions.records import ALL_PARAMETERS, DiagnosisSummary, StoredSes
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import MEANINGS, STATES, Condition, condition_of, state_in_words
 from service.sessions.words.motion import MotionLine, motions_in_words
-from service.sessions.words.readings import FitWords, bands_in_words, combination_in_words, fit_in_words
+from service.sessions.words.readings import FitWords, bands_in_words, combination_in_words, fit_in_words, switched_on
 
 NOTHING_KNOWN = Remedies()
 """Of a session that counts."""
@@ -92,6 +92,8 @@ class SessionPage:
     rule: str
     coverage: str
     size: str
+    switched_on: str
+    """How long before the first reading; empty where the file does not say."""
     diagnosis: DiagnosisLine
     gives_correction: bool
     """Whether its programme calibrates every sensor of the block."""
@@ -150,6 +152,7 @@ def session_page(
         rule=decisions[0].rule if decisions else "",
         coverage=coverage_in_words(calibration, coverage),
         size=size_in_words(report.session.size),
+        switched_on=switched_on(report.session),
         diagnosis=diagnosis_line(diagnosis, failed),
         gives_correction=report.session.programme in CALIBRATIONS,
         motions=motions_in_words(report.motions, coverage),

@@ -1,6 +1,6 @@
 """The pages of stands: may each be used today, and what its units show of it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime
 from typing import Annotated
@@ -18,6 +18,8 @@ from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.groups.records import Level
 from service.groups.sections import GroupSection, group_section
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
 from service.kit.measures import day_of
 from service.models.records import ModelRevision, Scope
 from service.models.rules import in_force
@@ -72,6 +74,8 @@ class StandReport:
     flags: tuple[Flag, ...]
     units: tuple[UnitSummary, ...]
     """Whose latest session was measured on it, the latest first."""
+    uses: Mapping[str, Usable]
+    """What they may be used for."""
     sessions: tuple[StoredSession, ...]
     """Newest first."""
     models: tuple[ModelRevision, ...]
@@ -92,15 +96,17 @@ def every_stand(store: Store) -> tuple[StandLine, ...]:
     )
 
 
-def stand_report(store: Store, name: str) -> StandReport:
+def stand_report(store: Store, name: str, now: datetime) -> StandReport:
     """One stand; NotFoundError where there is none of that name."""
     known = Stands(store).one(name)
     flags = Flags(store).page(FlagQuery(unresolved=True, stand=name, limit=MOST + 1))
+    units = Fleet(store).units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1))
     at_fault = sum(flag.matter in AT_FAULT for flag in flags)
     return StandReport(
         line=StandLine(known.use, known.condition, StandCertificates(store).of_stand(name), at_fault),
         flags=flags,
-        units=Fleet(store).units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1)),
+        units=units,
+        uses=usable_of(store, units, now),
         sessions=Sessions(store).wanted(SessionQuery(stand=name, limit=MOST + 1)),
         models=in_force(Models(store).of_subject(Scope.STAND, name)),
     )
@@ -181,7 +187,7 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
         shifts=() if condition is None else _shifts(condition),
         seating=() if condition is None else _seating(condition),
         unreadable=() if condition is None else condition.unreadable,
-        units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
+        units=tuple(fleet_row(unit, report.uses[unit.serial]) for unit in report.units[:MOST]),
         sessions=session_lines(report.sessions[:MOST]),
         causes=accepted_causes(report.models),
         group=group,
@@ -251,7 +257,7 @@ def show_stands(request: Request, store: ReadingFleet, now: Now) -> HTMLResponse
 def show_stand(request: Request, store: ReadingFleet, now: Now, name: Key) -> HTMLResponse:
     """One stand: may it be used today, and what was measured on it."""
     return render(
-        request, "stand.html", stand_page(stand_report(store, name), now, group_section(store, Level.STAND, name))
+        request, "stand.html", stand_page(stand_report(store, name, now), now, group_section(store, Level.STAND, name))
     )
 
 

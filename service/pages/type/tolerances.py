@@ -42,7 +42,7 @@ LEAST, MOST = 1e-15, 1e6
 """SI; as the API has it."""
 SHORTEST, LONGEST = 1, 36_525
 """Days: from one to a hundred years."""
-INTERVAL = "interval"
+INTERVAL, SHARE = "interval", "share"
 
 
 @dataclass(frozen=True)
@@ -57,12 +57,20 @@ class ToleranceField:
 
 
 @dataclass(frozen=True)
+class Watch:
+    """How a type's units are watched between calibrations; None leaves it as it is."""
+
+    interval_days: float | None = None
+    flag_share: float | None = None
+
+
+@dataclass(frozen=True)
 class Wanted:
     """What the form asks for."""
 
     tolerances: Tolerances
     gyro_tolerances: Tolerances | None
-    interval_days: float
+    watch: Watch
 
 
 def tolerance_fields(known: UnitType) -> tuple[ToleranceField, ...]:
@@ -81,23 +89,32 @@ def days(known: UnitType) -> str:
     return f"{known.maximum_interval_days:.12g}"
 
 
+def share(known: UnitType) -> str:
+    """Of the tolerance, %, from which on a change has a flag, as the form has it."""
+    return f"{100 * known.flag_share:.12g}"
+
+
 def wanted(known: UnitType, form: Mapping[str, str]) -> Wanted:
     """What a form asks for; RefusedError with every number that is none."""
     faults: list[Problem] = []
     read = {kind: Tolerances(**{name: _read(kind, name, given, form, faults) for name in PARAMETERS})
             for kind, given in _kinds(known)}  # fmt: skip
-    interval = _number(INTERVAL, form.get(INTERVAL, days(known)), faults)
-    if interval is None or not SHORTEST <= interval <= LONGEST:
-        faults.append(
-            Problem(
-                INTERVAL,
-                say("must be between {shortest} and {longest} days", shortest=SHORTEST, longest=f"{LONGEST:,}"),
-            )
-        )
-    if faults or interval is None:
+    watch = _watch(known, form, faults)
+    if faults:
         raise RefusedError("The tolerances cannot be set.", tuple(faults))
     own, *others = read.values()
-    return Wanted(own, others[0] if others else None, interval)
+    return Wanted(own, others[0] if others else None, watch)
+
+
+def _watch(known: UnitType, form: Mapping[str, str], faults: list[Problem]) -> Watch:
+    interval = _number(INTERVAL, form.get(INTERVAL, days(known)), faults)
+    percent = _number(SHARE, form.get(SHARE, share(known)), faults)
+    if interval is not None and not SHORTEST <= interval <= LONGEST:
+        must = say("must be between {shortest} and {longest} days", shortest=SHORTEST, longest=f"{LONGEST:,}")
+        faults.append(Problem(INTERVAL, must))
+    if percent is not None and not 0 <= percent <= 100:
+        faults.append(Problem(SHARE, "must be between 0 and 100 %"))
+    return Watch(interval, None if percent is None else percent / 100)
 
 
 def _kinds(known: UnitType) -> tuple[tuple[str, Tolerances], ...]:
@@ -207,6 +224,8 @@ class PreviewPage:
     notes: tuple[str, ...]
     interval: str
     """That the form asks for, where it is another one; empty where it stays."""
+    share: str
+    """The same of the share of the tolerance, %."""
     carried: tuple[tuple[str, str], ...]
     """Numbers as they were written, to be set as they are."""
     why: str
@@ -214,7 +233,7 @@ class PreviewPage:
 
 def preview_page(known: UnitType, asked: Wanted, form: Mapping[str, str], found: TolerancePreview) -> PreviewPage:
     """What would change, and the form that sets it."""
-    other = asked.interval_days != known.maximum_interval_days
+    other = _others(known, asked.watch)
     return PreviewPage(
         name=known.name,
         headline=headline_of(found),
@@ -222,10 +241,14 @@ def preview_page(known: UnitType, asked: Wanted, form: Mapping[str, str], found:
             ChangeRow(one.unit, condition_of(one.before), condition_of(one.after), one.reason) for one in found.changes
         ),
         notes=tuple(notes_of(found)),
-        interval=f"{asked.interval_days:.12g}" if other else "",
+        interval=days(other) if other.maximum_interval_days != known.maximum_interval_days else "",
+        share=share(other) if other.flag_share != known.flag_share else "",
         carried=tuple((key, value) for key, value in form.items() if key not in CARRIED_APART),
         why=form.get("why", ""),
     )
+
+
+AS_IT_IS = Watch()
 
 
 def set_tolerances(
@@ -235,7 +258,7 @@ def set_tolerances(
     gyro_tolerances: Tolerances | None,
     now: datetime,
     *,
-    interval_days: float | None = None,
+    watch: Watch = AS_IT_IS,
     who: str = "crew",
     why: str = "",
     seen: int | None = None,
@@ -244,7 +267,7 @@ def set_tolerances(
 
     ConflictError where ``seen``, the revision that somebody changed, is no longer the one in force.
 
-    Another interval holds for all units of the type at once; None leaves it as it is.
+    How units are watched holds for all units of the type at once.
     """
     undated: tuple[str, ...] = ()
     with storage.database.writing() as store:
@@ -257,21 +280,36 @@ def set_tolerances(
                 )
             )
         said = {"why": why} if why else {}
-        if interval_days is not None and interval_days != current.maximum_interval_days:
-            was = current.maximum_interval_days
-            current = UnitTypes(store).set_interval(name, interval_days)
+        wished = _others(current, watch)
+        if wished != current:
+            for action, numbers in _differences(current, wished):
+                Audit(store).write(now, who, action, name, numbers | said)
+            current = UnitTypes(store).set_watch(name, days=wished.maximum_interval_days, share=wished.flag_share)
             undated = tuple(Units(store).of_type(name))
             for serial in undated:
                 WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, now)
-            Audit(store).write(
-                now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days} | said
-            )
         if (current.tolerances, current.gyro_tolerances) != (tolerances, gyro_tolerances):
             before = asdict(current)
             current = UnitTypes(store).revise(name, tolerances, gyro_tolerances, now)
             Audit(store).write(now, who, "tolerances", name, {"before": before, **asdict(current), **said})
     date(storage, Deriving(storage.files, COVERAGE, now), *undated)
     return current
+
+
+def _others(known: UnitType, watch: Watch) -> UnitType:
+    """The type watched otherwise; the same number written again is no other one."""
+    days = known.maximum_interval_days if watch.interval_days is None else watch.interval_days
+    share = known.flag_share if watch.flag_share is None else watch.flag_share
+    same = isclose(share, known.flag_share, rel_tol=SAME)
+    return replace(known, maximum_interval_days=days, flag_share=known.flag_share if same else share)
+
+
+def _differences(was: UnitType, now: UnitType) -> Iterator[tuple[str, dict[str, float]]]:
+    """Lines of the audit trail: what was done, and the numbers."""
+    for action, name in (("interval", "maximum_interval_days"), ("flag share", "flag_share")):
+        before, after = getattr(was, name), getattr(now, name)
+        if before != after:
+            yield action, {"before": before, name: after}
 
 
 MOST_UNITS = 100

@@ -13,6 +13,7 @@ from service.kit.measures import THIN, day_of, method_name, minute_of, number, s
 from service.papers.certified import CertifiedSession
 from service.papers.words import stated
 from service.sessions.records import StoredSession
+from service.sessions.words.readings import switched_on
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,7 @@ def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
         Fact("Judged against", _judged_against(found)),
         Fact("State of the unit", _state(found)),
         Fact("Temperature", _temperature(source)),
+        *([Fact("Switched on", on)] if (on := switched_on(session)) else ()),
     )
 
 

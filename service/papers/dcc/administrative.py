@@ -124,7 +124,7 @@ def _contact(element: str, name: str, address: str, country: str) -> Element:
     return DCC(element, english("name", name), DCC.location(*codes, english("further", address)))
 
 
-CELSIUS, DEGREE, METRE = r"\degreecelsius", r"\degree", r"\metre"
+CELSIUS, DEGREE, METRE, SECOND = r"\degreecelsius", r"\degree", r"\metre", r"\second"
 ELEVATIONS = {
     "alpha": "Elevation α of the head's axis above the horizon",
     "chi": "Elevation χ of the head's axis above the plane orthogonal to the Earth's axis",
@@ -134,7 +134,7 @@ ELEVATIONS = {
 
 def conditions(source: CalibrationSession) -> Element:
     """Every known condition; also that the temperature was not recorded."""
-    return DCC.influenceConditions(_temperature(source), *_site(source), *_elevations(source))
+    return DCC.influenceConditions(_temperature(source), *_power_on(source), *_site(source), *_elevations(source))
 
 
 def _condition(name: str, *data: Element) -> Element:
@@ -146,6 +146,12 @@ def _temperature(source: CalibrationSession) -> Element:
         return _condition("Temperature", english("text", "not recorded"))
     extremes = (("lowest", np.min(source.temperature)), ("highest", np.max(source.temperature)))
     return _condition("Temperature", *(bare_quantity(name, float(value), CELSIUS) for name, value in extremes))
+
+
+def _power_on(source: CalibrationSession) -> Iterator[Element]:
+    if source.time_since_power_on is not None:
+        since = bare_quantity("from switching on to the first reading", source.time_since_power_on, SECOND)
+        yield _condition("Time since power-on", since)
 
 
 def _site(source: CalibrationSession) -> Iterator[Element]:

@@ -10,6 +10,7 @@ from estimator.message import say
 from estimator.wording import counted
 from service.fleet.records import LAST, NOT_JUDGED, STEP, Tally
 from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
+from service.sessions.decision import Verdict
 from service.sessions.words.conditions import CONDITIONS, Condition, condition_of
 
 HEIGHT = 120
@@ -23,13 +24,17 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
     """Units by the share of the tolerance that their worst parameter uses, uncertainty included."""
     counts: dict[tuple[int, Condition], int] = {}
     for tally in tallies:
-        condition = condition_of(tally.verdict, is_reference=tally.is_reference)
-        if tally.bar != NOT_JUDGED and condition in CONDITIONS:
-            key = (tally.bar * STEP, condition)
+        if is_drawn(tally):
+            key = (tally.bar * STEP, condition_of(tally.verdict))
             counts[key] = counts.get(key, 0) + tally.units
     rows = _stacked(counts)
     text = say("{counts} by tolerance used", counts=counted(sum(counts.values()), "unit"))
     return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, None, {DATA_FORM: rows}),))
+
+
+def is_drawn(tally: Tally) -> bool:
+    """Whether its units were judged against their tolerance: of what is undecided no share of it is claimed."""
+    return tally.bar != NOT_JUDGED and tally.verdict is not Verdict.UNDECIDABLE
 
 
 def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[dict[str, Any]]:

@@ -2,13 +2,15 @@
 
 import io
 from collections.abc import Iterator
-from datetime import datetime
 
 from estimator.message import say
 from service.fleet.condition import UnitSummary
 from service.fleet.records import FleetQuery
 from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
+from service.judging.use import in_words
 from service.judging.words import unit_in_words
 from service.kit.measures import MEASURES, Measure, in_measure, value_measure
 from service.languages.language import Language
@@ -35,7 +37,7 @@ FLEET = (
     Column("Overdue", width=9),
     Column("Sessions", Kind.NUMBER, 9), Column("Open flags", Kind.NUMBER, 9), Column("Simulated", width=10),
     Column("Why", width=60), Column("Why due then", width=50), Column("What the simulation gets wrong", width=60),
-    SESSION, Column("Verdict in words", width=60),
+    SESSION, Column("Verdict in words", width=60), Column("May it be used", width=40),
 )  # fmt: skip
 PARAMETERS = (
     UNIT, SESSION, SENSOR, Column("Kind"),
@@ -63,7 +65,8 @@ def fleet_xlsx(store: Store, report: FleetReport, language: Language = Language.
     serials = tuple(unit.serial for unit in units[:MOST_DETAILED])
     sessions = _sessions_shown(store, serials)
     book = Workbook(target, report.at, "Fleet report", language)
-    book.table("Fleet", FLEET, (_fleet_row(unit, report.at) for unit in units))
+    uses = usable_of(store, units, report.at)
+    book.table("Fleet", FLEET, (_fleet_row(unit, uses[unit.serial]) for unit in units))
     book.table("Parameters", PARAMETERS, (_parameter_row(*row) for row in FleetRows(store).latest_decisions(serials)))
     book.table("Histories", HISTORIES, (_history_row(*row) for row in FleetRows(store).histories(serials, sessions)))
     book.table("About", ABOUT, _about(report, sessions, len(serials) if len(units) > len(serials) else None))
@@ -76,16 +79,16 @@ def _sessions_shown(store: Store, serials: tuple[str, ...]) -> int:
     return max(1, MOST_HISTORY_ROWS // max(1, FleetRows(store).points_of_latest(serials)))
 
 
-def _fleet_row(unit: UnitSummary, now: datetime) -> tuple[Cell, ...]:
+def _fleet_row(unit: UnitSummary, usable: Usable) -> tuple[Cell, ...]:
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
-    word = said_with(condition, unit.reservations).word
+    word, used = said_with(condition, unit.reservations).word, unit.used
     return (
         unit.serial, unit.unit_type, word, unit.worst_sensor, unit.worst_parameter,
-        None if unit.margin is None else 1 - unit.margin, unit.margin, unit.last_at,
-        unit.due, unit.due is not None and unit.due < now,
+        None if used is None else used.deviation + used.expanded, None if used is None else unit.margin, unit.last_at,
+        usable.due, usable.is_overdue,
         unit.sessions, unit.flags, unit.simulated,
         unit.reason, unit.due_reason or None, unit.diagnosis, unit.last_session,
-        unit_in_words(unit),
+        unit_in_words(unit), in_words(usable.use, usable.action),
     )  # fmt: skip
 
 

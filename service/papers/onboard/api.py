@@ -5,11 +5,15 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Response
 
 from service.papers.onboard import FORMS, System
+from service.papers.onboard.given import check
 from service.papers.onboard.stored import given_of
 from service.people.dependencies import StorageOf
+from service.sessions.store import Sessions
+from service.web.dependencies import Now
 from service.web.fields import SessionId
 from service.web.files import as_file
 from service.web.problem_document import errors
+from service.work.dependencies import ReaderOf
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
 PLAIN = "text/plain; charset=utf-8"
@@ -20,9 +24,19 @@ TEXT_FILE: dict[int | str, dict[str, Any]] = {200: {"content": {"text/plain": {"
 def read_export(
     id: SessionId,
     storage: StorageOf,
+    now: Now,
+    reader: ReaderOf,
     system: Annotated[System, Query(description="PX4, ArduPilot, Kalibr or ROS 2.", examples=["px4"])],
+    *,
+    force: Annotated[bool, Query(description="Also where the unit must not be used; the file says so.")] = False,
 ) -> Response:
-    """The correction as another system's parameters, with what that system cannot hold."""
-    given, form = given_of(storage, id), FORMS[system]
+    """The correction as another system's parameters, with what that system cannot hold and what must be known of the
+    unit; 409 where it must not be used, unless it is forced."""
+    with storage.database.reading() as store:
+        unit = Sessions(store).get(id).unit
+    reader.until_dated(unit)
+    given, form = given_of(storage, id, now), FORMS[system]
+    if not force:
+        check(given)
     name = f"{given.unit}-{given.session[:8]}-{system}.{form.ending}"
     return as_file(form.written(given).encode(), PLAIN, name)

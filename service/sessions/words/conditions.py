@@ -150,11 +150,11 @@ def but_alone(reservations: Reservations) -> str:
         "but {reservations}{rest}: {advice}",
         reservations=joined("; and ", (one.text for one in told)),
         rest=rest,
-        advice=joined(" and ", _advice(told)),
+        advice=joined(" and ", advice_of(told)),
     )
 
 
-def _advice(told: Sequence[Reservation]) -> tuple[str, ...]:
+def advice_of(told: Sequence[Reservation]) -> tuple[str, ...]:
     """What to do, once, and not what other advice says already; a wrong file is put right before anything else."""
     if any(one.kind is Doubt.RECORD for one in told):
         told = [one for one in told if one.kind is Doubt.RECORD]

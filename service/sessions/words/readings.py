@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 
 from estimator.message import joined, say, say_count
+from estimator.moments import duration
 from estimator.results import Calibration, Fit, KnownCombination
 from service.kit.measures import (
     COVERAGE,
@@ -14,6 +15,7 @@ from service.kit.measures import (
     scale_measure,
     value_measure,
 )
+from service.sessions.records import StoredSession
 from service.sessions.words.advice import too_few, what_to_add
 
 UNLIKELY = 0.001
@@ -179,3 +181,9 @@ def _product(share: float, name: str) -> str:
     if share == 1:
         return name
     return say("{share} × {name}", share=f"{share:.6f}".rstrip("0").rstrip("."), name=name)
+
+
+def switched_on(session: StoredSession) -> str:
+    """``40 min before the first reading``; empty where the file does not say."""
+    begun = session.time_since_power_on
+    return "" if begun is None else say("{begun} before the first reading", begun=duration(begun))

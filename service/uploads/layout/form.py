@@ -35,8 +35,8 @@ CHOSEN = ("sheet", "encoding", "separator", "decimal", "header_row", "first_row"
 """Settings of the parser that can be chosen."""
 TEXTS = ("unit", "unit_type", "operator", "notes", "programme", "block", "stand.id")
 NUMBERS = (
-    "stand.alpha_deg", "stand.chi_deg", "site.latitude_deg", "site.gravity_m_s2", "count_time_s", "sample_rate_hz",
-    "direction_sigma_deg",
+    "stand.alpha_deg", "stand.chi_deg", "site.latitude_deg", "site.gravity_m_s2", "time_since_power_on_s",
+    "count_time_s", "sample_rate_hz", "direction_sigma_deg",
 )  # fmt: skip
 """Facts of the session in the form."""
 ORTHOGONAL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

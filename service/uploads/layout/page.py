@@ -43,6 +43,7 @@ PLACES = (
 )  # fmt: skip
 """Fields of the stand and the site."""
 RARE = (
+    ("time_since_power_on_s", "From switching on to the first row, s", "decimal"),
     ("stand.chi_deg", "Gyroscopes: elevation χ, °", "decimal"), ("count_time_s", "Pulses: count time, s", "decimal"),
     ("sample_rate_hz", "Raw log: samples a second", "decimal"),
     ("direction_sigma_deg", "Directions: known to, °", "decimal"),

@@ -1,6 +1,7 @@
 """The page "What the simulation gets wrong" over HTTP: what it says first, and the forms that it holds."""
 
 import json
+import re
 import zlib
 
 import httpx
@@ -95,11 +96,30 @@ def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -
     client, id = held(holding, TEMPERATURE)
     accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML, follow_redirects=True)
     assert "K. Ito" in accepted.text
-    assert "calibrated before it" in accepted.text
+    assert "Held-out error of A5" in accepted.text
+    assert "when somebody has them computed again" in accepted.text
+    assert "calibrated before it" in page(client, id)
     unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
     again = {"scope": "unit", "subject": unit, "by": "K. Ito"}
     assert client.post("/jobs/recalibration", data=again, headers=HTML).status_code == 303
     assert "calibrated with it" in page(client, id)
+
+
+def test_stored_sessions_are_computed_again_as_a_cause_is_accepted(holding: Holding) -> None:
+    client, id = held(holding, TEMPERATURE)
+    form = ACCEPT | {"again": "yes"}
+    accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=form, headers=HTML, follow_redirects=True)
+    assert "Sessions computed again" in accepted.text
+    assert "calibrated with it" in page(client, id)
+
+
+def test_the_gain_is_told_in_one_number(holding: Holding) -> None:
+    client, id = held(holding, TEMPERATURE)
+    told = client.get(f"/api/v1/sessions/{id}/diagnosis").json()["gain_in_words"]
+    assert re.fullmatch(r"Held-out error of A5 .*µg \(readings that took no part\)\.", told)
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    for path in (f"/sessions/{id}", f"/sessions/{id}/diagnosis", f"/units/{unit}"):
+        assert told in client.get(path, headers=HTML).text
 
 
 @pytest.mark.parametrize("path", ["/sessions/{id}/diagnosis/accept", "/jobs/recalibration"])

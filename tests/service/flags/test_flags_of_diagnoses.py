@@ -63,7 +63,11 @@ def test_a_cause_that_nobody_knows_cannot_be_accepted(holding: Holding) -> None:
 
 
 def test_a_fault_of_the_stand_raises_a_flag_on_the_stand(holding: Holding) -> None:
-    assert ("stand", drawn(ECCENTRIC).session["stand"]["id"], "raised") in flagged(*held(holding, ECCENTRIC))
+    client, _ = held(holding, ECCENTRIC)
+    [flag] = [flag for flag in client.get("/api/v1/flags").json()["flags"] if flag["matter"] == "stand"]
+    stand = drawn(ECCENTRIC).session["stand"]["id"]
+    assert (flag["scope"], flag["subject"], flag["state"]) == ("stand", stand, "raised")
+    assert flag["summary"].endswith(f"Seen with {flag['unit']}.")
 
 
 def test_a_recording_in_which_no_causes_are_looked_for_speaks_for_resolving_none(holding: Holding) -> None:

@@ -84,11 +84,11 @@ def test_what_a_person_settled_stays_settled(flagged: Storage) -> None:
 
 
 @one_engine
-def test_what_the_sessions_no_longer_show_is_proposed_to_be_resolved(flagged: Storage) -> None:
+def test_what_the_sessions_no_longer_show_is_closed_with_the_reason(flagged: Storage) -> None:
     for content in GROUP[:3]:
         withdraw_session(flagged, way(flagged), session_id(content), step())
     (flag,) = refreshed(flagged)
-    assert (flag.state, flag.proposal) == (FlagState.RAISED, "The sessions together no longer show it.")
+    assert (flag.state, flag.changes[-1].text) == (FlagState.RESOLVED, "The sessions together no longer show it.")
 
 
 @one_engine

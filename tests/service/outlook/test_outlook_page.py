@@ -8,7 +8,6 @@ import pytest
 from service.fleet.condition import FleetCondition
 from service.outlook.charts import history_charts, tracks_of
 from service.outlook.records import (
-    Action,
     FanPoint,
     FoundChange,
     ParameterTrend,
@@ -23,7 +22,7 @@ from service.outlook.words import next_calibration
 from service.pages.fleet.pages import fleet_page
 from service.pages.fleet.view import FleetView
 from service.sessions.decision import Verdict
-from tests.service.pages.records import NOON, bias_point, unit_summary
+from tests.service.pages.records import NOON, bias_point, unit_summary, uses_of
 
 MICRO_G = 9.80665e-6
 YEAR = timedelta(days=365.25)
@@ -40,18 +39,6 @@ OUTLOOK = UnitOutlook(
     parameter="bias", reach_50=NOON + 2 * YEAR, reach_90=NOON + YEAR, risk_at_due=0.05, trends=(DRIFT, STILL),
     unit_type="RA-6", risk=(RiskPoint(NOON, 0.0), RiskPoint(NOON + 2 * YEAR, 0.4)),
 )  # fmt: skip
-
-
-def test_the_headline_names_the_day_or_says_that_it_has_passed() -> None:
-    assert next_calibration(OUTLOOK, NOON).headline == "Next calibration: 1 Mar 2027"
-    assert next_calibration(replace(OUTLOOK, overdue=True), NOON).headline == "Calibration overdue since 1 Mar 2027"
-
-
-@pytest.mark.parametrize(("action", "headline"), [("act-now", "Act now"), ("repeat", "Repeat the calibration")])
-def test_what_no_date_helps_is_not_called_overdue(action: str, headline: str) -> None:
-    found = next_calibration(replace(OUTLOOK, due=None, action=Action(action)), NOON)
-    assert found.headline == headline
-    assert found.tone != "reference"
 
 
 def test_what_drifts_is_said_with_its_date_and_what_does_not_is_not() -> None:
@@ -109,7 +96,7 @@ def test_a_chart_without_a_trend_draws_none() -> None:
 def test_the_fleet_page_marks_what_is_overdue() -> None:
     condition = FleetCondition(units=2, verdicts=dict.fromkeys(Verdict, 0), simulated=0)
     units = [replace(unit_summary("U1"), due=NOON - YEAR), replace(unit_summary("U2"), due=NOON + YEAR)]
-    page = fleet_page(condition, units, FleetView(), NOON, overdue=1)
+    page = fleet_page(condition, units, uses_of(*units), FleetView(), overdue=1)
     assert [row.overdue for row in page.rows] == [True, False]
     assert page.overdue == "1 unit overdue for calibration"
 

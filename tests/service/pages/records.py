@@ -9,6 +9,8 @@ from estimator.results import Calibration
 from service.fleet.condition import UnitSummary
 from service.ingest.checked import as_checked
 from service.judging.judge import judge
+from service.judging.records import Usable, UseFacts
+from service.judging.usable import usable
 from service.papers.session_report import SessionReport
 from service.sessions.decision import Verdict
 from service.sessions.records import HistoryPoint, StoredSession
@@ -50,3 +52,8 @@ def unit_summary(serial: str = "BA-017", verdict: Verdict = Verdict.PASS, margin
         serial=serial, unit_type="hex-cone", simulated=False, sessions=3, last_session="5e55", last_at=NOON,
         verdict=verdict, is_reference=False, reason="why", worst_sensor="A3", worst_parameter="bias", margin=margin,
     )  # fmt: skip
+
+
+def uses_of(*units: UnitSummary) -> dict[str, Usable]:
+    """What units may be used for of which nothing else is known, by serial number."""
+    return {unit.serial: usable(UseFacts(unit), NOON) for unit in units}

@@ -21,6 +21,7 @@ from service.kit.person import EVERYBODY
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.reception import Reception
+from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Files, Storage
@@ -62,7 +63,7 @@ def read(storage: Storage, id: int) -> Job:
 
 def sessions(storage: Storage) -> list[str]:
     with storage.database.reading() as store:
-        return [one.id for one in Sessions(store).page(None, 0, 10)]
+        return [one.id for one in Sessions(store).wanted(SessionQuery(limit=10))]
 
 
 def waiting(storage: Storage) -> list[Path]:

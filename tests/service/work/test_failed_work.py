@@ -8,9 +8,9 @@ import httpx
 import pytest
 from sqlalchemy import text
 
+from service.judging.usable_words import DATES_PENDING
 from service.kit.failure import AT_FAULT
 from service.opening import open_database
-from service.pages.unit.usable_words import DATES_PENDING
 from service.settings import Settings
 from tests.databases import one_engine
 from tests.service.made_sessions import session_bytes, session_id

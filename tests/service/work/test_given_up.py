@@ -13,6 +13,7 @@ from service.groups.store import Groups
 from service.groups.words import FAILED
 from service.jobs.changes import retry_failed
 from service.jobs.store import Failures
+from service.judging.usable_reading import usable_unit as usable
 from service.kit.bell import Bell
 from service.kit.failure import unit_failed, with_last_try
 from service.kit.guard import AT_FAULT, Failure
@@ -20,7 +21,6 @@ from service.kit.metrics import Metrics
 from service.models.records import Evidence, ModelRevision, Progress, Scope
 from service.models.store import Models, Recomputations
 from service.models.words import GIVEN_UP, left_in_words
-from service.pages.unit.usable import usable
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.refresh_group import current

@@ -1,14 +1,13 @@
-"""Why a unit may be used, or may not and what to do about it."""
+"""What a unit may be used for, why, and what to do about it, in words."""
 
 from datetime import datetime
 
 from estimator.message import capitalised, say
-from service.flags.records import Flag
+from service.judging.records import OpenFlag, Usable
 from service.kit.measures import day_of
 from service.sessions.doubt import Reservation
 
-YES = "Fit by its session of {day}, and not due before {due}."
-NO_SESSION = "No session is stored: calibrate the unit."
+YES = "{word} by its session of {day}, and not due before {due}."
 BY_REFERENCE = "Its reference was measured on {day}, nothing speaks against it, and it is not due before {due}."
 UNPROVEN = (
     "No session was held against the reference of {day} yet: whether the unit keeps its values shows with the next one."
@@ -28,10 +27,27 @@ FLAGGED = "Flag {id} is open: {summary}"
 CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
 WAITS = "The session of {day} waits for an engineer and does not count yet: accept it, correct it or withdraw it."
 DATES_PENDING = "Its dates are being worked out with its latest records: ask again in some seconds."
+VERDICT_PENDING = "Its verdict is being worked out with its latest records: ask again in some seconds."
 NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minute."
+EXPIRED = (
+    "Traceability is interrupted: certificate {number} of stand {stand} had expired on {until}, before the session of "
+    "{day}."
+)
+
+CALIBRATE = "calibrate it"
+ADJUST = "adjust, repair or withdraw it"
+REPEAT = "repeat the session"
+MEASURE_AGAIN = "measure it again"
+MORE_POSITIONS = "measure more positions"
+DATE = "put the date of its session right"
+ASK_AGAIN = "ask again in some seconds"
+ADMINISTRATOR = "tell the administrator"
+ENGINEER = "accept, correct or withdraw the session that waits"
+CERTIFY = "have the stand calibrated"
+SETTLE = "settle flag {id}"
 
 
-def flagged(flag: Flag) -> str:
+def flagged(flag: OpenFlag) -> str:
     """An open flag."""
     return say(FLAGGED, id=flag.id, summary=flag.summary)
 
@@ -44,3 +60,12 @@ def reserved(one: Reservation) -> str:
 def on(sentence: str, at: datetime, **more: str) -> str:
     """The sentence with its day."""
     return say(sentence, day=day_of(at), **more)
+
+
+def next_in_words(use: Usable) -> str:
+    """What the unit needs next: ``Next calibration: 4 Nov 2027``, or what must be done first."""
+    if use.due is None:
+        return capitalised(use.action)
+    if use.is_overdue:
+        return say("Calibration overdue since {due}", due=day_of(use.due))
+    return say("Next calibration: {due}", due=day_of(use.due))
