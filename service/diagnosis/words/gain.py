@@ -47,7 +47,7 @@ def gain_in_words(gain: Gain, sensors: Sequence[str] = ()) -> str:
     worst = sorted(known, key=lambda one: -one.before / one.typical)
     parts = [_of_sensor(one) for one in worst[:NAMED]]
     if len(worst) > NAMED:
-        parts.append(say("and {more} more", more=len(worst) - NAMED))
+        parts.append(say("and {number} more", number=len(worst) - NAMED))
     return say("Held-out error {parts} (readings that took no part).", parts=joined("; ", parts))
 
 
