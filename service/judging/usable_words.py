@@ -67,5 +67,5 @@ def next_in_words(use: Usable) -> str:
     if use.due is None:
         return capitalised(use.action)
     if use.is_overdue:
-        return say("Calibration overdue since {due}", due=day_of(use.due))
-    return say("Next calibration: {due}", due=day_of(use.due))
+        return say("Calibration overdue since {date}", date=day_of(use.due))
+    return say("Next calibration: {date}", date=day_of(use.due))

@@ -97,7 +97,7 @@ def explained_in_words(at: datetime, parts: Sequence[tuple[TrackKey, float]]) ->
         )
         for key, size in parts[:MOST_NAMED]
     ]
-    more = [say("{more} more", more=len(parts) - MOST_NAMED)] if len(parts) > MOST_NAMED else []
+    more = [say("{number} more", number=len(parts) - MOST_NAMED)] if len(parts) > MOST_NAMED else []
     return say(
         "By its diagnosis, the session of {day} owes these changes to the stand or to another shared cause, and they "
         "do not count as changes of the sensors: {parts}.",

@@ -56,7 +56,7 @@ def errors_in_words(before: Errors, after: Errors, sensors: Sequence[str] = ()) 
     worst = sorted(known, key=lambda one: -one.before / one.typical)
     parts = [_of_sensor(one) for one in worst[:NAMED]]
     if len(worst) > NAMED:
-        parts.append(say("and {more} more", more=len(worst) - NAMED))
+        parts.append(say("and {number} more", number=len(worst) - NAMED))
     return joined("; ", parts) if parts else ""
 
 

@@ -79,7 +79,7 @@ def _fault(told: Iterable[ToldSession], stand: str) -> tuple[_Fault | None, str]
 def _of_stand(concern: Concern, stand: str, units: Iterable[str]) -> Concern:
     """A flag of the stand that names its units."""
     names = sorted(units)
-    more = [say("{more} more", more=len(names) - MOST_NAMED)] if len(names) > MOST_NAMED else []
+    more = [say("{number} more", number=len(names) - MOST_NAMED)] if len(names) > MOST_NAMED else []
     seen = say(SEEN_WITH, units=joined(", ", [*names[:MOST_NAMED], *more]))
     summary = joined(" ", (concern.summary, seen)) if names else concern.summary
     return replace(concern, summary=summary, scope=Scope.STAND, subject=stand)
@@ -152,5 +152,5 @@ def _require_whole(one: StandCondition) -> None:
     """Tells of sessions whose common motion cannot be used; without them the stand is still judged."""
     if one.unreadable:
         raise ServiceError(
-            say("What is stored of these sessions cannot be used: {why}.", why=", ".join(one.unreadable))
+            say("What is stored of these sessions cannot be used: {reason}.", reason=", ".join(one.unreadable))
         )
