@@ -49,7 +49,7 @@ def test_a_shift_is_told_with_its_size_and_units_and_what_is_steady_too() -> Non
 
 def test_a_shift_that_was_taken_back_says_until_when() -> None:
     back = replace(CONDITION, has_shifted=False, shifts=(replace(SHIFTED, until=NOON),))
-    page = stand_page(StandReport(replace(LINE, condition=back), (), (), (), ()), NOON)
+    page = stand_page(StandReport(replace(LINE, condition=back), (), (), {}, (), ()), NOON)
     assert (page.shifts[0].when, page.shifts[0].word) == ("1 Mar 2026 to before 1 Mar 2026", "back where it was")
     assert page.word.word == "Ready to use"
 
