@@ -148,7 +148,7 @@ class StandCertificates(Queries):
         for name, row in self._session.execute(query):
             own = found.setdefault(name, [])
             if row is not None:
-                own.append(_certificate(name, row))
+                own.append(certificate_record(name, row))
         return {name: _by_issue(own) for name, own in found.items()}
 
     def of_stand(self, stand: str) -> tuple[StandCertificate, ...]:
@@ -159,7 +159,7 @@ class StandCertificates(Queries):
             .where(StandRow.name == stand)
             .order_by(StandCertificateRow.id)
         )
-        return _by_issue([_certificate(stand, row) for row in self._session.scalars(query)])
+        return _by_issue([certificate_record(stand, row) for row in self._session.scalars(query)])
 
     def known(self, stand: str) -> tuple[StandCertificate, ...]:
         """The same of a stand that must be known."""
@@ -193,5 +193,6 @@ def _by_issue(recorded: Sequence[StandCertificate]) -> tuple[StandCertificate, .
     return tuple(sorted((recorded[place] for place in sorted(last.values())), key=lambda c: c.issued_on))
 
 
-def _certificate(stand: str, row: StandCertificateRow) -> StandCertificate:
+def certificate_record(stand: str, row: StandCertificateRow) -> StandCertificate:
+    """A stored certificate of a stand."""
     return StandCertificate(stand, row.number, row.issued_by, row.issued_on, row.valid_until)
