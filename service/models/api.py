@@ -98,6 +98,7 @@ class NewModelSchema(BaseModel):
     scope: AnyScope = Field(description="Whose model: the unit's, that of all units of its type, or the stand's.")
     by: Name = Field(description="Who accepts it.")
     note: LongText = Field(default="", description="Why.")
+    again: bool = Field(default=False, description="Whether the stored sessions that it concerns are computed again.")
 
 
 @answer

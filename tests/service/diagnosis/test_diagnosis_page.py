@@ -105,6 +105,13 @@ def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -
     assert "calibrated with it" in page(client, id)
 
 
+def test_a_program_has_them_computed_again_too(holding: Holding) -> None:
+    client, id = held(holding, TEMPERATURE)
+    made = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT | {"again": True}).raise_for_status()
+    [unit] = client.get(f"/api/v1/models/{made.json()['id']}").json()["recomputations"]
+    assert (unit["state"], unit["outcome"]["recomputed"] > 0) == ("done", True)
+
+
 def test_stored_sessions_are_computed_again_as_a_cause_is_accepted(holding: Holding) -> None:
     client, id = held(holding, TEMPERATURE)
     form = ACCEPT | {"again": "yes"}
