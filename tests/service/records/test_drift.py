@@ -11,6 +11,7 @@ from service.outlook.reading import outlook_of
 from service.outlook.records import Action, ParameterTrend, UnitOutlook
 from service.outlook.words import next_calibration
 from service.pages.type.tolerances import Watch, set_tolerances
+from service.records.flagging.drift import SMALL
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.types.store import UnitTypes
@@ -58,22 +59,26 @@ def test_a_drift_within_the_tolerance_is_flagged_with_its_beginning(storage: Sto
     assert flags(storage)[Matter.DRIFT].startswith("A3 bias has been drifting since 1 Jan 2026 by +")
 
 
-def test_a_small_jump_is_a_remark_until_the_type_says_that_it_matters(storage: Storage) -> None:
-    measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 13.0, 6: 13.0, 7: 13.0})
-    assert flags(storage) == {}
-    assert any(line.startswith("A3 bias has jumped") for line in next_calibration(outlook(storage), NOW).moving)
+def test_a_jump_below_the_share_that_the_type_says_is_a_remark(storage: Storage) -> None:
+    """Half of the tolerance."""
+    measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 25.0, 6: 25.0})
     with storage.database.reading() as store:
         known = UnitTypes(store).of_unit("BA-017")
-    set_tolerances(storage, known.name, known.tolerances, None, NOW, watch=Watch(flag_share=0.2))
-    assert list(flags(storage)) == [Matter.JUMP]
+    for share in (0.6, 0.4):
+        set_tolerances(storage, known.name, known.tolerances, None, NOW, watch=Watch(flag_share=share))
+        assert any(line.startswith("A3 bias has jumped") for line in next_calibration(outlook(storage), NOW).moving)
+    with storage.database.reading() as store:
+        again, first = Flags(store).page(FlagQuery("BA-017"))
+    assert (again.matter, again.state) == (Matter.JUMP, FlagState.RAISED)
+    assert (first.state, first.changes[-1].text) == (FlagState.RESOLVED, SMALL)
 
 
 def test_a_jump_that_a_person_resolved_does_not_come_back_with_later_sessions(storage: Storage) -> None:
-    measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 25.0, 6: 25.0})
+    measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 40.0, 6: 40.0})
     with storage.database.reading() as store:
         [flag] = Flags(store).page(FlagQuery("BA-017"))
     resolve_flag(storage, flag.id, "K. Ito", "dropped in April, looked at", NOW)
-    measure(storage, {7: 25.0})
+    measure(storage, {8: 40.0})
     assert a3_bias(storage).changes
     with storage.database.reading() as store:
         assert [flag.state for flag in Flags(store).page(FlagQuery("BA-017"))] == [FlagState.RESOLVED]
