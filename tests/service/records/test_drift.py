@@ -8,10 +8,11 @@ from service.flags.changes import resolve_flag
 from service.flags.records import FlagState, Matter
 from service.flags.store import FlagQuery, Flags
 from service.outlook.reading import outlook_of
-from service.outlook.records import Action, ParameterTrend, UnitOutlook
+from service.outlook.records import Action, DueRule, ParameterTrend, UnitOutlook
 from service.outlook.words import next_calibration
 from service.pages.type.tolerances import Watch, set_tolerances
 from service.records.flagging.drift import SMALL
+from service.records.flagging.overdue_units import flag_overdue
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.types.store import UnitTypes
@@ -82,6 +83,22 @@ def test_a_jump_that_a_person_resolved_does_not_come_back_with_later_sessions(st
     assert a3_bias(storage).changes
     with storage.database.reading() as store:
         assert [flag.state for flag in Flags(store).page(FlagQuery("BA-017"))] == [FlagState.RESOLVED]
+
+
+def test_an_overdue_date_that_a_drift_has_set_is_one_flag(storage: Storage) -> None:
+    def opened() -> list[Matter]:
+        with storage.database.reading() as store:
+            return [flag.matter for flag in Flags(store).page(FlagQuery("BA-017", unresolved=True))]
+
+    measure(storage, {1: 0.0, 3: 6.0, 5: 12.0, 7: 18.0, 9: 24.0, 10: 27.0})
+    found = outlook(storage)
+    assert found.basis is not None
+    assert found.due is not None
+    assert (found.basis.rule, found.basis.sensor, opened()) == (DueRule.RISK, "A3", [Matter.DRIFT])
+    flag_overdue(storage, found.due + timedelta(days=1))
+    assert opened() == [Matter.OVERDUE]
+    flag_overdue(storage, found.due - timedelta(days=1))
+    assert opened() == [Matter.DRIFT]
 
 
 def test_nothing_is_flagged_where_nothing_happens(storage: Storage) -> None:
