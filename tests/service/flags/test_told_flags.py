@@ -26,6 +26,7 @@ from service.storage import Storage
 from service.units.store import Units
 from service.uploads.receive import upload
 from tests.conftest import Filled
+from tests.databases import one_engine
 from tests.service.made_records import step, way
 from tests.service.made_sessions import session_bytes
 
@@ -91,6 +92,7 @@ def test_it_closes_with_its_reason_when_any_unit_no_longer_shows_it_and_comes_ba
     assert len(opened(known)) == 1
 
 
+@one_engine
 @pytest.mark.parametrize("order", list(permutations(range(3))))
 def test_the_order_in_which_diagnoses_come_does_not_matter(known: Storage, order: tuple[int, ...]) -> None:
     every = (("BA-1", 1, AT_FAULT), ("BA-2", 3, SOUND), ("BA-1", 5, AT_FAULT))
