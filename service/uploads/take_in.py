@@ -23,10 +23,10 @@ from service.ingest.checked import plain_filename
 from service.jobs.changes import Course, require_room
 from service.jobs.records import KILOBYTE, Job, JobFailure, JobKind, NewJob
 from service.jobs.store import Jobs
-from service.kit.arriving_files import Received, Sent, SentFile
 from service.kit.person import Person
 from service.records.reception import Reception
 from service.sessions.records import Receipt
+from service.sessions.sent import Received, Sent, SentFile
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -67,10 +67,10 @@ def ask_upload(storage: Storage, file: SentFile, person: Person, place: str, now
             known = next((job for job in Jobs(store).sending(digest) if _is_same(job, new)), None)
             job = _added(store, new, now) if known is None else known
     except BusyError:
-        drop_waiting(storage.files, sent)
+        drop_waiting(storage.files, place)
         raise
     if known is not None:
-        drop_waiting(storage.files, sent)
+        drop_waiting(storage.files, place)
     return job
 
 
@@ -137,7 +137,7 @@ def take_in(reception: Reception, id: int, now: datetime, tick: Callable[[], Non
             pass
         except FINAL as fault:
             give_up(reception.storage, id, fault.detail, now)
-    drop_waiting(reception.storage.files, job.sent)
+    drop_waiting(reception.storage.files, job.sent.place)
 
 
 def give_up(storage: Storage, id: int, reason: str, now: datetime) -> None:
@@ -146,7 +146,7 @@ def give_up(storage: Storage, id: int, reason: str, now: datetime) -> None:
         job = Jobs(store).get(id)
         Jobs(store).fail(id, JobFailure(job.subject, reason), now)
     if job.sent is not None:
-        drop_waiting(storage.files, job.sent)
+        drop_waiting(storage.files, job.sent.place)
 
 
 def _taken_in(reception: Reception, job: Job, sent: Sent, at: _Following) -> None:
@@ -154,7 +154,7 @@ def _taken_in(reception: Reception, job: Job, sent: Sent, at: _Following) -> Non
     acting = replace(storage, database=storage.database.acting(sent.account))
     course = Course(at.keeping, at.stored, at.refused)
     own = replace(reception, storage=acting, who=job.who, course=course)
-    landed = waiting_file(storage.files, sent)
+    landed = waiting_file(storage.files, sent.place, sent.sha256, sent.size)
     file = SentFile(job.subject, landed, **sent.stated())
     try:
         with heard_by(at.read_on):
