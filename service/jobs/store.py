@@ -16,7 +16,6 @@ from service.flags.tables import DeliveryRow
 from service.groups.tables import GroupDiagnosisRow
 from service.jobs.records import Job, JobFailure, JobKind, JobState, Made, NewJob, RecalibrationPiece
 from service.jobs.tables import JobRow
-from service.kit.arriving_files import Replaced, Sent
 from service.kit.failure import Failed, FailedKind
 from service.models.records import Scope, task_of
 from service.models.store import Recomputations, concerned
@@ -24,6 +23,7 @@ from service.queue.records import WorkKind
 from service.queue.store import RETRY_AT_ONCE, WorkQueue, work_of
 from service.queue.tables import WorkRow
 from service.sessions.records import DiagnosisState
+from service.sessions.sent import Replaced, Sent
 from service.storage.columns import is_made_of
 from service.storage.queries import Queries
 from service.units.tables import UnitRow

@@ -17,7 +17,7 @@ from service.outlook.populations import Placed, Population
 from service.outlook.records import DueDate, ParameterTrend, Rate, UnitOutlook
 from service.outlook.tables import HistoryRow, OutlookRow, PopulationRow
 from service.sessions.states_store import IS_ACCEPTED
-from service.sessions.tables import DecisionRow, SessionRow
+from service.sessions.tables import MOVES_DATES, DecisionRow, SessionRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.types.store import counts_for_type
@@ -77,9 +77,6 @@ def unpacked(content: bytes) -> tuple[Evidence, ...]:
 
 MOST_UNITS = 60
 """Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
-
-MOVES_DATES = or_(~SessionRow.is_check, SessionRow.is_reference)
-"""A check moves no date; one that is a reference counts, for all changes are counted from it."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from service.judging.records import SaidVerdict, said
 from service.kit.answer import answer
 from service.papers.records import Traceability
 from service.sessions.decision import Verdict
-from service.sessions.records import Receipt, StoredSession
+from service.sessions.records import Marks, Receipt, StoredSession
 from service.web.fields import Paged
 
 RECEIPT_EXAMPLE: JsonDict = {
@@ -23,7 +23,7 @@ RECEIPT_EXAMPLE: JsonDict = {
     "reservations": [],
     "said": "Unfit",
     "state": "accepted",
-    "is_check": False,
+    **Marks().marks,
     "url": "http://127.0.0.1:8000/api/v1/sessions/3f9a0c5be1d24786aa10",
 }
 

@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, Index, String, false
+from sqlalchemy import JSON, ForeignKey, Index, String, false, or_
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.columns import BYTES, IS_QUESTIONED, Sentence, only_where
@@ -49,6 +49,10 @@ class SessionRow(Base):
     temperature: Mapped[float | None]
     time_since_power_on: Mapped[float | None]
     is_check: Mapped[bool] = mapped_column(server_default=false())
+
+
+MOVES_DATES = or_(~SessionRow.is_check, SessionRow.is_reference)
+"""A check moves no date; one that is a reference counts, for all changes are counted from it."""
 
 
 class CalibrationRow(Base):

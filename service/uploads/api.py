@@ -15,7 +15,7 @@ from estimator.message import say
 from service.errors import NotFoundError
 from service.jobs.records import Job, JobKind, under_way
 from service.jobs.store import Jobs
-from service.kit.arriving_files import SentFile, held
+from service.kit.arriving_files import held
 from service.kit.limits import in_force
 from service.kit.person import Person
 from service.languages.language import asked
@@ -26,6 +26,7 @@ from service.planning.question import PlanQuestion
 from service.records.reception import Reception
 from service.sessions.records import StoredSession
 from service.sessions.schemas import SaidSession, said_session
+from service.sessions.sent import SentFile
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 from service.uploads.preview import felt_length, first_rows, preview

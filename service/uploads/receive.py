@@ -23,7 +23,7 @@ from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.reference import KnownUnit, known_unit
-from service.kit.arriving_files import NOTHING_STATED, Content, Received, Replaced, SentFile, Stated, held, where
+from service.kit.arriving_files import Content, held, where
 from service.models.rules import model_for
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -37,6 +37,7 @@ from service.records.supersede import give_way, settled_by, supersede
 from service.sessions.decision import Verdict
 from service.sessions.doubt import remedies_among
 from service.sessions.records import Digests, Receipt, StoredSession
+from service.sessions.sent import NOTHING_STATED, Received, Replaced, SentFile, Stated
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -300,8 +301,8 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         stage=session.stage,
         reservations=None,
         temperature=None if session.temperature is None else float(session.temperature.mean()),
-        is_check=received.is_check,
         time_since_power_on=session.time_since_power_on,
+        **received.marks,
     )
 
 
@@ -316,7 +317,7 @@ def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
         is_reference=record.is_reference,
         reservations=record.reservations,
         state=record.state,
-        is_check=record.is_check,
+        **record.marks,
     )
 
 

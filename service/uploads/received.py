@@ -17,13 +17,15 @@ from estimator.message import say
 from service.errors import ForbiddenError, RefusedError, TooLargeError
 from service.ingest.formats import may_be_log
 from service.ingest.layout.envelope import mapping_of
-from service.kit.arriving_files import Content, Replaced, SentFile, held
+from service.kit.arriving_files import Content, held
 from service.kit.limits import in_force
 from service.kit.person import Role
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.records.unit_changes import Attaching
+from service.sessions.records import MARKS, marks_said
 from service.sessions.schema import SESSION_FILE
+from service.sessions.sent import Replaced, SentFile
 from service.storage.landing import Landing, Landings
 from service.web.dependencies import UploadSlotOf, limited
 from service.web.fields import LongText, Text
@@ -231,9 +233,9 @@ async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentF
     mapping = (
         held(await mapping_part.content()) if isinstance(mapping_part, LandedFile) else str(mapping_part or "").encode()
     )
-    is_check = str(form.get("check", "")).strip().lower() in YES
+    marks = marks_said([word for word in MARKS if str(form.get(word, "")).strip().lower() in YES])
     replaces, read_by = _replaced(stated | form_fields), _mapping(mapping, name)
-    return SentFile(name, await file.content(), is_check=is_check, replaces=replaces, mapping=read_by)
+    return SentFile(name, await file.content(), replaces=replaces, mapping=read_by, **marks)
 
 
 def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:
@@ -298,8 +300,8 @@ async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:
     """The chosen files."""
     form = await arriving.form(MOST_FILES)
     chosen = [file for file in form.getlist("files") if isinstance(file, LandedFile) and file.filename]
-    is_check = bool(form.get("check"))
-    return tuple([SentFile(file.filename or "upload", await file.content(), is_check=is_check) for file in chosen])
+    marks = marks_said([word for word in MARKS if form.get(word)])
+    return tuple([SentFile(file.filename or "upload", await file.content(), **marks) for file in chosen])
 
 
 FormFiles = Annotated[tuple[SentFile, ...], Depends(_files)]

@@ -16,10 +16,11 @@ from starlette.datastructures import UploadFile
 from estimator.errors import Problem
 from service.errors import RefusedError
 from service.ingest.layout.understand import run_words, split_unit
-from service.kit.arriving_files import SentFile, held
+from service.kit.arriving_files import held
 from service.kit.limits import in_force
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
+from service.sessions.sent import SentFile
 from service.storage.aside import aside, set_aside
 from service.storage.files import Files
 from service.uploads.preview import is_sensor

@@ -14,13 +14,13 @@ from sqlalchemy import Connection, event, func, select, text
 from estimator.errors import Problem
 from service.diagnosis.store import Diagnoses
 from service.errors import AwayError, NoSpaceError, RefusedError
-from service.kit.arriving_files import SentFile
 from service.kit.metrics import Metrics
 from service.opening import open_database
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.reception import Reception
 from service.sessions.records import Receipt
+from service.sessions.sent import SentFile
 from service.sessions.store import Sessions
 from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 from service.settings import Settings
