@@ -15,6 +15,7 @@ import altair as alt
 from estimator.groups import GroupFinding
 from estimator.groups.layout import EVERY
 from estimator.groups.pictures import ANGLES
+from estimator.groups.results import Picture
 from estimator.message import joined, say
 from estimator.moments import moment
 from service.diagnosis.words.amplitudes import amplitude_measure, part_of
@@ -181,11 +182,11 @@ def _forest_spec() -> dict[str, Any]:
     )
 
 
-def picture_chart(picture: dict[str, Any], kind: str, name: str) -> ChartSet:
+def picture_chart(picture: Picture, kind: str, name: str) -> ChartSet:
     """The pooled residual against its variable, without the effect and with it."""
     measure, at, largest = _measure_of(picture, kind), _places(picture), _largest(picture)
     low, high = padded(-largest * measure.factor, largest * measure.factor)
-    by_angle = picture["variable"] == BY_ANGLE
+    by_angle = picture.variable == BY_ANGLE
     left, right = (0.0, 360.0) if by_angle else padded(min(at), max(at))
     title = _title(picture)
     blanks = {
@@ -204,49 +205,48 @@ def picture_chart(picture: dict[str, Any], kind: str, name: str) -> ChartSet:
     )
 
 
-def picture_table(picture: dict[str, Any], kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]:
+def picture_table(picture: Picture, kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]:
     """Head and rows of the same."""
     measure = _measure_of(picture, kind)
     head = (_title(picture), *SIDES)
-    rows = zip(_places(picture), picture["before"], picture["after"], picture["sigma"], strict=True)
+    rows = zip(_places(picture), picture.before, picture.after, picture.sigma, strict=True)
     return head, tuple(
         (number(x), *(measured(v, COVERAGE * sigma, measure) for v in (before, after)))
         for x, before, after, sigma in rows
     )
 
 
-def _title(picture: dict[str, Any]) -> str:
-    variable: str = picture["variable"]
-    return TITLES.get(variable, variable)
+def _title(picture: Picture) -> str:
+    return TITLES.get(picture.variable, picture.variable)
 
 
-def _places(picture: dict[str, Any]) -> list[float]:
-    return [x * FACTORS.get(picture["variable"], 1.0) for x in picture["at"]]
+def _places(picture: Picture) -> list[float]:
+    return [x * FACTORS.get(picture.variable, 1.0) for x in picture.at]
 
 
-def _largest(picture: dict[str, Any]) -> float:
+def _largest(picture: Picture) -> float:
     """|residual| or U of a bin, SI."""
-    values = [abs(v) for side in ("before", "after") for v in picture[side]]
-    return max((*values, *(COVERAGE * sigma for sigma in picture["sigma"])), default=0.0)
+    values = [abs(v) for v in (*picture.before, *picture.after)]
+    return max((*values, *(COVERAGE * sigma for sigma in picture.sigma)), default=0.0)
 
 
-def _measure_of(picture: dict[str, Any], kind: str) -> Measure:
-    if picture["of"] in ANGLES:
+def _measure_of(picture: Picture, kind: str) -> Measure:
+    if picture.of in ANGLES:
         return ARCSEC
     return deviation_measure(kind, "bias", _largest(picture))
 
 
-def _picture_panel(picture: dict[str, Any], side: str, at: Sequence[float], measure: Measure) -> Panel:
-    values = picture["before" if side == SIDES[0] else "after"]
-    outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture["sigma"], strict=True))
+def _picture_panel(picture: Picture, side: str, at: Sequence[float], measure: Measure) -> Panel:
+    values = picture.before if side == SIDES[0] else picture.after
+    outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture.sigma, strict=True))
     return Panel(
-        title=say("{quantity} {direction}", quantity=WHAT.get(picture["of"], picture["of"]), direction=side),
+        title=say("{quantity} {direction}", quantity=WHAT.get(picture.of, picture.of), direction=side),
         description=say("{outside} of {values} outside ±2σ", outside=outside, values=len(values)),
         condition=None,
         datasets={
             DATA_FORM: [
                 {"x": _short(x), "y": _short(v * measure.factor), "band": _short(COVERAGE * s * measure.factor)}
-                for x, v, s in zip(at, values, picture["sigma"], strict=True)
+                for x, v, s in zip(at, values, picture.sigma, strict=True)
             ]
         },
     )

@@ -47,9 +47,9 @@ def test_what_is_modelled_gains_on_later_sessions(sessions: list[CalibrationSess
 def test_the_picture_shows_the_effect_without_it_and_none_with_it(sessions: list[CalibrationSession]) -> None:
     picture = diagnose_group(sessions, "stand").findings[0].picture
     assert picture is not None
-    before, after = (np.square(np.array(picture[s]) / picture["sigma"]).sum() for s in ("before", "after"))
-    n = len(picture["at"])
-    assert picture["variable"] == "β"
+    before, after = (np.square(np.array(side) / picture.sigma).sum() for side in (picture.before, picture.after))
+    n = len(picture.at)
+    assert picture.variable == "β"
     assert after < n + 3 * np.sqrt(2 * n) < before
 
 
