@@ -7,7 +7,9 @@ resemble where an answer is one.
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any, Literal
+from typing import Literal
+
+from estimator.json_object import Json
 
 Verdict = Literal["pass", "conditional-pass", "undecidable", "conditional-fail", "fail"]
 
@@ -19,7 +21,7 @@ class Reservation:
     kind: str
     text: str
     advice: str
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,7 @@ class Said:
     reason: str
     said: str
     reservations: tuple[Reservation, ...]
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,7 @@ class Point:
     is_reference: bool
     axis: tuple[float, ...] | None
     revision: int
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,7 @@ class Finding:
     alternatives: tuple[str, ...]
     sentence: str
     advice: str
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ class Diagnosis:
     verdict_after: Verdict | None
     """With the named causes in the model."""
     notes: tuple[str, ...]
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,7 @@ class Flag:
     session: str | None
     raised_at: datetime
     changed_at: datetime
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -170,4 +172,4 @@ class Usable:
     until: datetime | None
     session: str | None
     as_of: datetime
-    document: dict[str, Any]
+    document: Json

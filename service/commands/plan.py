@@ -3,7 +3,7 @@ it is, and whether its unit is warm and still enough for it.
 """
 
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, TypeVar
 from urllib.parse import urlencode
 
 import numpy as np
@@ -16,6 +16,7 @@ from rich.text import Text
 
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.planning import OrientationRank, Plan, missing, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
@@ -265,7 +266,7 @@ def ready(
         raise typer.Exit(FAILED)
 
 
-def _here(file: Path, asked: ReadyQuestion) -> dict[str, Any]:
+def _here(file: Path, asked: ReadyQuestion) -> Json:
     """On this machine, by default tolerances."""
     with usable(file):
         answer = judged_by_defaults(read_file(file, part=True), asked)
@@ -273,7 +274,7 @@ def _here(file: Path, asked: ReadyQuestion) -> dict[str, Any]:
     return {**answer.found.to_dict(), "unit_type": None, "said": said}
 
 
-def _there(file: Path, asked: ReadyQuestion, server: str) -> dict[str, Any]:
+def _there(file: Path, asked: ReadyQuestion, server: str) -> Json:
     """By the service, which knows the unit."""
     query = urlencode(asked.model_dump(exclude_none=True))
     with usable(file):
@@ -282,7 +283,7 @@ def _there(file: Path, asked: ReadyQuestion, server: str) -> dict[str, Any]:
             return dict(client.answer("POST", f"/plan/ready?{query}", files={"file": (file.name, content)}).json())
 
 
-def _show_readiness(document: dict[str, Any], as_json: bool) -> None:
+def _show_readiness(document: Json, as_json: bool) -> None:
     if as_json:
         print_json(document)
         return

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.writing import session_document
@@ -35,13 +36,13 @@ NO_STAND = {"id": ""}
 class Preview:
     """What is known of a table under a mapping."""
 
-    mapping: dict[str, Any]
+    mapping: Json
     """Complete: how the file is taken apart is stated too."""
     fingerprint: str
     """Of the headings."""
     remembered: bool
     """Whether the mapping is that of an earlier file."""
-    seen: dict[str, Any]
+    seen: Json
     """The first look: headings, cells, sheets."""
     session: CalibrationSession | None
     """As it would be stored; None while something is missing."""
@@ -69,7 +70,7 @@ def preview(
     return Preview(whole, fingerprint(seen), is_remembered, seen, session, problems)
 
 
-def _proposed(storage: Storage, seen: Mapping[str, Any], unit: str, unit_type: str) -> tuple[dict[str, Any], bool]:
+def _proposed(storage: Storage, seen: Mapping[str, Any], unit: str, unit_type: str) -> tuple[Json, bool]:
     """By the last file of this layout, and by the last session of the unit or its type."""
     with storage.database.reading() as store:
         if unit and not unit_type and Units(store).exists(unit):
@@ -84,17 +85,17 @@ def _proposed(storage: Storage, seen: Mapping[str, Any], unit: str, unit_type: s
     return {"columns": columns, "session": _said(known, unit)}, False
 
 
-def _of_this(seen: Mapping[str, Any]) -> dict[str, Any]:
+def _of_this(seen: Mapping[str, Any]) -> Json:
     """What a log says of itself, which another of the same layout says otherwise."""
     return {key: value for key, value in seen["facts"].items() if key in OF_A_LOG}
 
 
-def _said(facts: Mapping[str, Any], unit: str) -> dict[str, Any]:
+def _said(facts: Mapping[str, Any], unit: str) -> Json:
     """With the unit that was named, or else the one that the file names."""
     return {**facts, "unit": unit or facts.get("unit", "")}
 
 
-def facts_of(storage: Storage, unit: str, unit_type: str) -> dict[str, Any]:
+def facts_of(storage: Storage, unit: str, unit_type: str) -> Json:
     """Everything that the last session of the unit or the type says and the next will say too; else nothing."""
     try:
         like = earlier(storage, unit, unit_type)
@@ -106,7 +107,7 @@ def facts_of(storage: Storage, unit: str, unit_type: str) -> dict[str, Any]:
     return {key: value for key, value in document.items() if key not in ("format", "table", *ASKED_ANEW)}
 
 
-def _unknown(columns: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def _unknown(columns: Sequence[Mapping[str, Any]]) -> Json:
     """The sensors that the headings name, of a block of which nothing else is known."""
     named = [column for column in columns if column["as"] and is_sensor(column["as"])]
     gyros = sum(str(column["as"]).startswith("G") for column in named)
@@ -142,15 +143,15 @@ def _tried(
         return None, fault.problems
 
 
-def first_rows(session: CalibrationSession) -> list[dict[str, Any]]:
+def first_rows(session: CalibrationSession) -> list[Json]:
     """The first rows as they will be stored, SI: angles in rad, what every sensor feels in m/s² or rad/s."""
     count_time = session.count_time or 1.0
     offset = np.array([sensor.nominal_offset or 0.0 for sensor in session.sensors])
     scale = np.array([sensor.nominal_scale for sensor in session.sensors])
     inputs = (session.readings[:FIRST_ROWS] - offset) / (scale * count_time)
-    rows: list[dict[str, Any]] = []
+    rows: list[Json] = []
     for j, felt in enumerate(inputs):
-        row: dict[str, Any] = {} if session.flipped is None else {"run": "flipped" if session.flipped[j] else "direct"}
+        row: Json = {} if session.flipped is None else {"run": "flipped" if session.flipped[j] else "direct"}
         for name, column in (
             ("beta_rad", session.beta),
             ("time_s", session.time),

@@ -8,6 +8,8 @@ from urllib.parse import quote
 import polars as pl
 from fastapi import Request, Response
 
+from estimator.json_object import Json
+
 FORMS = {
     "application/json": "json",
     "text/csv": "csv",
@@ -46,7 +48,7 @@ TIME = pl.Datetime("us", "UTC")
 """Microseconds, as both databases keep them."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 """How OpenAPI describes a table."""
-TABLES: dict[str, Any] = {media: BINARY for media, form in FORMS.items() if form != "json"}
+TABLES: Json = {media: BINARY for media, form in FORMS.items() if form != "json"}
 BY_HEADER = {"Vary": "Accept"}
 """Of an answer whose form the header `Accept` may choose."""
 FORMULA = r"^[=+\-@\t\r]"

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from estimator.errors import FormatError, Problem
+from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.reading.keys import COLUMNS, TOP
 from estimator.reading.problems import shown
@@ -160,7 +161,7 @@ def meanings(sensors: list[str]) -> tuple[str, ...]:
     return (*sensors, *COLUMNS, *(f"{name}_se" for name in sensors))
 
 
-def remembered(document: Mapping[str, Any]) -> dict[str, Any]:
+def remembered(document: Mapping[str, Any]) -> Json:
     """What holds for the next file of the layout too."""
     session = {key: value for key, value in document.get("session", {}).items() if key not in ASKED_ANEW}
     return {**document, "session": session}

@@ -14,6 +14,7 @@ from joserfc import jwt
 from joserfc.errors import JoseError
 from joserfc.jwk import KeySet
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
@@ -70,7 +71,7 @@ class OpenIdProvider:
             keys = _json(http, "GET", self._allowed(described, "jwks_uri"))
         return self._checked(token, keys, journey, now)
 
-    def _described(self, http: httpx.Client) -> dict[str, Any]:
+    def _described(self, http: httpx.Client) -> Json:
         """The provider's own description; it must be of the issuer that was asked."""
         described = _json(http, "GET", self._own.issuer.rstrip("/") + WELL_KNOWN)
         if described.get("issuer") != self._own.issuer:
@@ -160,7 +161,7 @@ def _http() -> httpx.Client:
     return httpx.Client(timeout=TIMEOUT, follow_redirects=False, trust_env=False)
 
 
-def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> dict[str, Any]:
+def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> Json:
     """An object that the provider answered; AwayError where it did not."""
     try:
         with http.stream(method, address, headers={"Accept": "application/json"}, **sent) as answer:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
@@ -273,7 +274,7 @@ def _sensor(sensor: Mapping[str, Any], session: Mapping[str, Any]) -> SensorRow:
     )
 
 
-def _first(found: Preview) -> dict[str, Any]:
+def _first(found: Preview) -> Json:
     """The first rows as they will be read, and the length of what they say was felt."""
     if found.session is None:
         return {"preview": (), "headings": (), "felt": ""}
