@@ -1,11 +1,11 @@
 """Diagnoses: what the simulation gets wrong about a session, and the acceptance of a named cause."""
 
 import json
-from typing import Any
 
 from fastapi import APIRouter, Response
 from fastapi.responses import JSONResponse
 
+from estimator.json_object import Json
 from estimator.message import with_messages
 from service.errors import NotFoundError
 from service.models.api import DiagnosisDocument, ModelDocument, NewModelSchema, PendingDiagnosis, model_document
@@ -21,7 +21,7 @@ from service.work.dependencies import ReaderOf
 router = APIRouter(prefix="/sessions", tags=["diagnosis"])
 RETRY_AFTER = "2"
 """Seconds: what the diagnosis of a larger session takes."""
-PENDING: dict[int | str, dict[str, Any]] = {
+PENDING: dict[int | str, Json] = {
     202: {"model": PendingDiagnosis, "description": "Still being made; ask again after Retry-After seconds."}
 }
 """How OpenAPI describes the answer while a diagnosis is being made."""

@@ -8,7 +8,6 @@ from datetime import datetime
 from functools import cache
 from math import degrees, isfinite
 from statistics import median
-from typing import Any
 
 import altair as alt
 
@@ -16,6 +15,7 @@ from estimator.groups import GroupFinding
 from estimator.groups.layout import EVERY
 from estimator.groups.pictures import ANGLES
 from estimator.groups.results import Picture
+from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.moments import moment
 from service.diagnosis.words.amplitudes import amplitude_measure, part_of
@@ -136,7 +136,7 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
     )
 
 
-def _session_points(finding: GroupFinding, element: Element) -> Iterator[dict[str, Any]]:
+def _session_points(finding: GroupFinding, element: Element) -> Iterator[Json]:
     k, factor = element.number, element.measure.factor
     for one in finding.sessions:
         sigma = one.sigma[k]
@@ -154,7 +154,7 @@ def _session_points(finding: GroupFinding, element: Element) -> Iterator[dict[st
 
 
 @cache
-def _forest_spec() -> dict[str, Any]:
+def _forest_spec() -> Json:
     x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
     y_scale = alt.Scale(domain=[LOW, HIGH])
     y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
@@ -253,7 +253,7 @@ def _picture_panel(picture: Picture, side: str, at: Sequence[float], measure: Me
 
 
 @cache
-def _picture_spec(title: str, *, by_angle: bool) -> dict[str, Any]:
+def _picture_spec(title: str, *, by_angle: bool) -> Json:
     axis = alt.Axis(**ticks(BETA)) if by_angle else alt.Axis(tickCount=5)
     x = alt.X("x:Q", title=title, axis=axis, scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
     y_scale = alt.Scale(domain=[LOW, HIGH])

@@ -26,6 +26,7 @@ from sqlalchemy.orm import aliased
 
 from estimator.groups import GroupDiagnosis, SessionStatistics
 from estimator.groups.statistics import FORMAT
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
@@ -267,5 +268,5 @@ class Statistics(Queries):
         self._session.expire_all()
 
 
-def _begun(version: str) -> dict[str, Any]:
+def _begun(version: str) -> Json:
     return {"format": FORMAT, "document": None, "why": "", "attempts": 0, "estimator_version": version}

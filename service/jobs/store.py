@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Select, String, cast, delete, func, literal, or_, select, union_all, update
 from sqlalchemy.orm import InstrumentedAttribute
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.diagnosis.tables import DiagnosisRow
 from service.diagnosis.words.diagnosis import CANNOT
@@ -240,7 +241,7 @@ def _record(row: JobRow, held_up: str = "", *, is_leased: bool = False) -> Job:
     )  # fmt: skip
 
 
-def _sent(document: dict[str, Any]) -> Sent:
+def _sent(document: Json) -> Sent:
     replaces = document["replaces"]
     return Sent(**{**document, "replaces": None if replaces is None else Replaced(**replaces)})
 

@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import Integer, Select, cast, delete, func, select
 
 from estimator.health.common_motion import SEPARATED
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
@@ -99,7 +100,7 @@ class Stands(Queries):
         return tuple(reversed(found))
 
 
-def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
+def _stands() -> Select[Json | None, str, int, int, datetime | None]:
     """The document of its own health, then the fields of `StandUse`."""
     last = select(func.max(SessionRow.started_at)).where(SessionRow.stand_id == StandRow.id, IS_ACCEPTED)
     counts = (func.coalesce(StandTallyRow.sessions, 0), func.coalesce(StandTallyRow.units, 0))
@@ -111,7 +112,7 @@ def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
     )
 
 
-def _known(document: dict[str, Any] | None, *use: Any) -> KnownStand:
+def _known(document: Json | None, *use: Any) -> KnownStand:
     return KnownStand(StandUse(*use), None if document is None else STORED.read(StandCondition, document))
 
 

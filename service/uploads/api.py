@@ -5,12 +5,13 @@ Without a preference, and for a small file or one that is stored already, the an
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field, TypeAdapter
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.jobs.records import Job, JobKind, under_way
@@ -198,7 +199,7 @@ class LayoutColumn(BaseModel):
 class PreviewSchema(BaseModel):
     """A table under a mapping; correct the mapping and send it again, or with the file to `POST /sessions`."""
 
-    mapping: dict[str, Any] = Field(description="imu-mapping/1, complete as it is to be sent.")
+    mapping: Json = Field(description="imu-mapping/1, complete as it is to be sent.")
     remembered: bool = Field(description="Whether it is that of an earlier file with the same headings.")
     fingerprint: str = Field(description="SHA-256 of the headings.")
     rows: int = Field(description="Of the file.")

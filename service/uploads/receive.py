@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import Any
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import changed, say
 from service.errors import RefusedError
 from service.ingest import in_turn, look_at
@@ -334,7 +335,7 @@ def receive_mapped(reception: Reception, file: SentFile, mapping: Mapping[str, A
     return receipt
 
 
-def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
+def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[Json, str]:
     """The mapping with all settings of the parser, so that the file is always read in the same way."""
     try:
         layout_of(mapping, file.filename)

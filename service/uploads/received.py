@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass, replace
 from io import BytesIO
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Depends, Query, Request
 from python_multipart.exceptions import FormParserError
@@ -13,6 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException, MultiPartParser
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import ForbiddenError, RefusedError, TooLargeError
 from service.ingest.formats import may_be_log
@@ -238,7 +239,7 @@ async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentF
     return SentFile(name, await file.content(), replaces=replaces, mapping=read_by, **marks)
 
 
-def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:
+def _mapping(text: bytes, filename: str) -> Json | None:
     """The mapping of a table, from a part of the form, be it a file or not; RefusedError for invalid JSON."""
     if not text.strip():
         return None
@@ -269,7 +270,7 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
 FileOf = Annotated[SentFile, Depends(_received)]
 """The uploaded file."""
 
-REQUEST_BODY: dict[str, Any] = {
+REQUEST_BODY: Json = {
     "requestBody": {
         "required": True,
         "description": "A session file, as the body or as the part `file` of a form.",
