@@ -109,7 +109,7 @@ def test_the_same_sent_twice_is_one_job(storage: Storage) -> None:
 
 STEPS = {
     "before its bytes are kept": (Files, "keep"),
-    "after its bytes are kept": (flow._Following, "stored"),
+    "after its bytes are kept": (flow._JobHooks, "stored"),
     "after it is stored": (flow, "drop_waiting"),
 }
 
