@@ -219,7 +219,7 @@ RULE_OUT = "These sessions do not rule the others out. Take the measurement that
 
 
 @dataclass(frozen=True)
-class Choice:
+class GroupChoice:
     """What else it could be, and what would tell."""
 
     name: str
@@ -251,7 +251,7 @@ class LastingEffect:
     since: str
     evidence: str
     advice: str
-    choices: tuple[Choice, ...]
+    choices: tuple[GroupChoice, ...]
     rows: tuple[ForestRow, ...]
     """Newest first."""
 
@@ -312,12 +312,12 @@ def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
     return own == theirs and set(finding.sensors) <= set(revision.sensors)
 
 
-def _choice(rival: Rival) -> Choice:
+def _choice(rival: Rival) -> GroupChoice:
     whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
     count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
     sensors = () if "*" in rival.sensors else rival.sensors
     told = joined("", (rival.measurement, count)) if rival.measurement else "nothing that can be planned"
-    return Choice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
+    return GroupChoice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
 
 
 def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
