@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.alignment.positions import Stop
-from estimator.alignment.strapdown import Motion
+from estimator.alignment.strapdown import BlockMotion
 from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
 from estimator.least_squares import least_squares
@@ -34,7 +34,7 @@ class Coarse:
     """(3,) m/s², the third 0."""
 
 
-def coarse(stationary: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
+def coarse(stationary: list[Stop], motion: BlockMotion, gyro_noise: Array) -> Coarse:
     """The start of the fine alignment.
 
     Parameters

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.alignment.lever_arms import LeverArm, LeverArms
+from estimator.alignment.lever_arms import FittedLeverArm, LeverArms
 from estimator.alignment.pieces import Pieces
 from estimator.alignment.turned import whitened
 from estimator.least_squares import inverse as inverse_of
@@ -24,7 +24,7 @@ FOLDS = 10
 
 
 @dataclass(frozen=True)
-class Prediction:
+class HeldOutPrediction:
     """Of the pieces of all turns."""
 
     rms: float
@@ -42,7 +42,7 @@ def held_out(arms: LeverArms) -> str:
     return "turns" if arms.pieces.turn.max() > 0 else "parts of the turn"
 
 
-def prediction(arms: LeverArms, *, named: bool) -> Prediction:
+def prediction(arms: LeverArms, *, named: bool) -> HeldOutPrediction:
     """Of all turns; ``named``: with the named lever arms in the model."""
     parts = arms.pieces
     scores, each = [], {}
@@ -51,7 +51,7 @@ def prediction(arms: LeverArms, *, named: bool) -> Prediction:
         each[arm.sensor.name] = root_mean_square(np.concatenate([errors for errors, _, _ in own]))
         scores += own
     errors, squares, logs = (np.concatenate(column) for column in zip(*scores, strict=True))
-    return Prediction(root_mean_square(errors), float(squares.mean()), float(logs.mean()), each)
+    return HeldOutPrediction(root_mean_square(errors), float(squares.mean()), float(logs.mean()), each)
 
 
 def root_mean_square(errors: Array) -> float:
@@ -72,7 +72,7 @@ def _folds(parts: Pieces) -> list[NDArray[np.bool_]]:
 
 
 def _scores(
-    parts: Pieces, arm: LeverArm, lean: float, fold: NDArray[np.bool_], *, named: bool
+    parts: Pieces, arm: FittedLeverArm, lean: float, fold: NDArray[np.bool_], *, named: bool
 ) -> tuple[Array, Array, Array]:
     """Errors (n,), m/s², of held-out pieces, their whitened squares and log densities, without unit."""
     i, known = arm.response.sensor, ~fold

@@ -7,8 +7,8 @@ import numpy as np
 
 from estimator.alignment.align import align, prepared
 from estimator.alignment.as_calibration import alignment_calibration, settled
-from estimator.alignment.held_out import Prediction, held_out, prediction
-from estimator.alignment.lever_arms import DECISIVE, FEWEST, LEVEL, LeverArm, LeverArms, lever_arms
+from estimator.alignment.held_out import HeldOutPrediction, held_out, prediction
+from estimator.alignment.lever_arms import DECISIVE, FEWEST, LEVEL, FittedLeverArm, LeverArms, lever_arms
 from estimator.alignment.results import AlignmentResult
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes.catalogue import UNEXPLAINED
@@ -83,7 +83,7 @@ def _findings(arms: LeverArms) -> Iterator[Finding]:
     yield replace(first, sentence=sentence, sensors=sensors, amplitude=(), sigma=(), units=())
 
 
-def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
+def _finding(arm: FittedLeverArm, arms: LeverArms) -> Finding:
     name, (length, sigma) = arm.sensor.name, arm.distance
     length_text = _centimetres(length, sigma)
     sentence = (
@@ -112,16 +112,16 @@ def _centimetres(length: float, sigma: float) -> str:
     return f"{length / CENTIMETRE:.{digits}f} ± {expanded / CENTIMETRE:.{digits}f} cm"
 
 
-def _strength(arm: LeverArm, model: str) -> float:
+def _strength(arm: FittedLeverArm, model: str) -> float:
     return float(np.sqrt(max(arm.response.drop[model][0], 0.0)))
 
 
-def _separation(arm: LeverArm, rival: str) -> Separation:
+def _separation(arm: FittedLeverArm, rival: str) -> Separation:
     now = _strength(arm, say("lever arm beside {rival}", rival=rival))
     return Separation(CALLED[rival], (arm.sensor.name,), now, SEPARATING[rival], None)
 
 
-def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
+def _ranking(arm: FittedLeverArm, pieces: int) -> Iterator[Rival]:
     """Shares by BIC."""
     names = {"lever arm": CAUSE.identifier, **CALLED}
     worth = np.array([arm.response.worth(model, pieces) for model in names])
@@ -146,7 +146,7 @@ def _gain(arms: LeverArms) -> Gain:
     return Gain(before, after, held_out(arms), None)
 
 
-def _score(prediction: Prediction) -> Score:
+def _score(prediction: HeldOutPrediction) -> Score:
     return Score(
         rms=prediction.rms,
         chi2_per_dof=prediction.chi2,

@@ -19,10 +19,10 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.evidence import VARYING
 from estimator.groups.fixed import added_by, fixed
 from estimator.groups.joint_fit import JointFit, predictive
-from estimator.groups.pool import Model, pooled
+from estimator.groups.pool import PoolModel, pooled
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding, GroupGain, Moved
-from estimator.groups.selection import Found, Selection
+from estimator.groups.selection import Found, GroupSelection
 from estimator.session import Array, CalibrationSession
 
 FIRST = 2 / 3
@@ -33,11 +33,11 @@ SHOWN = 5
 
 
 def gain_of(
-    selection: Selection, findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]
+    selection: GroupSelection, findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]
 ) -> GroupGain | None:
     """The gain on later sessions; None without findings or without sessions to leave out."""
     n = len(selection.layout.parts)
-    model, lasting = Model(absorbed=selection.own), []
+    model, lasting = PoolModel(absorbed=selection.own), []
     for f, finding in zip(selection.found, findings, strict=True):
         if f.form != VARYING:
             model = model.with_shared(f.place, f.since)
@@ -111,14 +111,14 @@ PARTS = 3
 """Of the sessions, every third one in each: all reach over the whole life of the group."""
 
 
-def names_that_predict(state: Selection) -> Selection:
+def names_that_predict(state: GroupSelection) -> GroupSelection:
     """The findings by which sessions left out are likelier; the others are not tried again."""
     worse = tuple(f for f in state.found if gained(state, f) <= 0)
     found = tuple(f for f in state.found if f not in worse)
     return replace(state, found=found, barred=state.barred | {f.hypothesis.group for f in worse})
 
 
-def gained(state: Selection, name: Found) -> float:
+def gained(state: GroupSelection, name: Found) -> float:
     """Log predictive density that a name gains, the other findings given."""
     w, k = name.place
     moments = state.weighed(without=name).pool.moments[w]

@@ -21,7 +21,7 @@ from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.parity.ledger import Blocks, Ledger
-from estimator.parity.reference import Reference
+from estimator.parity.reference import ParityReference
 from estimator.session import Array
 from estimator.wording import counted, few
 
@@ -38,7 +38,7 @@ NOISY = 3.0
 """Variance of the vector within a block, in what the sensors' own noise makes of it, that still is no shaking."""
 
 
-def resting(blocks: Blocks, quiet: Mask, reference: Reference, norm: float | None, rate: float | None) -> Mask:
+def resting(blocks: Blocks, quiet: Mask, reference: ParityReference, norm: float | None, rate: float | None) -> Mask:
     """(B,) bool: whether at rest.
 
     Parameters
@@ -56,7 +56,7 @@ def resting(blocks: Blocks, quiet: Mask, reference: Reference, norm: float | Non
     return np.asarray(quiet & level & calm & (turning(blocks, reference, rate) < SLOW))
 
 
-def turning(blocks: Blocks, reference: Reference, rate: float | None) -> Array:
+def turning(blocks: Blocks, reference: ParityReference, rate: float | None) -> Array:
     """(B,) rate at which the specific force turns from block to block, rad/s; 0 for rows that are averages."""
     turns = np.zeros(len(blocks) + 1)
     if rate is not None:
@@ -95,7 +95,7 @@ FEWEST_GROUPS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Selection:
+class BlockSelection:
     """The blocks that are used. B blocks, G groups."""
 
     blocks: Blocks
@@ -118,7 +118,7 @@ class Selection:
         return int(self.group[-1]) + 1
 
 
-def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float | None = None) -> Selection:
+def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float | None = None) -> BlockSelection:
     """The usable blocks of a recording.
 
     Parameters
@@ -147,7 +147,7 @@ def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float |
         raise ScheduleError([Problem("table", never_still(int(used.sum()), total))])
     left_out = {"saturated": int((~clean).sum()), "moving": int((clean & ~used).sum())}
     chosen = blocks.at(used)
-    return Selection(chosen, grouped(chosen, still[used]), still[used], rest[used], saturated, left_out, total)
+    return BlockSelection(chosen, grouped(chosen, still[used]), still[used], rest[used], saturated, left_out, total)
 
 
 def at_rest(blocks: Blocks, clean: Mask) -> Mask:

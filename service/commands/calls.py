@@ -32,7 +32,7 @@ class Columns:
     empty: str
     """Printed for an empty list."""
     cells: Mapping[str, Callable[[Answer], str]]
-    """Cells under each heading, as Rich markup."""
+    """CellKind under each heading, as Rich markup."""
     is_paged: bool = False
 
     def table(self, rows: list[Answer]) -> Table | str:

@@ -25,7 +25,7 @@ from service.errors import RefusedError
 T = TypeVar("T")
 
 
-class Form(StrEnum):
+class OutputForm(StrEnum):
     """Output form of a list."""
 
     TABLE = "table"
@@ -34,7 +34,7 @@ class Form(StrEnum):
 
 
 FormOf = Annotated[
-    Form | None,
+    OutputForm | None,
     typer.Option(
         "--format",
         help="table; json: one document; jsonl: one object a line.",
@@ -137,21 +137,21 @@ def progress(total: int, doing: str, *, quiet: bool = False, is_long: bool = Fal
 class Listing:
     """Requested form of a list."""
 
-    chosen: Form | None
+    chosen: OutputForm | None
     as_lines: bool = False
 
     @property
-    def form(self) -> Form:
+    def form(self) -> OutputForm:
         """The chosen form, else that for a terminal or a pipe."""
         if self.chosen is not None:
             return self.chosen
-        return Form.JSONL if self.as_lines or not sys.stdout.isatty() else Form.TABLE
+        return OutputForm.JSONL if self.as_lines or not sys.stdout.isatty() else OutputForm.TABLE
 
     def show(self, rows: Sequence[Any], view: Callable[[], RenderableType]) -> None:
         """Prints the rows as they were answered, or their view."""
-        if self.form is Form.TABLE:
+        if self.form is OutputForm.TABLE:
             screen().print(view())
-        elif self.form is Form.JSON:
+        elif self.form is OutputForm.JSON:
             print_json(list(rows))
         else:
             for row in rows:

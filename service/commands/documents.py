@@ -15,7 +15,7 @@ from service.commands.speech import output_language, say
 from service.languages.language import Language, of_environment
 
 
-class System(StrEnum):
+class ExportSystem(StrEnum):
     """Target system of the parameters."""
 
     PX4 = "px4"
@@ -31,7 +31,7 @@ class CertificateForm(StrEnum):
     DCC = "dcc"
 
 
-class ReportForm(StrEnum):
+class FleetReportForm(StrEnum):
     """Form of a report."""
 
     JSON = "json"
@@ -78,7 +78,7 @@ def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = Non
 
 def export(
     session: Session,
-    system: Annotated[System, typer.Option("--system", help="px4, ardupilot, kalibr or ros2.")],
+    system: Annotated[ExportSystem, typer.Option("--system", help="px4, ardupilot, kalibr or ros2.")],
     server: Server = DEFAULT_SERVER,
     out: Out = None,
     *,
@@ -97,13 +97,13 @@ report = typer.Typer(add_completion=False, rich_markup_mode="markdown", invoke_w
 def write_report(
     context: typer.Context,
     server: Server = DEFAULT_SERVER,
-    format: Annotated[ReportForm, typer.Option("--format", help="json, csv, xlsx or pdf.")] = ReportForm.CSV,
+    format: Annotated[FleetReportForm, typer.Option("--format", help="json, csv, xlsx or pdf.")] = FleetReportForm.CSV,
     out: Out = None,
 ) -> None:
     """Write the fleet's condition as a file for other programs."""
     if context.invoked_subcommand is not None:
         return
-    is_long = format in (ReportForm.XLSX, ReportForm.PDF)
+    is_long = format in (FleetReportForm.XLSX, FleetReportForm.PDF)
     with connect(server, language=output_language()) as client, progress(1, "making the report", is_long=is_long):
         content = client.get("/fleet/report", format=format.value).content
     deliver(content, out)

@@ -12,7 +12,7 @@ import typer
 
 from estimator.causes import CATALOGUE, Cause, find
 from estimator.errors import SessionError
-from estimator.hiding import Hidden, TooWeakError, UnhideableError, hide, hide_any
+from estimator.hiding import HiddenCause, TooWeakError, UnhideableError, hide, hide_any
 from estimator.json_object import Json
 from estimator.session import CALIBRATIONS, GYROSCOPE, TWO_AXIS_STAND, CalibrationSession
 from service.commands.speech import UNUSABLE, say
@@ -95,7 +95,7 @@ def read_request(
 
 def hidden_in(
     sessions: list[CalibrationSession], request: HidingRequest, seed: int
-) -> tuple[CalibrationSession, Hidden]:
+) -> tuple[CalibrationSession, HiddenCause]:
     """The last session before its pulses are counted, with the requested cause in it; exit code 2 with a sentence where
     that is impossible."""
     rng = np.random.default_rng([seed, RANDOM_STREAM])
@@ -134,13 +134,13 @@ def refuse(sentence: str) -> NoReturn:
     raise typer.Exit(UNUSABLE)
 
 
-def write_answer(hidden: Hidden, file: Path, session: CalibrationSession, target: Path) -> None:
+def write_answer(hidden: HiddenCause, file: Path, session: CalibrationSession, target: Path) -> None:
     """What is hidden in ``file``, sensors by name and rows counted from 1."""
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(json.dumps(_answer(hidden, file, session), ensure_ascii=False), encoding="utf-8")
 
 
-def _answer(hidden: Hidden, file: Path, session: CalibrationSession) -> Json:
+def _answer(hidden: HiddenCause, file: Path, session: CalibrationSession) -> Json:
     known = find(hidden.cause)
     assert known is not None
     return {
@@ -158,7 +158,7 @@ def _answer(hidden: Hidden, file: Path, session: CalibrationSession) -> Json:
     }
 
 
-def _unit(unit: str, hidden: Hidden, session: CalibrationSession) -> str:
+def _unit(unit: str, hidden: HiddenCause, session: CalibrationSession) -> str:
     """Of a size at the input, which of a gyro is a rate."""
     on_gyro = any(session.sensors[i].kind == GYROSCOPE for i in hidden.sensors)
     return "rad/s" if on_gyro and unit == "m/s²" else unit

@@ -116,13 +116,13 @@ def bring_flags(storage: Storage, ids: Collection[int], state: FlagState, who: s
         for id in sorted(units, key=lambda id: (units[id], id)):
             unit = Units(store).hold(units[id])
             if Flags(store).get(id).state in POSSIBLE[state]:
-                _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
+                _keep(store, FlagHandling(id, unit, state, who=who, why=why, at=now))
                 changed += 1
         return changed
 
 
 @dataclass(frozen=True)
-class Handled:
+class FlagHandling:
     """What somebody says of one flag."""
 
     id: int
@@ -146,10 +146,10 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
                     new_state=state.value,
                 )
             )
-        return _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
+        return _keep(store, FlagHandling(id, unit, state, who=who, why=why, at=now))
 
 
-def _keep(store: Store, said: Handled) -> Flag:
+def _keep(store: Store, said: FlagHandling) -> Flag:
     Flags(store).put(said.id, said.at, state=said.state)
     Notices(store).add(said.unit, DONE[said.state], said.at, said.who, said.why, flag=said.id)
     Fleet(store).count_flags(said.unit)

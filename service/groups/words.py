@@ -239,7 +239,7 @@ RULE_OUT = "These sessions do not rule out the other causes. Before you act on o
 
 
 @dataclass(frozen=True)
-class Choice:
+class GroupChoice:
     """What else it could be, and what would tell."""
 
     name: str
@@ -273,7 +273,7 @@ class LastingEffect:
     """From session to session, one standard deviation; empty of one that is always the same."""
     evidence: str
     advice: str
-    choices: tuple[Choice, ...]
+    choices: tuple[GroupChoice, ...]
     rows: tuple[ForestRow, ...]
     """Newest first."""
 
@@ -344,12 +344,12 @@ def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
     return own == theirs and set(finding.sensors) <= set(revision.sensors)
 
 
-def _choice(rival: Rival) -> Choice:
+def _choice(rival: Rival) -> GroupChoice:
     whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
     count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
     sensors = () if "*" in rival.sensors else rival.sensors
     told = joined("", (rival.measurement, count)) if rival.measurement else "no planned session can separate them"
-    return Choice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
+    return GroupChoice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
 
 
 def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:

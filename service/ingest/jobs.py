@@ -15,7 +15,7 @@ from service.ingest.layout.look import look
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import document_of
 from service.ingest.logs import log_of
-from service.ingest.long_log import UNREADABLE, Rows, averaged_if_long, numbers, rows_of
+from service.ingest.long_log import UNREADABLE, TableScan, averaged_if_long, numbers, rows_of
 from service.ingest.metadata import with_metadata
 from service.ingest.parquet import columns_of
 from service.kit.limits import check_table, in_force, refusal
@@ -37,7 +37,7 @@ def recording(path: Path, filename: str) -> Iterator[object]:
         yield frame.to_numpy()
 
 
-def _head(rows: Rows, filename: str) -> CalibrationSession:
+def _head(rows: TableScan, filename: str) -> CalibrationSession:
     try:
         frame = next(rows.stretches(rows.names), pl.DataFrame()).head(HEAD)
     except UNREADABLE as error:
@@ -47,7 +47,7 @@ def _head(rows: Rows, filename: str) -> CalibrationSession:
     return read_session(document, name=filename, part=True)
 
 
-def _frames(rows: Rows, names: list[str], filename: str) -> Iterator[pl.DataFrame]:
+def _frames(rows: TableScan, names: list[str], filename: str) -> Iterator[pl.DataFrame]:
     """Readings alone."""
     columns, limit, rows_read = len(rows.names), in_force().log_cells, 0
     try:

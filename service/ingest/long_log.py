@@ -29,7 +29,7 @@ LONGEST_HEADER = 1024 * 1024
 CHUNK_BYTES = 2 * 1024 * 1024
 """Bytes of a CSV that are read at a time: far more than a line, and its numbers are not much larger."""
 CHUNK_CELLS = 250_000
-"""Cells of a Parquet file that are read at a time: some megabytes."""
+"""CellKind of a Parquet file that are read at a time: some megabytes."""
 SAMPLE_ROWS = 1_000
 """Rows from which it is decided whether a column of a CSV is numeric."""
 SEPARATORS = ",;\t"
@@ -41,7 +41,7 @@ START = 4096
 PARQUET_DAMAGED = "is damaged or not a readable Parquet file; write it again"
 
 
-class Rows(Protocol):
+class TableScan(Protocol):
     """A table that can be read in several passes."""
 
     @property
@@ -59,7 +59,7 @@ class Rows(Protocol):
         """Some columns, some rows at a time; polars' errors for a malformed table."""
 
 
-def rows_of(path: Path, filename: str) -> Rows | None:
+def rows_of(path: Path, filename: str) -> TableScan | None:
     """The table of a CSV or Parquet file; None for any other."""
     with path.open("rb") as file:
         head = file.read(START)
@@ -239,7 +239,7 @@ class _Codes:
 class _Scan:
     """One log, scanned as often as its averages need it."""
 
-    rows: Rows
+    rows: TableScan
     document: Mapping[str, object]
     """Without its table."""
     filename: str

@@ -64,12 +64,12 @@ def _check_members(content: bytes, lengths: list[int], shared: Counter[int], ext
         if len(members) > MOST_MEMBERS:
             raise TooMuchError(say("has {members} parts, where a workbook has some twenty", members=len(members)))
         for member in members:
-            part = _Part(lengths, shared)
+            part = _XmlPart(lengths, shared)
             left -= _streamed(archive, member, part, left)
             extents.append((part.rows, part.columns))
 
 
-def _streamed(archive: ZipFile, member: ZipInfo, part: "_Part", limit: int) -> int:
+def _streamed(archive: ZipFile, member: ZipInfo, part: "_XmlPart", limit: int) -> int:
     """Bytes that the member unpacks to."""
     is_xml = PurePosixPath(member.filename.lower()).suffix not in PICTURES
     total = 0
@@ -85,7 +85,7 @@ def _streamed(archive: ZipFile, member: ZipInfo, part: "_Part", limit: int) -> i
     return total
 
 
-class _Part:
+class _XmlPart:
     """One XML part: the extent of its cells, the lengths of shared texts and how often each is used."""
 
     def __init__(self, lengths: list[int], shared: Counter[int]) -> None:

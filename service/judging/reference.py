@@ -96,7 +96,7 @@ def known_unit(
 
 
 @dataclass(frozen=True)
-class Reference:
+class EpochReference:
     """What a session of an epoch is judged against."""
 
     session: str | None
@@ -105,10 +105,10 @@ class Reference:
     """Of the service that the epoch began with; None in a unit's first epoch."""
 
 
-def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> Reference:
+def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> EpochReference:
     """The reference for a session of a block of the unit, by what was measured and when."""
     since, until = Services(store).around(unit, at)
-    return Reference(Sessions(store).reference(unit, block, since, until, alike(programme)), since)
+    return EpochReference(Sessions(store).reference(unit, block, since, until, alike(programme)), since)
 
 
 def alike(programme: str) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from babel.messages.pofile import read_po
 
 from estimator.message import Message, filled
 from service.languages.charts import chart_in
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 from service.languages.language import Language
 from service.languages.time import TIME
 
@@ -30,7 +30,7 @@ class Catalogue:
         self._time = TIME[language]
         self.plural = c2py(stored.plural_expr)
 
-    def forms(self, message: Entry) -> Sequence[str]:
+    def forms(self, message: MessageEntry) -> Sequence[str]:
         """The translation of a message, one text for every plural form; empty where there is none."""
         stored = self._stored.get(message.id) or self._stored.get(message.text)
         return forms_of(stored) if stored else ()

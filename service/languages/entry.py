@@ -14,7 +14,7 @@ TAG = re.compile(r"</?[a-z]\w*>")
 
 
 @dataclass(frozen=True)
-class Entry:
+class MessageEntry:
     """An entry of a catalogue."""
 
     text: str

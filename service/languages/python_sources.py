@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from estimator.message import PLACE
-from service.languages.entry import LETTERS, Entry
+from service.languages.entry import LETTERS, MessageEntry
 
 SILENT_CALLS = frozenset(
     (
@@ -34,14 +34,14 @@ HELPERS = {
 """Messages of the functions of `estimator.wording` for a counted thing."""
 
 
-def messages(source: str, name: str, *, headings: bool, described: bool = False) -> Iterator[Entry]:
+def messages(source: str, name: str, *, headings: bool, described: bool = False) -> Iterator[MessageEntry]:
     """The messages of a module, in order; ``headings``: also single capitalised words; ``described``: also descriptions
     of fields."""
     for node in _texts_in(ast.parse(source), described=described):
         if isinstance(node, ast.Call):
             yield replace(_of_call(node), place=name)
         elif isinstance(node, ast.Constant) and _is_message(str(node.value), headings=headings):
-            yield Entry(str(node.value), place=name)
+            yield MessageEntry(str(node.value), place=name)
 
 
 def finished(source: str) -> Iterator[str]:
@@ -101,11 +101,11 @@ def _templates(call: ast.Call) -> list[str]:
     return [one.value for one in arguments if isinstance(one, ast.Constant) and isinstance(one.value, str)]
 
 
-def _of_call(call: ast.Call) -> Entry:
+def _of_call(call: ast.Call) -> MessageEntry:
     texts = _templates(call)
     if (name := _name(call.func)) in HELPERS:
         texts = [form.replace("@", texts[0]) for form in HELPERS[name]]
-    return Entry(*texts)
+    return MessageEntry(*texts)
 
 
 def _is_message(text: str, *, headings: bool) -> bool:

@@ -7,7 +7,7 @@ from pathlib import Path
 from estimator.causes import CATALOGUE, OF_SEVERAL, ON_TURNTABLE, Cause
 from estimator.message import PLACE
 from service.languages import python_sources, typst_sources
-from service.languages.entry import LETTERS, Entry
+from service.languages.entry import LETTERS, MessageEntry
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
 from service.languages.template import Template
 from service.languages.templates import literals
@@ -80,23 +80,23 @@ IGNORED = (
 """Texts for programs, for the operator, or fixed by a standard."""
 
 
-def messages() -> Iterator[Entry]:
+def messages() -> Iterator[MessageEntry]:
     """Every message of the product, in the order of its files; some occur in several."""
     return (one for one in _all() if LETTERS.search(PLACE.sub(" ", one.text)) and one.text not in NAMES)
 
 
-def _all() -> Iterator[Entry]:
-    yield from (Entry(word, place="service/languages/short.py") for word in STANDING_ALONE)
+def _all() -> Iterator[MessageEntry]:
+    yield from (MessageEntry(word, place="service/languages/short.py") for word in STANDING_ALONE)
     yield from (
-        Entry(text, place="estimator/causes")
+        MessageEntry(text, place="estimator/causes")
         for cause in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL)
         for text in _names_of(cause)
     )
-    yield from (Entry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
+    yield from (MessageEntry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
     for path in sorted(ROOT.glob(TEMPLATES)):
         template = Template(path.read_text("utf-8"), path.name)
         yield from (found.message for found in template.messages())
-        yield from (Entry(text, place=path.name) for text in literals(template))
+        yield from (MessageEntry(text, place=path.name) for text in literals(template))
     for path in sorted((ROOT / PAPERS).glob("*.typ")):
         yield from typst_sources.messages(path.read_text("utf-8"), path.name)
     for path in modules():

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 from service.languages.pieces import Piece
 
 INLINE = frozenset(("a", "abbr", "b", "em", "i", "small", "strong", "sub", "sup", "span", "time"))
@@ -42,7 +42,7 @@ class TemplateMessage:
 
     start: int
     end: int
-    message: Entry
+    message: MessageEntry
     piece: Piece
 
 

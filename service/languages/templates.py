@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterator, Sequence
 
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 from service.languages.pieces import Piece
 from service.languages.template import Template, TemplateMessage, translating
 
@@ -18,7 +18,7 @@ WORDS = re.compile(r"[\w ,;:.]*[a-z]{2,}[\w ,;:.]*")
 ADDRESS_OR_KEY = re.compile(r"[/<>=&?#_]|^[a-z]+(-[a-z]+)+$")
 """In addresses and keys, and not in words."""
 IN_MESSAGE = re.compile(r"\{(\w+)\}|</?([a-z]\w*)>")
-Forms = Callable[[Entry], Sequence[str]]
+Forms = Callable[[MessageEntry], Sequence[str]]
 """Translations of a message: a text, or one for every plural form; empty where there is none."""
 
 

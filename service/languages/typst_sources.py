@@ -3,11 +3,11 @@
 import re
 from collections.abc import Iterator
 
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 
 SAY_CALL = re.compile(r"\bsay\(\"([^\"]+)\"")
 
 
-def messages(source: str, name: str) -> Iterator[Entry]:
+def messages(source: str, name: str) -> Iterator[MessageEntry]:
     """The messages of a template, in order."""
-    yield from (Entry(text, place=name) for text in SAY_CALL.findall(source))
+    yield from (MessageEntry(text, place=name) for text in SAY_CALL.findall(source))

@@ -7,7 +7,7 @@ from babel.messages import Catalog
 from babel.messages.pofile import read_po, write_po
 
 from service.languages.catalogue import forms_of, path_of
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 from service.languages.language import Language
 from service.languages.sources import messages
 
@@ -15,7 +15,7 @@ WIDTH = 120
 """Columns of a line in the file."""
 
 
-def updated(language: Language, extracted: Iterable[Entry]) -> Catalog:
+def updated(language: Language, extracted: Iterable[MessageEntry]) -> Catalog:
     """The catalogue of exactly the messages of the sources, with existing translations."""
     with path_of(language).open("rb") as file:
         before = read_po(file, locale=language.value)

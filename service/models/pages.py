@@ -47,7 +47,7 @@ class MovedRow:
 
 
 @dataclass(frozen=True)
-class UnitRow:
+class RecomputedRow:
     """Result for a unit's sessions."""
 
     unit: str
@@ -56,7 +56,7 @@ class UnitRow:
 
 
 @dataclass(frozen=True)
-class ModelPage:
+class ModelView:
     """Contents of the page."""
 
     revision: ModelRevision
@@ -74,17 +74,17 @@ class ModelPage:
     holds: bool
     progress: str
     verdicts: tuple[MovedRow, ...]
-    units: tuple[UnitRow, ...]
+    units: tuple[RecomputedRow, ...]
     follow: int | None
     """Seconds until the page refreshes; None once all is done."""
 
 
 def model_page(
     revision: ModelRevision, of_subject: Sequence[ModelRevision], recomputations: Sequence[Recomputation]
-) -> ModelPage:
+) -> ModelView:
     """A revision among those of its subject, with its consequences."""
     evidence, pooled = revision.evidence, pooled_of(revision)
-    return ModelPage(
+    return ModelView(
         revision=revision,
         name=cause_on(revision.cause, revision.sensors),
         whose=say("{scope} {subject}", scope=revision.scope, subject=revision.subject),
@@ -137,12 +137,12 @@ def _moved(recomputations: Sequence[Recomputation]) -> Iterator[MovedRow]:
             )
 
 
-def _unit(recomputation: Recomputation) -> UnitRow:
+def _unit(recomputation: Recomputation) -> RecomputedRow:
     outcome = recomputation.outcome
     if outcome is None:
-        return UnitRow(recomputation.unit, recomputation.state.value, left_in_words(recomputation))
+        return RecomputedRow(recomputation.unit, recomputation.state.value, left_in_words(recomputation))
     remainder = say(", {number} cannot be", number=outcome.left) if outcome.left else ""
-    return UnitRow(
+    return RecomputedRow(
         recomputation.unit,
         say(
             "{recomputed} of {sessions}{remainder}",

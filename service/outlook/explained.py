@@ -15,7 +15,7 @@ import numpy as np
 from estimator.causes import cause
 from estimator.diagnosis import Finding
 from estimator.diagnosis.explanation.temperature import OF_TEMPERATURE
-from estimator.health import Judgement, judge
+from estimator.health import ParameterJudgement, judge
 from estimator.results import Calibration
 from estimator.session import comparable
 from service.diagnosis.records import Diagnosed
@@ -72,7 +72,7 @@ def _left(one: _Explained, tolerances: Mapping[tuple[str, str], float]) -> dict[
     return {place: left for place, left in found.items() if left is not None}
 
 
-def _beside(whole: Judgement, rest: Judgement, doubt: float) -> Left | None:
+def _beside(whole: ParameterJudgement, rest: ParameterJudgement, doubt: float) -> Left | None:
     """What is left of one change; None where either is not known."""
     if whole.change is None or rest.change is None or rest.change_own is None:
         return None

@@ -103,7 +103,7 @@ WITHOUT = ("401", "403", "422")
 
 
 @dataclass(frozen=True)
-class Field:
+class FieldHelp:
     """A parameter of a call, or a field of a body."""
 
     name: str
@@ -128,7 +128,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Call:
+class CallHelp:
     """One operation."""
 
     anchor: str
@@ -137,7 +137,7 @@ class Call:
     summary: str
     role: str
     """The least role that may; empty where nobody needs one."""
-    fields: tuple[Field, ...]
+    fields: tuple[FieldHelp, ...]
     body: str
     """Name of the schema of what is sent; empty where it is no JSON."""
     body_kinds: tuple[str, ...]
@@ -149,7 +149,7 @@ class Section:
     """The calls of one subject."""
 
     name: str
-    calls: tuple[Call, ...]
+    calls: tuple[CallHelp, ...]
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ class Schema:
 
     name: str
     text: str
-    fields: tuple[Field, ...]
+    fields: tuple[FieldHelp, ...]
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ class ReferencePage:
 
 def reference_page(described: Mapping[str, Any]) -> ReferencePage:
     """The page of an OpenAPI document."""
-    sections: dict[str, list[Call]] = {}
+    sections: dict[str, list[CallHelp]] = {}
     for path, operations in described["paths"].items():
         for method, operation in operations.items():
             call = _call(method.upper(), path, operation)
@@ -185,10 +185,10 @@ def reference_page(described: Mapping[str, Any]) -> ReferencePage:
     )
 
 
-def _call(method: str, path: str, operation: Mapping[str, Any]) -> Call:
+def _call(method: str, path: str, operation: Mapping[str, Any]) -> CallHelp:
     text, _, role = operation.get("description", "").partition("Needs the role ")
     sent = operation.get("requestBody", {}).get("content", {})
-    return Call(
+    return CallHelp(
         anchor=f"{method.lower()}{path}".replace("/", "-").replace("{", "").replace("}", ""),
         method=method,
         path=path,
@@ -203,10 +203,10 @@ def _call(method: str, path: str, operation: Mapping[str, Any]) -> Call:
     )
 
 
-def _parameter(given: Mapping[str, Any]) -> Field:
+def _parameter(given: Mapping[str, Any]) -> FieldHelp:
     schema = given.get("schema", {})
     text = given.get("description") or schema.get("description", "")
-    return Field(given["name"], given["in"], _kind(schema), _schema_of(schema), given.get("required", False), text)
+    return FieldHelp(given["name"], given["in"], _kind(schema), _schema_of(schema), given.get("required", False), text)
 
 
 def _answer(status: str, said: Mapping[str, Any]) -> Answer:
@@ -218,7 +218,7 @@ def _answer(status: str, said: Mapping[str, Any]) -> Answer:
 def _schema(name: str, schema: Mapping[str, Any]) -> Schema:
     needed = schema.get("required", ())
     fields = tuple(
-        Field(field, "", _kind(own), _schema_of(own), field in needed, own.get("description", ""))
+        FieldHelp(field, "", _kind(own), _schema_of(own), field in needed, own.get("description", ""))
         for field, own in schema.get("properties", {}).items()
     )
     return Schema(name, schema.get("description", ""), fields)

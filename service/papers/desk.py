@@ -32,7 +32,7 @@ from service.papers.records import CertificateFile, Issue, Laboratory, Meaning, 
 from service.papers.sealing import Seal
 from service.papers.store import Certificates, Signatures
 from service.papers.words import CHANGED_HASH, NO_LONGER, NOT_COUNTED
-from service.people.changes import Attempt, attempting
+from service.people.changes import SignInAttempt, attempting
 from service.sessions.store import Sessions
 from service.storage import Storage
 
@@ -128,7 +128,7 @@ def hand_out_approved(desk: Desk, id: str, number: str, format: str) -> Certific
     return CertificateDocument(_name(unit, number), _intact(approved, number))
 
 
-def sign(desk: Desk, signing: Signing, attempt: Attempt, now: datetime) -> Signature:
+def sign(desk: Desk, signing: Signing, attempt: SignInAttempt, now: datetime) -> Signature:
     """Signs the certificate that somebody read, after checking the password."""
     with attempting(desk.storage, attempt, now):
         require_signer(desk.storage, signing)

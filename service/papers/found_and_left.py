@@ -21,7 +21,7 @@ from service.units.store import Units, epoch
 
 
 @dataclass(frozen=True)
-class Moved:
+class JudgedChange:
     """One parameter of one sensor."""
 
     name: str
@@ -31,14 +31,14 @@ class Moved:
     condition: Condition
 
 
-def moved(decision: Decision) -> Moved:
+def moved(decision: Decision) -> JudgedChange:
     """The decision in practical units."""
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
     unit = deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
     one_sided = decision.parameter == "axis"
     format_value = measured if one_sided else signed
     is_observed = decision.deviation is not None
-    return Moved(
+    return JudgedChange(
         name=say("{sensor} {parameter}", sensor=decision.sensor, parameter=decision.parameter),
         deviation=format_value(decision.deviation, decision.expanded, unit) if is_observed else "not observable",
         tolerance=limit(decision.tolerance, unit, one_sided),

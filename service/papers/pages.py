@@ -31,7 +31,7 @@ RELEASED, REVIEWED, OPEN = "Approved", "Reviewed, not approved yet", "Not signed
 
 
 @dataclass(frozen=True)
-class SignatureRow:
+class SignatureView:
     """One signature in words."""
 
     by: str
@@ -50,7 +50,7 @@ class IssueRow:
     who: str
     state: str
     is_approved: bool
-    signatures: tuple[SignatureRow, ...]
+    signatures: tuple[SignatureView, ...]
     content_hash: str
 
 
@@ -121,8 +121,8 @@ def _issue(issue: SignedIssue) -> IssueRow:
     )
 
 
-def _signature(signature: Signature) -> SignatureRow:
-    return SignatureRow(
+def _signature(signature: Signature) -> SignatureView:
+    return SignatureView(
         done_by(signature.meaning),
         signature.name,
         signature.login,

@@ -32,7 +32,7 @@ class AccountsPage:
 
 
 @dataclass(frozen=True)
-class AuditPage:
+class AuditView:
     """A part of the trail."""
 
     lines: tuple[tuple[AuditLine, str], ...]
@@ -43,10 +43,10 @@ class AuditPage:
     """Start of the next part."""
 
 
-def audit_page(lines: Sequence[AuditLine], check: AuditCheck | None, subject: str, limit: int) -> AuditPage:
+def audit_page(lines: Sequence[AuditLine], check: AuditCheck | None, subject: str, limit: int) -> AuditView:
     """The page of some lines of the trail."""
     lines_in_words = tuple((line, _in_words(line)) for line in lines)
-    return AuditPage(lines_in_words, check, subject, lines[-1].id if len(lines) == limit else None)
+    return AuditView(lines_in_words, check, subject, lines[-1].id if len(lines) == limit else None)
 
 
 def _in_words(line: AuditLine) -> str:

@@ -15,7 +15,7 @@ from service.errors import ForbiddenError, SignInError
 from service.ingest.apart import SENDER
 from service.kit.person import EVERYBODY, LOOKING, RANKS, STRANGER, Person, Role
 from service.people.access import METRICS, NEEDED, Route
-from service.people.changes import Attempt
+from service.people.changes import SignInAttempt
 from service.people.provider import Provider
 from service.people.secret import csrf_of, is_same, stored_hash
 from service.people.store import Accounts, SignIns, Tokens, is_stale
@@ -211,7 +211,7 @@ async def _proof(request: Request) -> str:
     return token or ""
 
 
-def attempt_of(request: Request, login: str) -> Attempt:
+def attempt_of(request: Request, login: str) -> SignInAttempt:
     """An attempt at a password: its account, address, and browser if that has signed in there before."""
     application = application_of(request)
     peer = request.client.host if request.client else ""
@@ -219,7 +219,7 @@ def attempt_of(request: Request, login: str) -> Attempt:
         stored = Accounts(store).password_hash(login.strip())
     proof = request.cookies.get(cookie_of(login), "")
     browser = browser_of(proof, login, stored, application.clock()) if proof else ""
-    return Attempt(login, counted_address(peer), browser)
+    return SignInAttempt(login, counted_address(peer), browser)
 
 
 ADMITTED = [Depends(_admitted)]

@@ -135,7 +135,7 @@ ENOUGH_TODAY = (
 
 
 @dataclass(frozen=True)
-class Attempt:
+class SignInAttempt:
     """An attempt at a password."""
 
     login: str
@@ -158,7 +158,7 @@ class _Limit:
 
 
 @contextmanager
-def attempting(storage: Storage, attempt: Attempt, now: datetime) -> Iterator[None]:
+def attempting(storage: Storage, attempt: SignInAttempt, now: datetime) -> Iterator[None]:
     """Context of checking a password: TooOftenError above a limit; a SignInError counts as wrong."""
     limits = _limits(attempt)
     with storage.database.writing() as store:
@@ -178,7 +178,7 @@ def attempting(storage: Storage, attempt: Attempt, now: datetime) -> Iterator[No
             _reset(storage, limits)
 
 
-def _limits(attempt: Attempt) -> tuple[_Limit, ...]:
+def _limits(attempt: SignInAttempt) -> tuple[_Limit, ...]:
     """Always in the same order, the narrowest first, so that no two requests wait for each other."""
     login = attempt.login.strip().lower()
     if attempt.browser:

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
 from estimator.message import joined, say
-from estimator.planning import Judged, Plan, proposed_orientations, rank_of_orientations
+from estimator.planning import JudgedParameter, Plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind
 from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER
@@ -46,7 +46,7 @@ OPEN = Condition("none", "Not judged", "not judged", "circle", "No tolerance was
 
 
 @dataclass(frozen=True)
-class Field:
+class NumberField:
     """A number that the form asks for."""
 
     name: str
@@ -57,7 +57,7 @@ class Field:
 
 
 @dataclass(frozen=True)
-class Cell:
+class ExpectedCell:
     """What is expected of one parameter of one sensor."""
 
     heading: str
@@ -71,11 +71,11 @@ class Row:
     """One sensor, or several that are expected to be known alike."""
 
     name: str
-    cells: tuple[Cell, ...]
+    cells: tuple[ExpectedCell, ...]
 
 
 @dataclass(frozen=True)
-class Line:
+class PlanFact:
     """A fact of the plan: what, and in words."""
 
     name: str
@@ -91,19 +91,19 @@ class PlanPage:
     """Stored unit types to choose from."""
     query: str
     """The question as the query of an address."""
-    block: tuple[Field, ...]
-    session: tuple[Field, ...]
-    tolerances: tuple[Field, ...]
+    block: tuple[NumberField, ...]
+    session: tuple[NumberField, ...]
+    tolerances: tuple[NumberField, ...]
     condition: Condition
     headline: str
-    facts: tuple[Line, ...]
+    facts: tuple[PlanFact, ...]
     rows: tuple[Row, ...]
     charts: tuple[ChartSet, ...]
     over_positions: tuple[tuple[str, ...], ...]
     over_elevation: tuple[tuple[str, ...], ...]
     detected: tuple[SeenCause, ...]
     unseen: tuple[BlindCauses, ...]
-    optimal: tuple[Line, ...]
+    optimal: tuple[PlanFact, ...]
     orientations: tuple[tuple[str, ...], ...]
     """Without a stand: directions of up that identify everything; none for gyros."""
     headings: tuple[str, ...]
@@ -136,12 +136,12 @@ def plan_page(question: PlanQuestion, plan: Plan, types: Sequence[str] = ()) -> 
     )
 
 
-def _field(question: PlanQuestion, name: str, label: str, hint: str = "") -> Field:
+def _field(question: PlanQuestion, name: str, label: str, hint: str = "") -> NumberField:
     value = getattr(question, name)
-    return Field(name, label, "" if value is None else f"{value:g}", hint)
+    return NumberField(name, label, "" if value is None else f"{value:g}", hint)
 
 
-def _block(q: PlanQuestion) -> tuple[Field, ...]:
+def _block(q: PlanQuestion) -> tuple[NumberField, ...]:
     zero = MEASURES[q.kind, "bias"].label
     return (
         _field(q, "sensors", "Sensors on the cone"),
@@ -150,7 +150,7 @@ def _block(q: PlanQuestion) -> tuple[Field, ...]:
     )
 
 
-def _session(q: PlanQuestion) -> tuple[Field, ...]:
+def _session(q: PlanQuestion) -> tuple[NumberField, ...]:
     return (
         _field(q, "elevation", "Elevation of the head, °", "proposed"),
         _field(q, "positions", "Positions a run", "proposed"),
@@ -162,22 +162,22 @@ def _session(q: PlanQuestion) -> tuple[Field, ...]:
     )
 
 
-def _tolerances(q: PlanQuestion) -> tuple[Field, ...]:
+def _tolerances(q: PlanQuestion) -> tuple[NumberField, ...]:
     return tuple(
         _field(q, name, say("{name}, {label}", name=heading(name), label=MEASURES[q.kind, name].label), "not judged")
         for name in PARAMETERS
     )
 
 
-def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
+def _facts(question: PlanQuestion, plan: Plan) -> tuple[PlanFact, ...]:
     ours, formula = (number(float(np.degrees(a)), 1) for a in (plan.elevation, plan.formula_elevation))
     return (
-        Line(
+        PlanFact(
             "Elevation of the head",
             f"{ours}°" if question.elevation is not None else say("{angle}°, proposed", angle=ours),
         ),
-        Line("By the formula for the stand alone", f"{formula}°"),
-        Line(
+        PlanFact("By the formula for the stand alone", f"{formula}°"),
+        PlanFact(
             "Positions a run",
             (
                 say("{positions}", positions=plan.positions)
@@ -185,23 +185,23 @@ def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
                 else say("{positions}, proposed", positions=plan.positions)
             ),
         ),
-        Line("Time", duration(plan.seconds)),
-        Line("Conditioning ρ", number(plan.conditioning, 1)),
-        Line("Equal steps against the best", f"{number(100 * plan.optimal.efficiency, 1)} %"),
+        PlanFact("Time", duration(plan.seconds)),
+        PlanFact("Conditioning ρ", number(plan.conditioning, 1)),
+        PlanFact("Equal steps against the best", f"{number(100 * plan.optimal.efficiency, 1)} %"),
     )
 
 
 def _rows(plan: Plan) -> tuple[Row, ...]:
     """Sensors whose cells read the same share a row."""
-    size, alike = len(PARAMETERS), dict[tuple[Cell, ...], list[str]]()
+    size, alike = len(PARAMETERS), dict[tuple[ExpectedCell, ...], list[str]]()
     for i in range(0, len(plan.judged), size):
         cells = tuple(_cell(one, plan.request.coverage) for one in plan.judged[i : i + size])
         alike.setdefault(cells, []).append(plan.judged[i].sensor)
     return tuple(Row(joined(", ", names), cells) for cells, names in alike.items())
 
 
-def _cell(one: Judged, coverage: float) -> Cell:
-    return Cell(
+def _cell(one: JudgedParameter, coverage: float) -> ExpectedCell:
+    return ExpectedCell(
         heading(one.parameter), sigma_in_words(one, coverage), tolerance_in_words(one), CONDITIONS.get(one.verdict)
     )
 
@@ -223,11 +223,11 @@ def _unseen(plan: Plan) -> tuple[BlindCauses, ...]:
     return (*([BlindCauses(missing, UNSEEN)] if missing else []), *blind(plan))
 
 
-def _optimal(plan: Plan) -> tuple[Line, ...]:
+def _optimal(plan: Plan) -> tuple[PlanFact, ...]:
     best = plan.optimal
     degrees = np.round(np.degrees(best.beta)).astype(int)
     return tuple(
-        Line(name, joined(", ", (f"{d}°" for d in degrees[best.flipped == flipped])))
+        PlanFact(name, joined(", ", (f"{d}°" for d in degrees[best.flipped == flipped])))
         for name, flipped in (("direct", False), ("flipped", True))
         if (best.flipped == flipped).any()
     )

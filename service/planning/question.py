@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from estimator.planning import Request, Wanted
+from estimator.planning import Request, ToleranceSet
 from estimator.readiness import Allowed, Question
 from estimator.readiness.question import USUAL
 from estimator.results import ARCSEC
@@ -103,14 +103,14 @@ class PlanQuestion(BaseModel):
             time_per_position=60 * self.minutes,
         )
 
-    def wanted(self, kind: str) -> Wanted:
+    def wanted(self, kind: str) -> ToleranceSet:
         """The tolerances in SI."""
 
         def si(parameter: str) -> float | None:
             value: float | None = getattr(self, parameter)
             return None if value is None else value / MEASURES[kind, parameter].factor
 
-        return Wanted(si("scale"), si("bias"), si("quadratic"), si("axis"))
+        return ToleranceSet(si("scale"), si("bias"), si("quadratic"), si("axis"))
 
     def cone(self) -> CalibrationSession:
         """Equal sensors on a cone of 54.7° about the head's axis."""

@@ -10,8 +10,8 @@ from pydantic import BaseModel, BeforeValidator, Field, ValidationError
 
 from estimator.errors import Problem
 from estimator.message import joined, say
-from estimator.planning import Expected, Missing
-from estimator.readiness import Outlook, Readiness, State
+from estimator.planning import ExpectedSigma, Missing
+from estimator.readiness import DriftOutlook, Readiness, ReadinessState
 from estimator.results import PARAMETERS
 from service.errors import RefusedError
 from service.kit.measures import COVERAGE, MEASURES, THIN, heading, number
@@ -34,11 +34,11 @@ WAIT = Condition("conditional-pass", "Not yet", "not yet", "triangle-up", "Wait,
 NOT_STILL = Condition("fail", "Not still", "not still", "square", "Something moves or shakes it.")
 NOTHING = Condition("none", "Nothing to tell by", "nothing to tell by", "stroke", "The record says nothing.")
 CONDITIONS = {
-    State.READY: READY,
-    State.NOT_STILL: NOT_STILL,
-    State.NOT_WARM: WAIT,
-    State.TOO_EARLY: WAIT,
-    State.CANNOT_TELL: NOTHING,
+    ReadinessState.READY: READY,
+    ReadinessState.NOT_STILL: NOT_STILL,
+    ReadinessState.NOT_WARM: WAIT,
+    ReadinessState.TOO_EARLY: WAIT,
+    ReadinessState.CANNOT_TELL: NOTHING,
 }
 UNSEEN = "not observed"
 MOST_ROWS = 20
@@ -120,7 +120,7 @@ def _facts(answer: Asked) -> tuple[tuple[str, str], ...]:
     return tuple(facts)
 
 
-def _drift(one: Outlook) -> Drift:
+def _drift(one: DriftOutlook) -> Drift:
     shares = [
         say("{share} % of the {kind}", share=number(100 * share, 0), kind=word)
         for share, word in ((one.bias_share, "bias"), (one.scale_share, "scale factor"))
@@ -165,7 +165,7 @@ def missing_page(positions: int | None, runs: str, found: Missing | None = None)
     return MissingPage(positions, runs, named, first, tuple(lines), headings, _known(found.expected))
 
 
-def _known(expected: tuple[Expected, ...]) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
+def _known(expected: tuple[ExpectedSigma, ...]) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
     size = len(PARAMETERS)
     return tuple(
         (
@@ -176,7 +176,7 @@ def _known(expected: tuple[Expected, ...]) -> tuple[tuple[str, tuple[tuple[str, 
     )
 
 
-def _spread(one: Expected, sigma: float | None) -> str:
+def _spread(one: ExpectedSigma, sigma: float | None) -> str:
     """``±2.1 µg``: the expanded uncertainty."""
     if sigma is None:
         return UNSEEN

@@ -7,10 +7,10 @@ import numpy as np
 
 from estimator.causes import CATALOGUE
 from estimator.message import joined, say, say_count
-from estimator.planning import Judged, Missing, Plan
-from estimator.readiness import Disturbance, Outlook, Readiness, State
-from estimator.readiness.faults import Fault, FaultKind
-from estimator.readiness.results import Kind
+from estimator.planning import JudgedParameter, Missing, Plan
+from estimator.readiness import Disturbance, DriftOutlook, Readiness, ReadinessState
+from estimator.readiness.faults import FaultKind, RecordFault
+from estimator.readiness.results import DisturbanceKind
 from estimator.results import PARAMETERS
 from estimator.session import GYROSCOPE
 from service.diagnosis.words.diagnosis import BlindCauses, SeenCause, blind_causes, seen_causes
@@ -96,7 +96,7 @@ def unobserved(plan: Plan) -> str:
     )
 
 
-def sigma_in_words(judged: Judged, coverage: float) -> str:
+def sigma_in_words(judged: JudgedParameter, coverage: float) -> str:
     """``±2.1 µg``: the expanded uncertainty."""
     if judged.sigma is None:
         return UNSEEN
@@ -104,7 +104,7 @@ def sigma_in_words(judged: Judged, coverage: float) -> str:
     return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
-def tolerance_in_words(judged: Judged) -> str:
+def tolerance_in_words(judged: JudgedParameter) -> str:
     """``of 50 µg``, empty where none was given."""
     if judged.tolerance is None:
         return ""
@@ -154,17 +154,17 @@ FEW = 3
 def readiness_headline(found: Readiness) -> str:
     """The one sentence that is read across the room."""
     match found.state:
-        case State.READY:
+        case ReadinessState.READY:
             return "Ready"
-        case State.NOT_WARM if found.wait is not None:
+        case ReadinessState.NOT_WARM if found.wait is not None:
             return say("Wait about {wait} minutes", wait=minutes(found.wait[1]))
-        case State.NOT_WARM:
+        case ReadinessState.NOT_WARM:
             return "Not warm: waiting alone will not do"
-        case State.NOT_STILL:
+        case ReadinessState.NOT_STILL:
             return say("Not still: {problem}", problem=_short(found))
-        case State.TOO_EARLY if found.needed is not None:
+        case ReadinessState.TOO_EARLY if found.needed is not None:
             return say("Too early to tell: record about {minutes} minutes more", minutes=minutes(found.needed))
-        case State.TOO_EARLY:
+        case ReadinessState.TOO_EARLY:
             return "Not to be told: the sensors wander"
     return "Nothing can be told from this record"
 
@@ -201,7 +201,7 @@ def named(sensors: tuple[str, ...]) -> str:
     return joined(", ", sensors[:FEW]) + (say(" and {rest} more", rest=rest) if rest > 0 else "")
 
 
-def _of_drift(found: Readiness, worst: Outlook) -> list[str]:
+def _of_drift(found: Readiness, worst: DriftOutlook) -> list[str]:
     length = minutes(found.duration)
     bound, allowed = amount(worst.kind, worst.bound), amount(worst.kind, worst.allowed)
     by = (
@@ -209,7 +209,7 @@ def _of_drift(found: Readiness, worst: Outlook) -> list[str]:
         if worst.limit == "scale"
         else "a quarter of the tolerance of its bias"
     )
-    if found.state is State.READY:
+    if found.state is ReadinessState.READY:
         return [
             say(
                 "No sensor will drift by more than it may in the {length} minutes of the programme: the "
@@ -232,9 +232,9 @@ def _of_drift(found: Readiness, worst: Outlook) -> list[str]:
             source=by,
         )
     ]
-    if found.state is State.NOT_WARM:
+    if found.state is ReadinessState.NOT_WARM:
         return [*said, *_of_waiting(found)]
-    if found.state is State.TOO_EARLY:
+    if found.state is ReadinessState.TOO_EARLY:
         return [*said, *_of_telling(found, worst)]
     return said
 
@@ -261,7 +261,7 @@ def _of_waiting(found: Readiness) -> list[str]:
     ]
 
 
-def _of_telling(found: Readiness, worst: Outlook) -> list[str]:
+def _of_telling(found: Readiness, worst: DriftOutlook) -> list[str]:
     if found.needed is not None:
         return [
             say(
@@ -284,12 +284,12 @@ def _short(found: Readiness) -> str:
     return SHORT[one.kind](one)
 
 
-SHORT: dict[Kind, Callable[[Disturbance], str]] = {
-    Kind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
-    Kind.BURST: lambda one: say("it shook at {start}", start=clock(one.start)),
-    Kind.SHAKING: lambda one: "it shakes all the time",
-    Kind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
-    Kind.CREEP: lambda one: "the fixture creeps",
+SHORT: dict[DisturbanceKind, Callable[[Disturbance], str]] = {
+    DisturbanceKind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
+    DisturbanceKind.BURST: lambda one: say("it shook at {start}", start=clock(one.start)),
+    DisturbanceKind.SHAKING: lambda one: "it shakes all the time",
+    DisturbanceKind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
+    DisturbanceKind.CREEP: lambda one: "the fixture creeps",
 }
 """What disturbs, in a few words."""
 
@@ -299,7 +299,7 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
     who, size = named(one.sensors), amount(kind, one.size)
     after = "; what came after it is judged alone." if one.passed else ". Leave it alone and record anew."
     match one.kind:
-        case Kind.STEP:
+        case DisturbanceKind.STEP:
             return say(
                 "{sensors} changed by {size} between {start} and {stop}: somebody touched it{consequence}",
                 sensors=who,
@@ -308,7 +308,7 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
                 stop=clock(one.stop),
                 consequence=after,
             )
-        case Kind.BURST:
+        case DisturbanceKind.BURST:
             return say(
                 "{sensors} shook by {size} rms from {start} to {stop}{consequence}",
                 sensors=who,
@@ -317,7 +317,7 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
                 stop=clock(one.stop),
                 consequence=after,
             )
-        case Kind.SHAKING:
+        case DisturbanceKind.SHAKING:
             return say(
                 "{sensors} shake by {size} rms all the time: a quadratic term within its tolerance would "
                 "turn that into more than the drift allowed. Find what vibrates, or decouple the stand "
@@ -325,7 +325,7 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
                 sensors=who,
                 size=size,
             )
-        case Kind.CLIPPED:
+        case DisturbanceKind.CLIPPED:
             share = number(float(f"{100 * one.size:.2g}"))
             return say(
                 "{sensor} stands at the end of its range for {share} % of the samples: set a larger range, "
@@ -341,7 +341,7 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
     )
 
 
-def fault_in_words(fault: Fault) -> str:
+def fault_in_words(fault: RecordFault) -> str:
     """What is wrong with the record, and what to do."""
     who = named(fault.sensors)
     match fault.kind:

@@ -14,7 +14,7 @@ from service.ingest.checked import as_checked
 from service.jobs.records import JobFailure, RecalibrationPiece
 from service.jobs.store import Jobs
 from service.jobs.words import left_in_words
-from service.judging.calibrate import Basis, calibrate, rests_on_model
+from service.judging.calibrate import CalibrationBasis, calibrate, rests_on_model
 from service.judging.judge import furthest, moved_parameters, moved_verdicts
 from service.judging.reference import known_unit
 from service.judging.store import Derivations
@@ -196,7 +196,9 @@ def _recalibrated(storage: Storage, source: _Source) -> _Recomputed | LeftSessio
         return _Recomputed(stored, model, made(source.recording), ())
     try:
         session = read_upload(storage.files.content(stored.sha256), stored.filename)
-        found = calibrate(as_checked(session, stored.started_at, stored.unit), Basis(model, None)).calibration
+        found = calibrate(
+            as_checked(session, stored.started_at, stored.unit), CalibrationBasis(model, None)
+        ).calibration
     except (*LOST, SessionError) as fault:
         return LeftSession(stored.id, str(fault))
     own = made(found)

@@ -78,7 +78,7 @@ class JobsPage:
 
 
 @dataclass(frozen=True)
-class JobPage:
+class JobView:
     """Contents of the page of one job."""
 
     job: Job
@@ -120,11 +120,11 @@ def job_line(job: Job) -> JobLine:
     return JobLine(job, title_of(job), STATES[job.state], progress)
 
 
-def job_page(job: Job, person: Person, now: datetime, workers: int, problems: Sequence[Problem] = ()) -> JobPage:
+def job_page(job: Job, person: Person, now: datetime, workers: int, problems: Sequence[Problem] = ()) -> JobView:
     """One job as it stands."""
     follow = follow_seconds(job.asked_at, now, workers) if job.is_open else None
     longest = SOONEST if job.kind is JobKind.UPLOAD else MAX_REFRESH_SECONDS
-    return JobPage(
+    return JobView(
         job=job,
         title=title_of(job),
         state=STATES[job.state],

@@ -12,7 +12,7 @@ from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.power_on import told_from_power_on
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
-from estimator.diagnosis.explanation.shared_course import Member, shared_finding
+from estimator.diagnosis.explanation.shared_course import CourseMember, shared_finding
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.noise_claim import BEYOND_NOISE
@@ -33,7 +33,7 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     ``new``: of every finding, whether it came since the history.
     """
     named = [
-        Member(f, finding(state, f, fitted, part, since), part)
+        CourseMember(f, finding(state, f, fitted, part, since), part)
         for f, part, since in zip(state.detections, fitted.slices, new, strict=True)
     ]
     cause = noise_cause(state)
@@ -44,9 +44,9 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     return tuple(sorted(whole, key=lambda f: -f.strength))
 
 
-def courses(named: Sequence[Member]) -> list[list[Member]]:
+def courses(named: Sequence[CourseMember]) -> list[list[CourseMember]]:
     """Findings of sensors that share a course, course by course."""
-    together: dict[tuple[str, tuple[int, ...]], list[Member]] = {}
+    together: dict[tuple[str, tuple[int, ...]], list[CourseMember]] = {}
     for m in named:
         if m.detection.event:
             together.setdefault((m.detection.best.cause.identifier, m.detection.event), []).append(m)

@@ -74,7 +74,7 @@ class Component:
 
 
 @dataclass(frozen=True, eq=False)
-class Hypothesis:
+class CourseHypothesis:
     """One family of courses: a Gaussian process of r independent unit coefficients, of unknown size."""
 
     order: str
@@ -121,7 +121,7 @@ def kernels(setting: Setting) -> Iterator[tuple[str, Array]]:
             yield "β, each run separately", kernel * same_run
 
 
-def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
+def hypotheses(setting: Setting) -> Iterator[CourseHypothesis]:
     """Every family of courses: components along orders, and changes that stay through a session or a run."""
     parts = components(setting)
     for order, kernel in kernels(setting):
@@ -129,9 +129,9 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         for chosen in together(len(parts)):
             columns = np.concatenate([parts[k].columns[..., None] * root[:, None, :] for k in chosen], axis=-1)
             lift = np.kron(np.eye(len(chosen)), root).reshape(len(chosen), setting.rows, -1)
-            yield Hypothesis(order, tuple(parts[k].words for k in chosen), columns, lift)
+            yield CourseHypothesis(order, tuple(parts[k].words for k in chosen), columns, lift)
     for order, columns in changes(setting):
-        yield Hypothesis(order, (), columns, np.zeros((0, setting.rows, columns.shape[-1])))
+        yield CourseHypothesis(order, (), columns, np.zeros((0, setting.rows, columns.shape[-1])))
 
 
 def changes(setting: Setting) -> Iterator[tuple[str, Array]]:

@@ -64,7 +64,7 @@ REPEAT_BOTH = say(
 )
 
 
-class Answer(Protocol):
+class DiagnosisAnswer(Protocol):
     """What a diagnosis came to, as it was made or as it is stored."""
 
     @property
@@ -77,7 +77,7 @@ class Answer(Protocol):
     def calibration(self) -> Calibration: ...
 
 
-def summary_of(answer: Answer) -> str:
+def summary_of(answer: DiagnosisAnswer) -> str:
     """One line that a technician understands."""
     if answer.findings:
         common = [s for s in answer.structures if not s.sensors]
@@ -87,7 +87,7 @@ def summary_of(answer: Answer) -> str:
     return nothing_of(answer)
 
 
-def nothing_of(answer: Answer) -> str:
+def nothing_of(answer: DiagnosisAnswer) -> str:
     """That nothing is wrong, unless it is what the file says of the noise, or nothing is left to judge by."""
     if answer.calibration.fit.is_exact:
         return say("{summary}. {fits}", summary=NOTHING_LEFT, fits=TAKEN_UP)
@@ -98,12 +98,12 @@ def nothing_of(answer: Answer) -> str:
     return say("{summary}: the simulation explains the readings.", summary=NOTHING)
 
 
-def errors_of(answer: Answer) -> tuple[str, ...]:
+def errors_of(answer: DiagnosisAnswer) -> tuple[str, ...]:
     """Which stated standard errors are wrong, a sentence each."""
     return wrong_errors(answer.noise, _kinds(answer))
 
 
-def _kinds(answer: Answer) -> set[str]:
+def _kinds(answer: DiagnosisAnswer) -> set[str]:
     return {sensor.kind for sensor in answer.calibration.sensors}
 
 
@@ -132,7 +132,7 @@ def fault_of_the_program(session: str) -> str:
     )
 
 
-def headline(answer: Answer) -> str:
+def headline(answer: DiagnosisAnswer) -> str:
     """The first cause or the choice that cannot be made; without one what the diagnosis came to."""
     if answer.findings:
         return what_is_wrong(weighty_first(answer.findings)[0], answer.findings)
@@ -143,7 +143,7 @@ def headline(answer: Answer) -> str:
     return say("{summary}{reservation}", summary=NOTHING, reservation=but_wrong_errors(answer.noise, _kinds(answer)))
 
 
-def what_to_do(answer: Answer) -> str:
+def what_to_do(answer: DiagnosisAnswer) -> str:
     """What a technician does next."""
     if answer.findings:
         return _about(weighty_first(answer.findings)[0], answer.findings)

@@ -35,7 +35,7 @@ IF_IT_COMES_BACK = "repeat the session: a correctly named cause appears again"
 
 
 @dataclass(frozen=True)
-class Choice:
+class CauseChoice:
     """One of several causes that this session cannot distinguish."""
 
     cause: str
@@ -58,15 +58,15 @@ class Bar:
     """0 to 100."""
 
 
-def choices_of(finding: Finding) -> Iterator[Choice]:
+def choices_of(finding: Finding) -> Iterator[CauseChoice]:
     """The named cause and its alternatives."""
     apart = {separation.cause: separation for separation in finding.separations}
     for name in (finding.cause, *finding.alternatives) if finding.alternatives else ():
         if name == UNKNOWN_CAUSE:
-            yield Choice(name, cause_on(name, finding.sensors), "–", "", IF_IT_COMES_BACK)
+            yield CauseChoice(name, cause_on(name, finding.sensors), "–", "", IF_IT_COMES_BACK)
             continue
         share = share_of(name, finding)
-        yield Choice(name, cause_on(name, finding.sensors), share, *_apart(apart.get(name)))
+        yield CauseChoice(name, cause_on(name, finding.sensors), share, *_apart(apart.get(name)))
 
 
 def _apart(separation: Separation | None) -> tuple[str, str]:
@@ -121,7 +121,7 @@ class FindingView:
     more: tuple[str, ...]
     """Sensors that follow a shared course faintly, each with its size."""
     evidence: str
-    choices: tuple[Choice, ...]
+    choices: tuple[CauseChoice, ...]
     ranking: tuple[Bar, ...]
     parity: str
     since: str

@@ -82,7 +82,7 @@ LONGEST_HEADING = 200
 """Characters of a heading that are examined and kept."""
 SPACES = re.compile(r"[ \u00a0\u202f']")
 NOTHING = ("", "-", "–", "—", "nan", "none", "null", "n/a", "na", "нет")
-"""Cells that count as empty."""
+"""CellKind that count as empty."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Cells under a mapping → imu-session/1, in the units of a session, with the place of each cell in the file."""
+"""CellKind under a mapping → imu-session/1, in the units of a session, with the place of each cell in the file."""
 
 import re
 from collections.abc import Callable, Sequence

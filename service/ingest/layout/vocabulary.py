@@ -7,7 +7,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
-class Unit:
+class UnitOfMeasure:
     """A number in this unit is number · times / over + offset in the first unit of its quantity."""
 
     quantity: str
@@ -17,35 +17,35 @@ class Unit:
 
 
 SPELLINGS = {
-    Unit("voltage"): "v в volt volts вольт",
-    Unit("voltage", over=1e3): "mv мв millivolt",
-    Unit("voltage", over=1e6): "µv uv мкв microvolt",
-    Unit("current"): "amp ampere ампер",
-    Unit("current", over=1e3): "ma ма",
-    Unit("current", over=1e6): "µa ua мка",
-    Unit("count"): "count counts cnt lsb code adc отсч отсчет отсчеты код ед емр",
-    Unit("pulse"): "pulse pulses imp имп импульс импульсы",
-    Unit("acceleration"): "m/s² m/s2 m/s^2 м/с² м/с2 м/с^2",
-    Unit("acceleration", STANDARD_GRAVITY): "g",
-    Unit("acceleration", STANDARD_GRAVITY, 1e3): "mg мg",
-    Unit("acceleration", STANDARD_GRAVITY, 1e6): "µg ug мкg",
-    Unit("acceleration", over=1e2): "gal",
-    Unit("rate"): "rad/s рад/с",
-    Unit("rate", pi, 180): "°/s deg/s dps °/с град/с",
-    Unit("rate", pi, 180 * 3600): "°/h deg/h °/ч град/ч °/hr",
-    Unit("angle"): "deg degree degrees ° град градус градусы",
-    Unit("angle", 180, pi): "rad рад",
-    Unit("angle", 180e-3, pi): "mrad мрад",
-    Unit("angle", over=60): "arcmin ' ′ угл.мин мин.дуги",
-    Unit("angle", over=3600): 'arcsec " ″ угл.с угл.сек',
-    Unit("time"): "s с sec сек second seconds секунды",
-    Unit("time", over=1e3): "ms мс msec",
-    Unit("time", over=1e6): "µs us мкс",
-    Unit("time", 60): "min мин minutes минуты",
-    Unit("time", 3600): "h ч hr hours час часы",
-    Unit("temperature"): "°c c degc celsius °с",
-    Unit("temperature", offset=-273.15): "k к kelvin",
-    Unit("temperature", 5, 9, -160 / 9): "°f f degf fahrenheit",
+    UnitOfMeasure("voltage"): "v в volt volts вольт",
+    UnitOfMeasure("voltage", over=1e3): "mv мв millivolt",
+    UnitOfMeasure("voltage", over=1e6): "µv uv мкв microvolt",
+    UnitOfMeasure("current"): "amp ampere ампер",
+    UnitOfMeasure("current", over=1e3): "ma ма",
+    UnitOfMeasure("current", over=1e6): "µa ua мка",
+    UnitOfMeasure("count"): "count counts cnt lsb code adc отсч отсчет отсчеты код ед емр",
+    UnitOfMeasure("pulse"): "pulse pulses imp имп импульс импульсы",
+    UnitOfMeasure("acceleration"): "m/s² m/s2 m/s^2 м/с² м/с2 м/с^2",
+    UnitOfMeasure("acceleration", STANDARD_GRAVITY): "g",
+    UnitOfMeasure("acceleration", STANDARD_GRAVITY, 1e3): "mg мg",
+    UnitOfMeasure("acceleration", STANDARD_GRAVITY, 1e6): "µg ug мкg",
+    UnitOfMeasure("acceleration", over=1e2): "gal",
+    UnitOfMeasure("rate"): "rad/s рад/с",
+    UnitOfMeasure("rate", pi, 180): "°/s deg/s dps °/с град/с",
+    UnitOfMeasure("rate", pi, 180 * 3600): "°/h deg/h °/ч град/ч °/hr",
+    UnitOfMeasure("angle"): "deg degree degrees ° град градус градусы",
+    UnitOfMeasure("angle", 180, pi): "rad рад",
+    UnitOfMeasure("angle", 180e-3, pi): "mrad мрад",
+    UnitOfMeasure("angle", over=60): "arcmin ' ′ угл.мин мин.дуги",
+    UnitOfMeasure("angle", over=3600): 'arcsec " ″ угл.с угл.сек',
+    UnitOfMeasure("time"): "s с sec сек second seconds секунды",
+    UnitOfMeasure("time", over=1e3): "ms мс msec",
+    UnitOfMeasure("time", over=1e6): "µs us мкс",
+    UnitOfMeasure("time", 60): "min мин minutes минуты",
+    UnitOfMeasure("time", 3600): "h ч hr hours час часы",
+    UnitOfMeasure("temperature"): "°c c degc celsius °с",
+    UnitOfMeasure("temperature", offset=-273.15): "k к kelvin",
+    UnitOfMeasure("temperature", 5, 9, -160 / 9): "°f f degf fahrenheit",
 }
 """Every unit with its spellings in lower case; others are converted to the first of a quantity."""
 BY_SPELLING = {word: unit for unit, words in SPELLINGS.items() for word in words.split()}
@@ -61,7 +61,7 @@ TARGETS = {"beta_deg": "deg", "turn_angle_deg": "deg", "time_s": "s", "temperatu
 """Columns of a session with the unit of each; rates of a table are in °/s."""
 
 
-def unit_of(label: str) -> Unit | None:
+def unit_of(label: str) -> UnitOfMeasure | None:
     """The unit of a label; None where it is not known. A single A is ampere."""
     word = label.strip().strip("[]()").translate(MICRO).replace(" ", "").rstrip(".")
     if word in ("A", "А"):

@@ -45,7 +45,7 @@ OF_TWO = "Session {first} is of unit {one} and session {second} of unit {other}:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class ComparisonView:
     """The earlier session and the later one."""
 
     first: StoredSession
@@ -66,7 +66,7 @@ class Comparison:
         return self.first.stand if self.first.stand == self.second.stand else None
 
 
-def compare(store: Store, a: str, b: str, coverage_factor: float) -> Comparison:
+def compare(store: Store, a: str, b: str, coverage_factor: float) -> ComparisonView:
     """Two sessions of one unit by their date, whichever is named first; NotFoundError, ConflictError."""
     if a == b:
         raise ConflictError(SAME)
@@ -76,7 +76,7 @@ def compare(store: Store, a: str, b: str, coverage_factor: float) -> Comparison:
         raise ConflictError(say(OF_TWO, **named))
     known = Calibrations(store).in_force((first.id, second.id))
     before, after = known[first.id], known[second.id]
-    return Comparison(
+    return ComparisonView(
         first=first,
         second=second,
         before=before,
@@ -175,7 +175,7 @@ NOT_COMPARED = "not told by both"
 
 
 @dataclass(frozen=True)
-class ChangeRow:
+class ParameterChangeRow:
     """One parameter of one sensor."""
 
     sensor: str
@@ -203,14 +203,14 @@ class ComparisonPage:
     reason: str
     in_common: tuple[str, ...]
     motions: tuple[MotionLine, ...]
-    rows: tuple[ChangeRow, ...]
+    rows: tuple[ParameterChangeRow, ...]
     """By sensor, as they stand in the file."""
     has_own: bool
     """Whether both were measured on one stand."""
     coverage: str
 
 
-def comparison_page(found: Comparison) -> ComparisonPage:
+def comparison_page(found: ComparisonView) -> ComparisonPage:
     """The page of a comparison."""
     judged = {(d.sensor, d.parameter): d for d in found.judged.decisions}
     k = nominal_factor_of(found.judged.decisions)
@@ -243,13 +243,13 @@ def _row(
     now: SensorCalibration,
     parameter: str,
     decision: Decision | None,
-    way: tuple[Comparison, float],
-) -> ChangeRow:
+    way: tuple[ComparisonView, float],
+) -> ParameterChangeRow:
     found, k = way
     units = reading_units(found.after)
     own = found.own.get((now.name, parameter))
     known = decision if decision is not None and decision.deviation is not None else None
-    return ChangeRow(
+    return ParameterChangeRow(
         sensor=now.name,
         parameter=PARAMETER_NAMES[parameter],
         before="–" if then is None else value_in_words(then, parameter, k, units.get(now.name, "")),

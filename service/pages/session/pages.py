@@ -47,7 +47,7 @@ NOTHING_KNOWN = Remedies()
 
 
 @dataclass(frozen=True)
-class Cell:
+class ParameterCell:
     """One parameter of one sensor."""
 
     parameter: str
@@ -66,13 +66,13 @@ class SensorRow:
 
     name: str
     kind: str
-    cells: tuple[Cell, ...]
+    cells: tuple[ParameterCell, ...]
     known: tuple[str, ...]
     """What is known of parameters that the session cannot tell apart."""
 
 
 @dataclass(frozen=True)
-class SessionPage:
+class SessionView:
     """Everything a session's page shows."""
 
     session: StoredSession
@@ -128,7 +128,7 @@ def session_page(
     model: Sequence[ModelRevision] = (),
     computed: Sequence[int] = (),
     said: Remarks | None = None,
-) -> SessionPage:
+) -> SessionView:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
     units = reading_units(calibration)
@@ -137,7 +137,7 @@ def session_page(
     coverage = nominal_factor_of(decisions)
     noise = noise_of(calibration.residuals, calibration)
     parity = None if calibration.parity is None else ParityResult.from_dict(calibration.parity)
-    return SessionPage(
+    return SessionView(
         session=report.session,
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
         reservations=report.session.reservations,
@@ -196,8 +196,10 @@ def _sensor(
     )
 
 
-def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, way: tuple[float, str]) -> Cell:
-    return Cell(
+def _cell(
+    sensor: SensorCalibration, parameter: str, decision: Decision | None, way: tuple[float, str]
+) -> ParameterCell:
+    return ParameterCell(
         parameter=parameter,
         observable=sensor.observable.get(parameter, False),
         value=value_in_words(sensor, parameter, *way),

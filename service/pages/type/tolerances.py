@@ -18,7 +18,7 @@ from service.errors import ConflictError, RefusedError
 from service.fleet.records import FleetQuery
 from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
-from service.judging.calibrate import Comparison
+from service.judging.calibrate import ReferenceComparison
 from service.judging.judge import judge, judge_recording
 from service.judging.reference import reference_of
 from service.kit.measures import COVERAGE, Measure, deviation_measure, heading, in_measure
@@ -65,7 +65,7 @@ class Watch:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class ToleranceForm:
     """What the form asks for."""
 
     tolerances: Tolerances
@@ -94,7 +94,7 @@ def share(known: UnitType) -> str:
     return f"{100 * known.flag_share:.12g}"
 
 
-def wanted(known: UnitType, form: Mapping[str, str]) -> Wanted:
+def wanted(known: UnitType, form: Mapping[str, str]) -> ToleranceForm:
     """What a form asks for; RefusedError with every number that is none."""
     faults: list[Problem] = []
     read = {kind: Tolerances(**{name: _read(kind, name, given, form, faults) for name in PARAMETERS})
@@ -103,7 +103,7 @@ def wanted(known: UnitType, form: Mapping[str, str]) -> Wanted:
     if faults:
         raise RefusedError("The tolerances cannot be set.", tuple(faults))
     own, *others = read.values()
-    return Wanted(own, others[0] if others else None, watch)
+    return ToleranceForm(own, others[0] if others else None, watch)
 
 
 def _watch(known: UnitType, form: Mapping[str, str], faults: list[Problem]) -> Watch:
@@ -205,7 +205,7 @@ CARRIED_APART = ("by", "why", "csrf")
 
 
 @dataclass(frozen=True)
-class ChangeRow:
+class VerdictChangeRow:
     """One unit with another verdict."""
 
     unit: str
@@ -220,7 +220,7 @@ class PreviewPage:
 
     name: str
     headline: str
-    rows: tuple[ChangeRow, ...]
+    rows: tuple[VerdictChangeRow, ...]
     notes: tuple[str, ...]
     interval: str
     """That the form asks for, where it is another one; empty where it stays."""
@@ -231,14 +231,17 @@ class PreviewPage:
     why: str
 
 
-def preview_page(known: UnitType, asked: Wanted, form: Mapping[str, str], found: TolerancePreview) -> PreviewPage:
+def preview_page(
+    known: UnitType, asked: ToleranceForm, form: Mapping[str, str], found: TolerancePreview
+) -> PreviewPage:
     """What would change, and the form that sets it."""
     other = _others(known, asked.watch)
     return PreviewPage(
         name=known.name,
         headline=headline_of(found),
         rows=tuple(
-            ChangeRow(one.unit, condition_of(one.before), condition_of(one.after), one.reason) for one in found.changes
+            VerdictChangeRow(one.unit, condition_of(one.before), condition_of(one.after), one.reason)
+            for one in found.changes
         ),
         notes=tuple(notes_of(found)),
         interval=days(other) if other.maximum_interval_days != known.maximum_interval_days else "",
@@ -366,7 +369,7 @@ def _change(
     if own.parity is None:
         found = judge(own, reference, other, coverage_factor)
     else:
-        seen = Comparison(reference, ParityResult.from_dict(own.parity))
+        seen = ReferenceComparison(reference, ParityResult.from_dict(own.parity))
         found = judge_recording(own, seen, other, coverage_factor)
     if found.verdict is one.verdict:
         return None

@@ -17,7 +17,7 @@ from service.kit.measures import NOISE, day_of, heading, in_measure
 from service.outlook.charts import Track, TrackPoint, history_charts, tolerance_text, tracks_of
 from service.outlook.records import ParameterTrend, UnitOutlook
 from service.outlook.words import NextCalibration, next_calibration
-from service.pages.unit.events import KINDS, Event, StageTable, events_of, stage_table
+from service.pages.unit.events import KINDS, StageTable, UnitEvent, events_of, stage_table
 from service.pages.unit.remarks import Remarks
 from service.pages.unit.report import UnitReport
 from service.papers.found_and_left import FoundAndLeft
@@ -170,7 +170,7 @@ class ParameterSection:
 
 
 @dataclass(frozen=True)
-class UnitPage:
+class UnitView:
     """Everything a unit's page shows."""
 
     report: UnitReport
@@ -192,7 +192,7 @@ class UnitPage:
     """How many sessions, the newest ones, the charts show."""
     flags: tuple[FlagCard, ...]
     """Open ones first."""
-    events: tuple[Event, ...]
+    events: tuple[UnitEvent, ...]
     """Services and notes, newest first."""
     stages: StageTable | None
     """None where the unit was never marked as found."""
@@ -227,7 +227,7 @@ def unit_page(
     group: GroupSection | None = None,
     follow: int | None = None,
     said: Remarks | None = None,
-) -> UnitPage:
+) -> UnitView:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
     valid = tuple(note for note in notes if note.withdrawal is None)
@@ -235,7 +235,7 @@ def unit_page(
     groups = tracks_of(history, report.services)
     kinds = {point.kind for point in history}
     condition = condition_of(report.summary.verdict, is_reference=report.summary.is_reference)
-    return UnitPage(
+    return UnitView(
         report=report,
         use=usable.use,
         said=in_words(usable.use, usable.action),

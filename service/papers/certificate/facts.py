@@ -27,7 +27,7 @@ class Fact:
 
 
 @dataclass(frozen=True)
-class Cause:
+class CertifiedCause:
     """A named cause of errors of the simulation."""
 
     sentence: str
@@ -39,13 +39,13 @@ class Cause:
     """Whether the calibration takes it into account; empty for a cause that cannot be part of a model."""
 
 
-def causes_of(found: CertifiedSession) -> tuple[Cause, ...]:
+def causes_of(found: CertifiedSession) -> tuple[CertifiedCause, ...]:
     """The findings of the diagnosis, in order; empty without a diagnosis."""
     diagnosis = found.diagnosis.found
     findings = () if diagnosis is None else diagnosis.findings
     views = (finding_view(finding, found.revisions, findings) for finding in findings)
     return tuple(
-        Cause(
+        CertifiedCause(
             sentence=view.sentence,
             amplitudes=joined("; ", (part for part in (*view.amplitudes, view.shape) if part)),
             evidence=view.evidence,

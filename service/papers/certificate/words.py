@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from estimator.health.rule import WITH_SESSION_LEVEL
 from estimator.message import say
 from service.kit.measures import coverage_in_words, day_of, spaced
-from service.papers.certificate.facts import Cause, Fact, causes_of, facts_of, record_of, title_of
+from service.papers.certificate.facts import CertifiedCause, Fact, causes_of, facts_of, record_of, title_of
 from service.papers.certificate.paper import Paper, paper_of
 from service.papers.certificate.results import ResultTable, result_tables
 from service.papers.certified import CertifiedSession
-from service.papers.found_and_left import FoundAndLeft, Moved, moved
+from service.papers.found_and_left import FoundAndLeft, JudgedChange, moved
 from service.papers.records import Issue, Meaning, Signature
 from service.papers.words import BOUND, STATES, done_by, moment_of
 from service.sessions.decision import nominal_factor_of
@@ -68,8 +68,8 @@ def _line(signature: Signature) -> SignatureLine:
 class PairRow:
     """One parameter as found and as left."""
 
-    found: Moved
-    left: Moved | None
+    found: JudgedChange
+    left: JudgedChange | None
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Certificate:
     known: tuple[Fact, ...]
     """Known combinations of parameters that the session cannot separate."""
     diagnosis: str
-    causes: tuple[Cause, ...]
+    causes: tuple[CertifiedCause, ...]
     fit: FitWords
     stand: bool
     software: str

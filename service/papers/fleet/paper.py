@@ -21,7 +21,7 @@ from service.outlook.records import DueDate
 from service.outlook.store import Outlooks, Populations
 from service.papers.fleet.charts import fleet_chart, is_drawn
 from service.papers.fleet.report import FleetReport
-from service.papers.found_and_left import Moved, moved
+from service.papers.found_and_left import JudgedChange, moved
 from service.papers.typeset import picture, typeset
 from service.sessions.decision import Decision, Verdict
 from service.sessions.records import HistoryPoint
@@ -37,7 +37,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Line:
+class FleetLine:
     """One unit in the ranking."""
 
     unit: str
@@ -55,13 +55,13 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Section:
+class FleetSection:
     """One unit that is not fit."""
 
-    line: Line
+    line: FleetLine
     reason: str
     diagnosis: str
-    moved: tuple[Moved, ...]
+    moved: tuple[JudgedChange, ...]
     """The parameters that did not pass, worst first."""
     more: int
     """How many others did not."""
@@ -70,10 +70,10 @@ class Section:
     history_of: str
 
 
-def line_of(unit: UnitSummary, usable: Usable) -> Line:
+def line_of(unit: UnitSummary, usable: Usable) -> FleetLine:
     """How the unit stands, in people's units."""
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
-    return Line(
+    return FleetLine(
         unit=unit.serial,
         unit_type=unit.unit_type,
         condition=condition,
@@ -88,7 +88,7 @@ def line_of(unit: UnitSummary, usable: Usable) -> Line:
 
 def sections_of(
     store: Store, units: Sequence[UnitSummary], uses: Mapping[str, Usable], language: Language
-) -> tuple[Section, ...]:
+) -> tuple[FleetSection, ...]:
     """Sections of units, with three queries for all of them."""
     serials = tuple(unit.serial for unit in units)
     decisions = _grouped((serial, decision) for serial, _, decision in FleetRows(store).latest_decisions(serials))
@@ -115,16 +115,16 @@ def _grouped(rows: Iterable[tuple[str, T]]) -> dict[str, list[T]]:
 
 
 def _section(
-    line: Line,
+    line: FleetLine,
     unit: UnitSummary,
     decisions: list[Decision],
     points: list[HistoryPoint],
     services: tuple[Service, ...],
     language: Language,
-) -> Section:
+) -> FleetSection:
     wrong = _worst_first(decisions)
     history = _history(points, tuple(service for service in services if service.unit == unit.serial), language)
-    return Section(
+    return FleetSection(
         line=line,
         reason=unit.reason,
         diagnosis=unit.diagnosis,
@@ -163,7 +163,7 @@ NOT_FIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL, Verdict.UNDECIDABLE)
 
 
 @dataclass(frozen=True)
-class Notice:
+class PaperNotice:
     """One unit that is overdue, or that stands out."""
 
     unit: str
@@ -180,12 +180,12 @@ class FleetPaper:
     counts: tuple[ConditionCount, ...]
     """Worst first, every unit once."""
     chart: str
-    overdue: tuple[Notice, ...]
+    overdue: tuple[PaperNotice, ...]
     more_overdue: int
-    standing_out: tuple[Notice, ...]
+    standing_out: tuple[PaperNotice, ...]
     """Parameters that drift otherwise than those of the type's other units."""
-    ranked: tuple[Line, ...]
-    sections: tuple[Section, ...]
+    ranked: tuple[FleetLine, ...]
+    sections: tuple[FleetSection, ...]
     not_fit: int
     software: str
 
@@ -209,7 +209,7 @@ def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetP
         simulated=report.condition.simulated,
         counts=report.condition.counts,
         chart=picture(chart, chart.panels[0], WIDTH, language) if judged else "",
-        overdue=tuple(Notice(one.unit, _since(one, report)) for one in overdue),
+        overdue=tuple(PaperNotice(one.unit, _since(one, report)) for one in overdue),
         more_overdue=report.overdue - len(overdue),
         standing_out=_standing_out(store),
         ranked=tuple(line_of(unit, uses[unit.serial]) for unit in ranked),
@@ -225,12 +225,12 @@ def _since(one: DueDate, report: FleetReport) -> str:
     return say("since {date} ({days})", date=day_of(due), days=counted((report.at - due).days, "day"))
 
 
-def _standing_out(store: Store) -> tuple[Notice, ...]:
+def _standing_out(store: Store) -> tuple[PaperNotice, ...]:
     """The furthest out of their types, of those whose drift chance does not explain."""
     populations = Populations(store).most_evident(MOST_NOTICES)
     found = [(one, own) for own in populations for one in own.evident if abs(one.z) > STANDS_OUT]
     furthest = sorted(found, key=lambda pair: (-abs(pair[0].z), pair[0].serial, pair[0].sensor, pair[1].parameter))
-    return tuple(Notice(one.serial, _drift(one, own)) for one, own in furthest[:MOST_NOTICES])
+    return tuple(PaperNotice(one.serial, _drift(one, own)) for one, own in furthest[:MOST_NOTICES])
 
 
 def _drift(one: Placed, own: Population) -> str:

@@ -15,7 +15,7 @@ from service.judging.words import unit_in_words
 from service.kit.measures import MEASURES, Measure, in_measure, value_measure
 from service.languages.language import Language
 from service.papers.fleet.report import MOST_UNITS, FleetReport
-from service.papers.sheets import Cell, Column, Kind, Workbook
+from service.papers.sheets import Cell, CellKind, Column, Workbook
 from service.sessions.decision import Decision
 from service.sessions.records import HistoryPoint
 from service.sessions.words.conditions import condition_of, said_with
@@ -30,29 +30,30 @@ fleet is made in seconds. The tables of the API have all."""
 UNIT, SESSION = Column("Unit", width=16, is_named=True), Column("Session", width=23, is_named=True)
 SENSOR = Column("Sensor", width=9, is_named=True)
 FLEET = (
-    UNIT, Column("Type", width=22, is_named=True), Column("Condition", Kind.VERDICT, 24),
+    UNIT, Column("Type", width=22, is_named=True), Column("Condition", CellKind.VERDICT, 24),
     Column("Worst sensor", is_named=True), Column("Worst parameter"),
-    Column("Tolerance used, with U", Kind.SHARE, 12), Column("Margin to tolerance", Kind.SHARE, 12),
-    Column("Last session, UTC", Kind.TIME, 17), Column("Next calibration due", Kind.DATE, 13),
+    Column("Tolerance used, with U", CellKind.SHARE, 12), Column("Margin to tolerance", CellKind.SHARE, 12),
+    Column("Last session, UTC", CellKind.TIME, 17), Column("Next calibration due", CellKind.DATE, 13),
     Column("Overdue", width=9),
-    Column("Sessions", Kind.NUMBER, 9), Column("Open flags", Kind.NUMBER, 9), Column("Simulated", width=10),
+    Column("Sessions", CellKind.NUMBER, 9), Column("Open flags", CellKind.NUMBER, 9), Column("Simulated", width=10),
     Column("Why", width=60), Column("Why due then", width=50), Column("Diagnosis", width=60),
     SESSION, Column("Verdict in words", width=60), Column("May it be used", width=40),
 )  # fmt: skip
 PARAMETERS = (
     UNIT, SESSION, SENSOR, Column("Kind"),
-    Column("Parameter", width=13), Column("Value", Kind.NUMBER), Column("Reference", Kind.NUMBER),
-    Column("Unit of value", width=12), Column("Deviation", Kind.CHANGE), Column("U of deviation", Kind.CHANGE),
-    Column("k", Kind.NUMBER, 5), Column("Tolerance", Kind.CHANGE), Column("Unit of deviation", width=12),
-    Column("Probability out of tolerance", Kind.CHANCE), Column("Margin to tolerance", Kind.SHARE, 12),
-    Column("Verdict", Kind.VERDICT, 15), Column("Rule", width=34),
+    Column("Parameter", width=13), Column("Value", CellKind.NUMBER), Column("Reference", CellKind.NUMBER),
+    Column("Unit of value", width=12), Column("Deviation", CellKind.CHANGE), Column("U of deviation", CellKind.CHANGE),
+    Column("k", CellKind.NUMBER, 5), Column("Tolerance", CellKind.CHANGE), Column("Unit of deviation", width=12),
+    Column("Probability out of tolerance", CellKind.CHANCE), Column("Margin to tolerance", CellKind.SHARE, 12),
+    Column("Verdict", CellKind.VERDICT, 15), Column("Rule", width=34),
 )  # fmt: skip
 HISTORIES = (
-    UNIT, Column("Measured, UTC", Kind.TIME, 17), SENSOR, Column("Kind"),
-    Column("Parameter", width=13), Column("Value", Kind.NUMBER), Column("Lower, −U", Kind.NUMBER),
-    Column("Upper, +U", Kind.NUMBER), Column("Unit of value", width=12), Column("Deviation", Kind.CHANGE),
-    Column("U of deviation", Kind.CHANGE), Column("Unit of deviation", width=12), Column("Verdict", Kind.VERDICT, 15),
-    Column("Model revision", Kind.NUMBER, 9), SESSION,
+    UNIT, Column("Measured, UTC", CellKind.TIME, 17), SENSOR, Column("Kind"),
+    Column("Parameter", width=13), Column("Value", CellKind.NUMBER), Column("Lower, −U", CellKind.NUMBER),
+    Column("Upper, +U", CellKind.NUMBER), Column("Unit of value", width=12), Column("Deviation", CellKind.CHANGE),
+    Column("U of deviation", CellKind.CHANGE), Column("Unit of deviation", width=12),
+    Column("Verdict", CellKind.VERDICT, 15),
+    Column("Model revision", CellKind.NUMBER, 9), SESSION,
 )  # fmt: skip
 ABOUT = (Column("What", width=26), Column("Value", width=110))
 """The columns of the four sheets; widths in characters, for the longest usual text."""

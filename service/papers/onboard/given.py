@@ -28,7 +28,7 @@ NOT_COUNTED = "This session is {state}: its parameters are not handed on. {force
 
 
 @dataclass(frozen=True)
-class Given:
+class ExportInput:
     """The correction of one session."""
 
     unit: str
@@ -57,7 +57,7 @@ class Given:
         return self.vectors.get(GYROSCOPE)
 
 
-def noisiest(given: Given, kind: str, term: str) -> float | None:
+def noisiest(given: ExportInput, kind: str, term: str) -> float | None:
     """The largest size of a term of noise, SI; None where the session does not decide it of every sensor of a kind."""
     sensors = () if given.noise is None else given.noise.sensors
     sizes = [sensor.term(term).value for sensor in sensors if sensor.kind == kind]
@@ -65,7 +65,7 @@ def noisiest(given: Given, kind: str, term: str) -> float | None:
     return max(decided) if decided and len(decided) == len(sizes) else None
 
 
-def heading(given: Given, system: str) -> Iterator[str]:
+def heading(given: ExportInput, system: str) -> Iterator[str]:
     """The first comments of a file."""
     yield f"{system} parameters of unit {given.unit}, by {given.software}"
     yield f"session {given.session}, measured {given.measured_at:%Y-%m-%dT%H:%M:%SZ}: {given.verdict}"
@@ -75,7 +75,7 @@ def heading(given: Given, system: str) -> Iterator[str]:
     yield from FRAME
 
 
-def _uses(given: Given) -> Iterator[str]:
+def _uses(given: ExportInput) -> Iterator[str]:
     """What must be known before the numbers are used."""
     if given.state is not RecordState.ACCEPTED:
         yield f"THIS SESSION IS {given.state.value.upper()}"
@@ -85,7 +85,7 @@ def _uses(given: Given) -> Iterator[str]:
         yield from (*given.use.reasons, *given.use.reservations)
 
 
-def check(given: Given) -> None:
+def check(given: ExportInput) -> None:
     """ConflictError where the unit must not be used, or the session does not count."""
     if given.state is not RecordState.ACCEPTED:
         raise ConflictError(say(NOT_COUNTED, state=given.state.value, force=FORCE))
@@ -130,7 +130,7 @@ class Names:
     gyro_offset: str
 
 
-def parameters(given: Given, names: Names) -> Iterator[tuple[str, float]]:
+def parameters(given: ExportInput, names: Names) -> Iterator[tuple[str, float]]:
     """Name and value, m/s², none and rad/s, of ``(raw − offset)·scale`` and of gyros ``raw − offset``.
 
     ConflictError where the axes lie so far from the nominal ones that no scale an axis puts them right."""
@@ -153,7 +153,7 @@ def _named(name: str, values: Array) -> Iterator[tuple[str, float]]:
         yield name.format(axis), float(value)
 
 
-def left_of(given: Given) -> Iterator[str]:
+def left_of(given: ExportInput) -> Iterator[str]:
     """One sentence a kind of sensor."""
     if given.accelerometers is not None:
         angle = misalignment(given.accelerometers)

@@ -7,14 +7,14 @@ from service.errors import ConflictError
 from service.judging.usable_reading import usable_unit
 from service.judging.words import verdict_in_words
 from service.papers.correction import corrected
-from service.papers.onboard.given import Given
+from service.papers.onboard.given import ExportInput
 from service.sessions.calibrations_store import Noises
 from service.sessions.words.conditions import condition_of
 from service.settings import VERSION
 from service.storage import Storage
 
 
-def given_of(storage: Storage, id: str, now: datetime) -> Given:
+def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
     """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
     vector that a driver makes holds it too."""
     one = corrected(storage, id)
@@ -23,7 +23,7 @@ def given_of(storage: Storage, id: str, now: datetime) -> Given:
         raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
     with storage.database.reading() as store:
         noise, use = Noises(store).get(id), usable_unit(store, one.stored.unit, now)
-    return Given(
+    return ExportInput(
         unit=one.stored.unit,
         session=one.stored.id,
         measured_at=one.stored.started_at,

@@ -6,7 +6,7 @@ from math import isfinite
 
 import numpy as np
 
-from estimator.allan.growth import Course, Growth, growth
+from estimator.allan.growth import Growth, GrowthCourse, growth
 from estimator.allan.results import TERMS, interval_of
 from estimator.diagnosis.results import NoiseScale
 from estimator.message import joined, say
@@ -68,8 +68,8 @@ def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
     return tuple(s for own in _by_term(told) for s in _sentences(own, growth(_sizes(own), LEVEL / len(told))))
 
 
-def _sizes(courses: Sequence[Points]) -> list[Course]:
-    return [Course(np.array([p.value for p in own]), np.array([p.u for p in own])) for own in courses]
+def _sizes(courses: Sequence[Points]) -> list[GrowthCourse]:
+    return [GrowthCourse(np.array([p.value for p in own]), np.array([p.u for p in own])) for own in courses]
 
 
 def _by_term(courses: Sequence[Points]) -> list[list[Points]]:

@@ -8,7 +8,7 @@ import pytest
 
 from estimator.calibration.free import calibrate_free
 from estimator.calibration.free.information import information
-from estimator.calibration.free.model import Rows, Unknowns
+from estimator.calibration.free.model import ModelRows, Unknowns
 from estimator.errors import ScheduleError
 from tests.estimator.calibration.free_sessions import errors, session, sphere, truth
 
@@ -18,7 +18,9 @@ def known(m, directions, quadratic=False):
     axes, R = truth(m).axes, len(directions)
     unknowns = Unknowns(np.zeros(m), np.zeros(m), np.zeros(m), axes, directions)
     empty = np.zeros((R, 3))
-    return information(Rows(np.zeros((R, m)), np.full((R, m), 1e-6), empty, np.zeros(R), axes), unknowns, quadratic)
+    return information(
+        ModelRows(np.zeros((R, m)), np.full((R, m), 1e-6), empty, np.zeros(R), axes), unknowns, quadratic
+    )
 
 
 def two_planes(count):

@@ -8,7 +8,7 @@ import pytest
 from estimator import diagnose
 from estimator.alignment.align import prepared
 from estimator.alignment.lever_arms import lever_arms
-from estimator.alignment.simulate import Programme, Truth, simulate_alignment, triads
+from estimator.alignment.simulate import Truth, TurntableProgramme, simulate_alignment, triads
 from estimator.diagnosis import Diagnosis
 from estimator.session import Array, CalibrationSession
 from estimator.simulate import cone
@@ -161,7 +161,7 @@ def test_of_two_positions_that_the_turns_contradict_either_may_be_wrong() -> Non
 def cone_of_six(places: Array, said: Array | None = None) -> CalibrationSession:
     """Six accelerometers at places (6, 3), m, and where the file says that they are."""
     sensors = triads(cone(6, np.radians(54.7), (0.0, 0.0, 1.0)))
-    programme = Programme(angles=(0.0, np.pi, 0.5), dwell=60.0, row=0.2, ramp=1.0)
+    programme = TurntableProgramme(angles=(0.0, np.pi, 0.5), dwell=60.0, row=0.2, ramp=1.0)
     truth = Truth(positions=np.vstack([places, np.zeros((6, 3))]))
     made, _ = simulate_alignment(sensors, SITE, programme, truth, np.random.default_rng(2), imperfections=TYPICAL)
     described = zip(made.sensors, [*(said if said is not None else [None] * 6), *[None] * 6], strict=True)

@@ -9,7 +9,7 @@ import pytest
 
 from estimator.reading import read_session
 from estimator.writing import session_document
-from service.demo.blocks import Hidden, with_effect
+from service.demo.blocks import DemoEffect, with_effect
 from service.flags.records import Matter
 from service.flags.store import FlagQuery, Flags
 from service.outlook.changes import known_of
@@ -25,7 +25,7 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 UNIT = "BA-017"
 SOUND, OFF, AFTER = (1, 3, 4, 5, 7, 8), 9, 10
 """Months of sessions before, while and after the head's scale was off centre."""
-OFF_CENTRE = Hidden("beta-eccentricity", (80e-6, -40e-6))
+OFF_CENTRE = DemoEffect("beta-eccentricity", (80e-6, -40e-6))
 SPOILT, SPARED = ("A2", "bias"), ("A1", "bias")
 """What it moves most, by half a tolerance, and what it does not move."""
 

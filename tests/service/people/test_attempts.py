@@ -12,7 +12,14 @@ import pytest
 from service.app import create_app
 from service.errors import SignInError, TooOftenError
 from service.people.admission import browser_of, cookie_of, counted_address
-from service.people.changes import ADDRESS_LIMIT, DAILY_LIMIT, DAILY_LIMIT_OF_ALL, LOGIN_LIMIT, Attempt, attempting
+from service.people.changes import (
+    ADDRESS_LIMIT,
+    DAILY_LIMIT,
+    DAILY_LIMIT_OF_ALL,
+    LOGIN_LIMIT,
+    SignInAttempt,
+    attempting,
+)
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine
@@ -20,10 +27,10 @@ from tests.service.people.staff import NOW, PASSWORD, staffed, with_password
 from tests.serving import http_client
 from tests.stock import stores
 
-ATTEMPT = Attempt("k.ito", "203.0.113.9")
+ATTEMPT = SignInAttempt("k.ito", "203.0.113.9")
 
 
-def was_looked_at(storage: Storage, attempt: Attempt = ATTEMPT, *, right: bool = False, later: float = 0) -> bool:
+def was_looked_at(storage: Storage, attempt: SignInAttempt = ATTEMPT, *, right: bool = False, later: float = 0) -> bool:
     """Whether a password got as far as being looked at."""
     try:
         with attempting(storage, attempt, NOW + timedelta(seconds=later)):
@@ -52,9 +59,9 @@ def test_after_a_minute_one_may_try_again(storage: Storage) -> None:
 
 
 def test_one_password_tried_on_everybody_ends_by_the_address(storage: Storage) -> None:
-    tried = [was_looked_at(storage, Attempt(f"user{k}", "203.0.113.9")) for k in range(ADDRESS_LIMIT + 5)]
+    tried = [was_looked_at(storage, SignInAttempt(f"user{k}", "203.0.113.9")) for k in range(ADDRESS_LIMIT + 5)]
     assert sum(tried) == ADDRESS_LIMIT
-    assert was_looked_at(storage, Attempt("user99", "203.0.113.10"))
+    assert was_looked_at(storage, SignInAttempt("user99", "203.0.113.10"))
 
 
 def test_the_right_one_forgets_the_wrong_ones(storage: Storage) -> None:
@@ -71,18 +78,18 @@ def test_what_is_refused_for_another_reason_is_no_wrong_attempt(storage: Storage
 
 def test_many_addresses_get_no_further_at_one_account_than_the_day_s_bound(storage: Storage) -> None:
     addresses = [f"203.0.113.{k}" for k in range(DAILY_LIMIT_OF_ALL // 4)]
-    tried = [was_looked_at(storage, Attempt("k.ito", one)) for one in addresses for _ in range(LOGIN_LIMIT)]
+    tried = [was_looked_at(storage, SignInAttempt("k.ito", one)) for one in addresses for _ in range(LOGIN_LIMIT)]
     assert sum(tried) == DAILY_LIMIT_OF_ALL
-    assert not was_looked_at(storage, Attempt("k.ito", "198.51.100.1"), later=3600)
-    assert was_looked_at(storage, Attempt("k.ito", "198.51.100.1", browser="known"), later=3600)
-    assert was_looked_at(storage, Attempt("m.okafor", "198.51.100.1"), later=3600)
-    assert was_looked_at(storage, Attempt("k.ito", "198.51.100.1"), later=24 * 3600 + 61)
+    assert not was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1"), later=3600)
+    assert was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1", browser="known"), later=3600)
+    assert was_looked_at(storage, SignInAttempt("m.okafor", "198.51.100.1"), later=3600)
+    assert was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1"), later=24 * 3600 + 61)
 
 
 def test_one_address_does_not_use_up_the_day_of_all(storage: Storage) -> None:
     tried = [was_looked_at(storage, later=61 * k) for k in range(2 * DAILY_LIMIT_OF_ALL)]
     assert sum(tried) == DAILY_LIMIT
-    assert was_looked_at(storage, Attempt("k.ito", "198.51.100.1"), later=61)
+    assert was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1"), later=61)
 
 
 @pytest.fixture
