@@ -1,10 +1,10 @@
 """CalibrationSession → imu-session/1, the inverse of `estimator.read_session`. Angles in degrees and arcsec."""
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
+from estimator.json_object import Json
 from estimator.reading.keys import FORMAT, SIGMA
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Stand, StandErrors
 
@@ -14,7 +14,7 @@ ANGLE_DECIMALS = 10
 """Degrees and arcsec are written to 1e-10: 30.0, not 29.999999999999996."""
 
 
-def session_document(session: CalibrationSession) -> dict[str, Any]:
+def session_document(session: CalibrationSession) -> Json:
     """The session as imu-session/1; what it does not state is left out.
 
     Reading the document back gives the same session, angles to 1e-12 rad.
@@ -51,7 +51,7 @@ def session_document(session: CalibrationSession) -> dict[str, Any]:
     )
 
 
-def _stated(fields: dict[str, Any]) -> dict[str, Any]:
+def _stated(fields: Json) -> Json:
     return {name: value for name, value in fields.items() if value is not None}
 
 
@@ -63,7 +63,7 @@ def _rounded(value: float | None, decimals: int) -> float | None:
     return None if value is None else round(value, decimals)
 
 
-def _stand(stand: Stand) -> dict[str, Any]:
+def _stand(stand: Stand) -> Json:
     return _stated(
         {
             "id": stand.id,
@@ -82,7 +82,7 @@ def _sigma(sigma: StandErrors) -> dict[str, float]:
     return {name: value for name, value in values.items() if value}
 
 
-def _sensor(sensor: Sensor, session: CalibrationSession) -> dict[str, Any]:
+def _sensor(sensor: Sensor, session: CalibrationSession) -> Json:
     suffix = "m_s2" if sensor.kind == ACCELEROMETER else "rad_s"
     return _stated(
         {
@@ -98,8 +98,8 @@ def _sensor(sensor: Sensor, session: CalibrationSession) -> dict[str, Any]:
     )
 
 
-def _table(session: CalibrationSession) -> dict[str, Any]:
-    table: dict[str, Any] = {}
+def _table(session: CalibrationSession) -> Json:
+    table: Json = {}
     if session.flipped is not None:
         table["run"] = ["flipped" if flipped else "direct" for flipped in session.flipped]
     if session.beta is not None:

@@ -10,7 +10,7 @@ from benchmarks.files.service import Cost
 from estimator.long_logs.average import MOST_RESTS
 from service.ingest import LONG
 from service.ingest.apart import PACE
-from service.jobs.records import RETENTION as KEPT_MADE
+from service.jobs.records import KEPT as KEPT_MADE
 from service.kit.limits import LARGE, SMALL
 from service.storage.aside import MOST, MOST_BYTES, RETENTION
 from service.storage.landing import IN_MEMORY

@@ -36,9 +36,9 @@ class BiasTemperature(SensorCause):
     units = ("m/s²/K",)
     needs = frozenset({"temperature"})
     alike = True
-    sentence = "The zero of {sensors} follows the temperature."
+    sentence = "The bias of {sensors} depends on temperature."
     advice = "Model the temperature coefficient of the bias, or hold the temperature during the session."
-    shared_sentence = "The zeros of {sensors} follow the temperature together."
+    shared_sentence = "The biases of {sensors} depend on temperature in common."
     shared_advice = "Model the temperature coefficients of these biases, or hold the temperature during the session."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -52,7 +52,7 @@ class ScaleTemperature(SensorCause):
     equation = "k·(T − T̄)·a"
     units = ("1/K",)
     needs = frozenset({"temperature"})
-    sentence = "The scale factor of {sensors} follows the temperature."
+    sentence = "The scale factor of {sensors} depends on temperature."
     advice = "Model the temperature coefficient of the scale factor, or hold the temperature during the session."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -67,10 +67,10 @@ class TemperatureRate(SensorCause):
     units = ("m/s²/(K/s)",)
     needs = frozenset({"temperature", "time"})
     alike = True
-    sentence = "The zero of {sensors} follows how fast the temperature changes."
-    advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
-    shared_sentence = "The zeros of {sensors} follow together how fast the temperature changes."
-    shared_advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
+    sentence = "The bias of {sensors} depends on the rate of temperature change."
+    advice = "Let the unit soak until its temperature is stable before measuring; shield it from draughts."
+    shared_sentence = "The biases of {sensors} depend in common on the rate of temperature change."
+    shared_advice = "Let the unit soak until its temperature is stable before measuring; shield it from draughts."
 
     def available(self, setting: Setting) -> bool:
         return super().available(setting) and setting.time is not None and bool(np.all(np.diff(setting.time) > 0))
@@ -89,9 +89,9 @@ class BiasRamp(SensorCause):
     units = ("m/s²/s",)
     needs = frozenset({"time"})
     alike = True
-    sentence = "The zero of {sensors} drifts steadily through the session."
+    sentence = "The bias of {sensors} drifts steadily during the session."
     advice = "Repeat the first position at the end; let the unit warm up longer; watch this sensor."
-    shared_sentence = "The zeros of {sensors} drift together, steadily through the session."
+    shared_sentence = "The biases of {sensors} drift together and steadily during the session."
     shared_advice = "Repeat the first position at the end; let the unit warm up longer, or record its temperature."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -105,7 +105,7 @@ class ScaleRamp(SensorCause):
     equation = "k·(t − t̄)·a"
     units = ("1/s",)
     needs = frozenset({"time"})
-    sentence = "The scale factor of {sensors} drifts steadily through the session."
+    sentence = "The scale factor of {sensors} drifts steadily during the session."
     advice = "Let the unit warm up longer; check the voltage reference and the loop current of this sensor."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -120,7 +120,7 @@ class AxisCreep(SensorCause):
     units = ("rad/s", "rad/s")
     needs = frozenset({"time"})
     grows_an_angle = True
-    sentence = "The input axis of {sensors} turns slowly through the session."
+    sentence = "The input axis of {sensors} turns slowly during the session."
     advice = "Check the sensor's fastening and adhesive; repeat after a thermal soak."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -150,9 +150,9 @@ class WarmUp(GridCause):
     nonlinear_units = ("s",)
     shape_words = "time constant"
     alike = True
-    sentence = "The zero of {sensors} settles after switching on."
+    sentence = "The bias of {sensors} settles after switch-on."
     advice = "Switch the unit on earlier and wait for several time constants before the first position."
-    shared_sentence = "The zeros of {sensors} settle together after switching on."
+    shared_sentence = "The biases of {sensors} settle together after switch-on."
     shared_advice = "Switch the unit on earlier and wait for three time constants, or record its temperature."
     since_power_on = True
     lacking = "the time soon after switching on"
@@ -202,10 +202,12 @@ class BiasJump(GridCause):
     nonlinear_units = ("row",)
     shape_words = "from"
     repeats = 2
-    sentence = "The zero of {sensors} jumps once and stays."
-    advice = "Look for what happened then: a shock, a supply switch, a particle in the sensor. Repeat the session."
-    shared_sentence = "The zeros of {sensors} jump together, at one moment, and stay."
-    shared_advice = "Look for what the whole block met then: a bump, a break of its supply. Repeat the session."
+    sentence = "The bias of {sensors} has one step."
+    advice = "Find out what happened then: a shock, a change of supply, a particle in the sensor. Repeat the session."
+    shared_sentence = "The biases of {sensors} have one step at the same moment."
+    shared_advice = (
+        "Find out what happened to the whole block then: a shock, an interruption of its supply. Repeat the session."
+    )
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
         for row in range(1, setting.rows):

@@ -1,9 +1,9 @@
 """Result types of the diagnosis; no algorithms. The JSON form is ``imu-diagnosis/1``."""
 
 from dataclasses import dataclass, field
-from typing import Any
 
 from estimator.codec import MOMENT, Document
+from estimator.json_object import Json
 from estimator.results import Calibration, Residuals
 
 
@@ -106,7 +106,7 @@ class Shared(
     """(R,) one standard error of what they read."""
 
 
-def _with_all_shapes(document: dict[str, Any]) -> dict[str, Any]:
+def _with_all_shapes(document: Json) -> Json:
     """Earlier versions stated the shape of the first sensor alone."""
     return document | {"nonlinear_each": document.get("nonlinear_each") or [document["nonlinear"]]}
 

@@ -144,7 +144,7 @@ def notes(selection: GroupSelection, each: Sequence[Estimated]) -> list[str]:
         if h.shape is None:
             found.append(
                 say(
-                    "{cause}{place} is near, but {combination} fits better: it has no name",
+                    "{cause}{place} is close, but {combination} agrees better: it has no name",
                     cause=f.cause,
                     place=where,
                     combination=joined(" + ", h.words),
@@ -153,7 +153,7 @@ def notes(selection: GroupSelection, each: Sequence[Estimated]) -> list[str]:
         else:
             found.append(
                 say(
-                    "{cause}{place} is near, but leaves harmonic {shape} of β: it does not fit",
+                    "{cause}{place} is close, but leaves harmonic {shape} of β: it does not agree",
                     cause=f.cause,
                     place=where,
                     shape=f"{h.shape:g}",
@@ -162,9 +162,7 @@ def notes(selection: GroupSelection, each: Sequence[Estimated]) -> list[str]:
     alone = [selection.layout.parts[k].statistics.started_at for k in sorted({k for k, _ in selection.own})]
     if alone:
         dates = dict.fromkeys(date or "one without a date" for date in alone)
-        found.append(
-            say("taken out of single sessions, which show it by themselves: {dates}", dates=joined(", ", dates))
-        )
+        found.append(say("removed from single sessions that show it on their own: {dates}", dates=joined(", ", dates)))
     larger = {p.statistics.unit: s for p, s in zip(selection.layout.parts, selection.scale, strict=True) if s > 1.5}
     found += [
         say("{unit}: the sessions scatter {ratio} times as much as stated", unit=u, ratio=f"{np.sqrt(s):.1f}")

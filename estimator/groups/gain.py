@@ -14,6 +14,7 @@ import numpy as np
 
 from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.prediction import by_sensor
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.evidence import VARYING
 from estimator.groups.fixed import added_by, fixed
@@ -22,7 +23,7 @@ from estimator.groups.pool import PoolModel, pooled
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding, GroupGain, Moved
 from estimator.groups.selection import Found, GroupSelection
-from estimator.session import CalibrationSession
+from estimator.session import Array, CalibrationSession
 
 FIRST = 2 / 3
 """Part of the sessions that fix the amplitudes."""
@@ -36,10 +37,11 @@ def gain_of(
 ) -> GroupGain | None:
     """The gain on later sessions; None without findings or without sessions to leave out."""
     n = len(selection.layout.parts)
-    model = PoolModel(absorbed=selection.own)
-    for f in selection.found:
+    model, lasting = PoolModel(absorbed=selection.own), []
+    for f, finding in zip(selection.found, findings, strict=True):
         if f.form != VARYING:
             model = model.with_shared(f.place, f.since)
+            lasting.append(finding)
     first = max(int(np.ceil(FIRST * n)), 1 + max((s.since for s in model.shared), default=0))
     if not model.shared or first >= n:
         return None
@@ -48,6 +50,7 @@ def gain_of(
     parts = [p.statistics for p in selection.layout.parts[first:]]
     square = sum(float(p.whole.sum()) for p in parts)
     freedom = sum(float(p.whole_freedom.sum()) for p in parts)
+    before, after = latest_errors(lasting, fit.amplitude, sessions[-1]) if sessions else (None, None)
     removed = fit.reduces(later) * float(np.mean(selection.scale[first:]))
     return GroupGain(
         fitted=first,
@@ -56,7 +59,33 @@ def gain_of(
         chi2_per_dof_before=square / freedom,
         chi2_per_dof_after=(square - removed) / freedom,
         moved=moved(findings, sessions[-1]) if sessions else (),
+        before=before,
+        after=after,
     )
+
+
+def latest_errors(
+    findings: Sequence[GroupFinding], amplitude: Array, session: CalibrationSession
+) -> tuple[dict[str, dict[str, float]] | None, dict[str, dict[str, float]] | None]:
+    """Root mean square residual of every sensor in a session, by kind and name, m/s² (rad/s), without findings and with
+    them; None where it has none of them.
+
+    ``amplitude`` (a,) SI: of the findings one after another, as sessions fixed them in which this one had no part.
+    """
+    widths = [len(f.amplitude) for f in findings]
+    parts = np.split(amplitude, np.cumsum(widths)[:-1])
+    effects = [replace(fixed(f), amplitude=tuple(own.tolist())) for f, own in zip(findings, parts, strict=True)]
+    baseline = baseline_of(averaged(session))
+    added = added_by(baseline, effects, ())
+    if added is None:
+        return None, None
+    residuals, (R, m) = WhitenedResiduals.of(baseline), baseline.residual.shape
+    effect = residuals.trace((added.columns @ added.amplitude)[..., None])[:, 0]
+    before, after = (
+        by_sensor(z[: R * m].reshape(R, m) / residuals.whiten.weight, baseline)
+        for z in (residuals.z, residuals.z - effect)
+    )
+    return before, after
 
 
 def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tuple[Moved, ...]:

@@ -16,7 +16,7 @@ depends_on = None
 
 def upgrade() -> None:
     """Two columns; in rows of earlier releases both are NULL."""
-    op.add_column("sessions", sa.Column("time_since_power_on", sa.Float(), nullable=True))
+    op.add_column("sessions", sa.Column("time_since_power_on", sa.Double(), nullable=True))
     op.add_column("diagnoses", sa.Column("gain_in_words", sa.String(), nullable=True))
 
 

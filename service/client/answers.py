@@ -6,7 +6,9 @@ These types are independent of the service's own records, so that a client needs
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any, Literal
+from typing import Literal
+
+from estimator.json_object import Json
 
 Verdict = Literal["pass", "conditional-pass", "undecidable", "conditional-fail", "fail"]
 
@@ -18,7 +20,7 @@ class Reservation:
     kind: str
     text: str
     advice: str
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Said:
     reason: str
     said: str
     reservations: tuple[Reservation, ...]
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ class Point:
     is_reference: bool
     axis: tuple[float, ...] | None
     revision: int
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ class Finding:
     alternatives: tuple[str, ...]
     sentence: str
     advice: str
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -137,7 +139,7 @@ class Diagnosis:
     verdict_after: Verdict | None
     """With the named causes in the model."""
     notes: tuple[str, ...]
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -154,7 +156,7 @@ class Flag:
     session: str | None
     raised_at: datetime
     changed_at: datetime
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -169,4 +171,4 @@ class Usable:
     until: datetime | None
     session: str | None
     as_of: datetime
-    document: dict[str, Any]
+    document: Json

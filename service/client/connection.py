@@ -8,6 +8,7 @@ from typing import IO, Any
 import httpx
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.errors import AwayError, RefusedError, ServiceError
 
 MAX_POLLS = 10
@@ -26,24 +27,24 @@ class Connection:
         """Reads a resource below /api/v1; parameters of None are left out."""
         return self.answer("GET", path, params={name: value for name, value in query.items() if value is not None})
 
-    def post(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
+    def post(self, path: str, body: Json) -> Json:
         """Sends JSON to a resource below /api/v1."""
-        answer: dict[str, Any] = self.answer("POST", path, json=body).json()
+        answer: Json = self.answer("POST", path, json=body).json()
         return answer
 
-    def put(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
+    def put(self, path: str, body: Json) -> Json:
         """Replaces a resource below /api/v1 with JSON."""
-        answer: dict[str, Any] = self.answer("PUT", path, json=body).json()
+        answer: Json = self.answer("PUT", path, json=body).json()
         return answer
 
     def send(
         self, name: str, content: bytes | IO[bytes], stated: dict[str, str] | None = None, *, later: bool = False
-    ) -> dict[str, Any]:
+    ) -> Json:
         """Sends a session file with its form fields; RefusedError with its problems when it is unusable. ``later``: a
         large one is answered with its job after it was received."""
         headers = {"Prefer": "respond-async"} if later else {}
         response = self.answer("POST", "/sessions", files={"file": (name, content)}, data=stated or {}, headers=headers)
-        answer: dict[str, Any] = response.json()
+        answer: Json = response.json()
         return answer
 
     def is_diagnosed(self, session: str) -> bool:

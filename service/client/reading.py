@@ -8,6 +8,7 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
+from estimator.json_object import Json
 from service.errors import ServiceError
 
 T = TypeVar("T")
@@ -33,7 +34,7 @@ def _hints(kind: type[Any]) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
-def _object(kind: type[T], document: dict[str, Any]) -> T:
+def _object(kind: type[T], document: Json) -> T:
     hints, names = _hints(kind), [field.name for field in fields(kind)]  # type: ignore[arg-type]  # all are dataclasses
     known = {name: _value(hints[name], document[name], name) for name in names if name != WHOLE}
     return kind(**known, **({WHOLE: document} if WHOLE in names else {}))

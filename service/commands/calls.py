@@ -14,12 +14,13 @@ from urllib.parse import quote
 import typer
 from rich.table import Table
 
+from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.catalogue import CATALOGUE
 from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, Listing, Server, print_json, table_of
 from service.commands.speech import FAILED
 
-Answer = dict[str, Any]
+Answer = Json
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ def in_address(template: str, names: Mapping[str, Any]) -> str:
     return template.format(**{name: quote(str(value), safe="") for name, value in names.items()})
 
 
-def _request(request: str, sent: dict[str, Any]) -> tuple[str, str, dict[str, Any]]:
+def _request(request: str, sent: Json) -> tuple[str, str, Json]:
     """Method, address, and the remaining parameters."""
     method, template = request.split()
     in_path = {name for _, name, _, _ in Formatter().parse(template) if name}

@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, NoReturn
 
 import numpy as np
 import typer
@@ -13,6 +13,7 @@ import typer
 from estimator.causes import CATALOGUE, Cause, find
 from estimator.errors import SessionError
 from estimator.hiding import HiddenCause, TooWeakError, UnhideableError, hide, hide_any
+from estimator.json_object import Json
 from estimator.session import CALIBRATIONS, GYROSCOPE, TWO_AXIS_STAND, CalibrationSession
 from service.commands.speech import UNUSABLE, say
 
@@ -139,7 +140,7 @@ def write_answer(hidden: HiddenCause, file: Path, session: CalibrationSession, t
     target.write_text(json.dumps(_answer(hidden, file, session), ensure_ascii=False), encoding="utf-8")
 
 
-def _answer(hidden: HiddenCause, file: Path, session: CalibrationSession) -> dict[str, Any]:
+def _answer(hidden: HiddenCause, file: Path, session: CalibrationSession) -> Json:
     known = find(hidden.cause)
     assert known is not None
     return {

@@ -76,7 +76,7 @@ def parity_view(result: ParityResult) -> RenderableType:
 
 def _cells(kind: str, name: str, sight: Sight) -> tuple[str, str]:
     if sight.size is None or sight.sigma is None or sight.detectable is None:
-        return "not seen", "—"
+        return "not observed", "—"
     change = in_words(kind, name, sight.size, signed=name != "axis")
     return f"{change} ± {in_words(kind, name, COVERAGE * sight.sigma)}", in_words(kind, name, sight.detectable)
 

@@ -2,7 +2,7 @@
 during it, and whether its unit is warm and still enough."""
 
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, TypeVar
 from urllib.parse import urlencode
 
 import numpy as np
@@ -15,6 +15,7 @@ from rich.text import Text
 
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.planning import OrientationRank, Plan, missing, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
@@ -264,7 +265,7 @@ def ready(
         raise typer.Exit(FAILED)
 
 
-def _judged_locally(file: Path, question: ReadyQuestion) -> dict[str, Any]:
+def _judged_locally(file: Path, question: ReadyQuestion) -> Json:
     """On this machine, by default tolerances."""
     with usable(file):
         answer = judged_by_defaults(read_file(file, part=True), question)
@@ -272,7 +273,7 @@ def _judged_locally(file: Path, question: ReadyQuestion) -> dict[str, Any]:
     return {**answer.found.to_dict(), "unit_type": None, "said": sentences}
 
 
-def _judged_by_service(file: Path, question: ReadyQuestion, server: str) -> dict[str, Any]:
+def _judged_by_service(file: Path, question: ReadyQuestion, server: str) -> Json:
     """By the service, which knows the unit."""
     query = urlencode(question.model_dump(exclude_none=True))
     with usable(file):
@@ -281,7 +282,7 @@ def _judged_by_service(file: Path, question: ReadyQuestion, server: str) -> dict
             return dict(client.answer("POST", f"/plan/ready?{query}", files={"file": (file.name, content)}).json())
 
 
-def _show_readiness(document: dict[str, Any], as_json: bool) -> None:
+def _show_readiness(document: Json, as_json: bool) -> None:
     if as_json:
         print_json(document)
         return

@@ -5,10 +5,11 @@ from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
+from estimator.json_object import Json
 from service.commands.console import AsJson, print_json, progress, screen
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import FAILED, many, say
@@ -128,7 +129,7 @@ def _show(outcome: Outcome, as_json: bool) -> None:
     print_json(_as_json(outcome.done)) if as_json else _print_line(outcome.done)
 
 
-def _as_json(done: Recalibrated) -> dict[str, Any]:
+def _as_json(done: Recalibrated) -> Json:
     names = ("unit", "sessions", "recomputed", "unchanged", "left", "revision")
     changes = [{"session": item.session, "before": item.before, "after": item.after} for item in done.verdicts]
     kept = [{"session": item.session, "why": item.why} for item in done.kept]

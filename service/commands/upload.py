@@ -24,6 +24,7 @@ from rich.progress import (
 )
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
 from service.commands.speech import output_language, say, translated
@@ -48,7 +49,7 @@ class Uploader:
     wait: bool
     quiet: bool
 
-    def sent(self, file: Path) -> dict[str, Any]:
+    def sent(self, file: Path) -> Json:
         """The receipt; for a large file without waiting its job. RefusedError for an unusable file."""
         if not are_large((file,)):
             return self.client.send(file.name, file.read_bytes(), self.stated)
@@ -60,7 +61,7 @@ class Uploader:
             return answer
         return self._became(followed(self.client, answer["id"], quiet=self.quiet))
 
-    def _became(self, job: dict[str, Any]) -> dict[str, Any]:
+    def _became(self, job: Json) -> Json:
         """The receipt of the session of a file."""
         if job["problems"]:
             problems = tuple(Problem(item["field"], item["message"], item["row"]) for item in job["problems"])
@@ -68,7 +69,7 @@ class Uploader:
         if job["state"] != JobState.DONE:
             reasons = " ".join(item["reason"] for item in job["failures"])
             raise ServiceError(f"Job {job['id']} is {job['state']}. {reasons}".strip())
-        receipt: dict[str, Any] = self.client.get(f"/uploads/{job['upload']}").json()["session"]
+        receipt: Json = self.client.get(f"/uploads/{job['upload']}").json()["session"]
         return receipt | {"created": True, "url": f"{self.client.server}/api/v1/sessions/{receipt['id']}"}
 
 
@@ -96,9 +97,9 @@ class _WatchedFile:
         return self.file.seek(place)
 
 
-def followed(client: Client, id: int, *, quiet: bool) -> dict[str, Any]:
+def followed(client: Client, id: int, *, quiet: bool) -> Json:
     """The job once it has ended. On an interrupt, a message says that it goes on, and how to find it again."""
-    job: dict[str, Any] = client.get(f"/jobs/{id}").json()
+    job: Json = client.get(f"/jobs/{id}").json()
     is_upload = job["kind"] == JobKind.UPLOAD
     size = KILOBYTE if is_upload else 1
     try:
@@ -113,7 +114,7 @@ def followed(client: Client, id: int, *, quiet: bool) -> dict[str, Any]:
     return job
 
 
-def _doing(job: dict[str, Any]) -> str:
+def _doing(job: Json) -> str:
     if job["kind"] != JobKind.UPLOAD:
         return f"job {job['id']}"
     again = f", time {job['times'] + 1}" if job["times"] else ""
@@ -155,9 +156,7 @@ Mapping = Annotated[
     Path | None, typer.Option(help="JSON file that says how tables of your own layout are read: imu-mapping/1.")
 ]
 Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
-Check = Annotated[
-    bool, typer.Option("--check", help="Only a check: judged and kept, and the next calibration is due as before.")
-]
+Check = Annotated[bool, typer.Option("--check", help="Check only: judged and stored, does not change the due date.")]
 
 
 def upload_files(
@@ -178,13 +177,13 @@ def upload_files(
     read_by = None if mapping is None else mapping.read_text(encoding="utf-8")
     fields = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
     stated = {name: text for name, text in fields.items() if text}
-    show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
+    show: Callable[[Json], None] = print_json if as_json else _print_line
     with connect(server, language=output_language()) as client:
         sending = Uploader(client, stated, wait=wait, quiet=as_json)
         for_each(files, lambda file: _verdict_of(sending, file), show, "uploading", quiet=as_json or are_large(files))
 
 
-def _verdict_of(uploader: Uploader, file: Path) -> dict[str, Any]:
+def _verdict_of(uploader: Uploader, file: Path) -> Json:
     """The answer, with the verdict after the diagnosis; the job of a large file without waiting."""
     answer, client = uploader.sent(file), uploader.client
     if uploader.wait and client.is_diagnosed(answer["id"]):
@@ -193,7 +192,7 @@ def _verdict_of(uploader: Uploader, file: Path) -> dict[str, Any]:
     return answer
 
 
-def _print_line(answer: dict[str, Any]) -> None:
+def _print_line(answer: Json) -> None:
     """``BA-017  3f9a0c5be1d24786aa10  Fit, but the zero of A2 …  …``"""
     if "verdict" not in answer:
         screen().print(f"[bold]{escape(answer['subject'])}[/] was received: job {answer['id']} works on it")

@@ -1,4 +1,4 @@
-"""The page of a diagnosis, *What the simulation gets wrong*, and its forms."""
+"""The page of a diagnosis and its forms."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from service.diagnosis.charts import MOST_PANELS, Sides, diagnosis_charts
 from service.diagnosis.gain import GainView, gain_view
 from service.diagnosis.records import Diagnosed, DiagnosisReport, StoredDiagnosis
 from service.diagnosis.sections import PENDING, TONES, CourseView, SharedView, course_views, shared_views
-from service.diagnosis.words.causes import cause_on
+from service.diagnosis.words.causes import cause_on, weighty_first
 from service.diagnosis.words.diagnosis import (
     HEADLINES,
     BlindCauses,
@@ -173,7 +173,7 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
     return EvidenceView(
         wrong_errors=errors_of(found) if is_named or found.structures else (),
         findings=_findings(report, found),
-        shared=shared_views(found.findings, after),
+        shared=shared_views(weighty_first(found.findings), after),
         structures=tuple(map(_structure, found.structures)),
         courses=course_views(found.structures, before),
         charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None, noise), named),
@@ -192,7 +192,9 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
 def _findings(report: DiagnosisReport, found: Diagnosed) -> tuple[FindingView, ...]:
     revisions, is_stated = in_force(report.revisions), found.calibration.fit.noise == "stated" and not found.noise
     is_claim = is_stated and report.session.programme in CALIBRATIONS  # an alignment takes its turns' own scatter
-    return tuple(finding_view(f, revisions, found.findings, by_stated_noise=is_claim) for f in found.findings)
+    return tuple(
+        finding_view(f, revisions, found.findings, by_stated_noise=is_claim) for f in weighty_first(found.findings)
+    )
 
 
 def _structure(structure: Structure) -> StructureView:

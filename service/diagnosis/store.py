@@ -3,10 +3,10 @@
 import json
 import zlib
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 from sqlalchemy import delete, select, update
 
+from estimator.json_object import Json
 from service.diagnosis.records import Diagnosed, StoredDiagnosis
 from service.diagnosis.tables import DiagnosisRow
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE
@@ -18,9 +18,9 @@ from service.sessions.tables import SessionRow
 from service.storage.queries import Queries
 
 
-def inapplicable_to_dict(unit: str) -> dict[str, Any]:
+def inapplicable_to_dict(unit: str) -> Json:
     """imu-diagnosis/1 of a session of a programme in which no causes are looked for."""
-    empty: dict[str, Any] = {"findings": [], "unexplained": False, "structures": [], "limits": [], "noise": []}
+    empty: Json = {"findings": [], "unexplained": False, "structures": [], "limits": [], "noise": []}
     unmade = dict.fromkeys(("gain", "calibration", "residuals_before"))
     return {"format": "imu-diagnosis/1", "unit": unit, **empty, **unmade, "notes": [NOT_APPLICABLE]}
 

@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import IS_FAILED, Sentence, only_where
 from service.storage.tables import Base
 
@@ -27,4 +28,4 @@ class DiagnosisRow(Base):
     created_at: Mapped[datetime]
     reservations: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
     """NULL where there are none, so that units with one are found."""
-    tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    tells: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))

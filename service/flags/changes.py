@@ -19,8 +19,8 @@ from service.storage.audit import Audit
 from service.storage.queries import Store
 from service.units.store import Units
 
-UNKNOWN = "is the login or the name of no account that may sign in; leave it empty for nobody"
-SEVERAL = "is the name of several accounts; say the login"
+UNKNOWN = "no account with this login or name may sign in; leave it empty for nobody"
+SEVERAL = "several accounts have this name; give the login"
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def assign_flag(storage: Storage, id: int, said: Assignment, now: datetime) -> F
         unit, assignee = Units(store).hold(Flags(store).unit_of(id)), assignee_of(store, said.to)
         flag = Flags(store).get(id)
         if flag.state is FlagState.RESOLVED:
-            raise ConflictError(say("Flag {id} is resolved already, so nobody has to look after it.", id=id))
+            raise ConflictError(say("Flag {id} is already resolved: it cannot be assigned.", id=id))
         _put(store, flag, unit, assignee, said=said, now=now)
         return Flags(store).get(id)
 
@@ -77,7 +77,7 @@ def _put(store: Store, flag: Flag, unit: int, assignee: Assignee, *, said: Assig
     if Flags(store).assignee_of(flag.id) == assignee:
         return False
     Flags(store).put(flag.id, now, assignee=assignee.name, assignee_login=assignee.login)
-    text = say("To {name}.", name=assignee.name) if assignee.name else "To nobody in particular."
+    text = say("To {name}.", name=assignee.name) if assignee.name else "To nobody."
     Notices(store).add(
         unit, NoticeKind.ASSIGNED, now, said.who, joined(" ", filter(None, (text, said.why))), flag=flag.id
     )
@@ -140,7 +140,7 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
         if flag.state not in POSSIBLE[state]:
             raise ConflictError(
                 say(
-                    "Flag {id} is {state} already, so it cannot be {new_state} now.",
+                    "Flag {id} is already {state}: it cannot be {new_state} now.",
                     id=id,
                     state=flag.state.value,
                     new_state=state.value,

@@ -317,7 +317,7 @@ def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
         last_at=None,
         verdict=None,
         is_reference=False,
-        reason="No session of this unit is accepted, so nothing is known of it.",
+        reason="No session of this unit is accepted: nothing is known about it.",
         worst_sensor=None,
         worst_parameter=None,
         margin=None,

@@ -26,6 +26,7 @@ from sqlalchemy.orm import aliased
 
 from estimator.groups import GroupDiagnosis, SessionStatistics
 from estimator.groups.statistics import FORMAT
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
@@ -216,7 +217,7 @@ def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:
 
 MOST_ATTEMPTS = 3
 """Tries at which the program may fail at one session's, or its process die: two could be a machine in need."""
-GIVEN_UP = "The program failed at it: a fault of the program, not of the session. The next version tries again."
+GIVEN_UP = "A fault of the program, not of the session. The next version tries again."
 
 
 class Statistics(Queries):
@@ -267,5 +268,5 @@ class Statistics(Queries):
         self._session.expire_all()
 
 
-def _begun(version: str) -> dict[str, Any]:
+def _begun(version: str) -> Json:
     return {"format": FORMAT, "document": None, "why": "", "attempts": 0, "estimator_version": version}

@@ -6,9 +6,10 @@ Binary formats, and text long enough to take time or memory, are read in a separ
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from estimator.errors import SessionError
+from estimator.json_object import Json
 from estimator.on_demand import function_on_demand
 from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
@@ -68,9 +69,9 @@ def apart_session(content: bytes | Path, filename: str, job: str = "session") ->
     return session
 
 
-def look_at(content: bytes | Path, filename: str) -> dict[str, Any]:
+def look_at(content: bytes | Path, filename: str) -> Json:
     """Preview of a table of custom layout; ``session`` is true where the file is a session file."""
-    preview: dict[str, Any] = read_apart("look", content, filename)
+    preview: Json = read_apart("look", content, filename)
     return preview
 
 

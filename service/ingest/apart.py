@@ -24,6 +24,7 @@ from typing import Any
 
 from estimator.codec import KEPT
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import BusyError
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
@@ -220,7 +221,7 @@ def _answer(child: socket.socket, line: bytes, most: Limits) -> Any:
     return unpack(line, most.memory, lambda array: _fill(child, array))
 
 
-def _ask(child: socket.socket, request: dict[str, Any], content: bytes | Path) -> None:
+def _ask(child: socket.socket, request: Json, content: bytes | Path) -> None:
     """Bytes are sent along; a file is opened by the other process."""
     if isinstance(content, Path):
         _send(child, json.dumps(request | {"path": str(content.absolute())}).encode())
@@ -229,7 +230,7 @@ def _ask(child: socket.socket, request: dict[str, Any], content: bytes | Path) -
         child.sendall(content)
 
 
-def _refused(document: dict[str, Any]) -> FormatError | ScheduleError:
+def _refused(document: Json) -> FormatError | ScheduleError:
     kind = ScheduleError if document["schedule"] else FormatError
     return kind([KEPT.read(Problem, problem) for problem in document["problems"]], document["source"])
 

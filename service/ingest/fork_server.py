@@ -13,10 +13,10 @@ import socket
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from estimator.codec import KEPT
 from estimator.errors import ScheduleError, SessionError
+from estimator.json_object import Json
 from service.ingest import apart, jobs
 from service.ingest.apart import END, READY, SCANNED, SIZE, WALL_CLOCK_FACTOR
 from service.ingest.exchange import Packed, pack, plain_bytes
@@ -90,7 +90,7 @@ def _answer(connection: socket.socket) -> None:
         _send(connection, Packed(_refusal(_too_large(request["filename"], most)), ()))
 
 
-def _read(connection: socket.socket, request: dict[str, Any]) -> Iterator[Packed]:
+def _read(connection: socket.socket, request: Json) -> Iterator[Packed]:
     """The answer, or its parts and their end."""
     content, filename = _content(connection, request), request["filename"]
     if request["job"] in jobs.PARTED and isinstance(content, Path):
@@ -117,7 +117,7 @@ def _send(connection: socket.socket, packed: Packed) -> None:
         connection.sendall(plain_bytes(array))
 
 
-def _content(connection: socket.socket, request: dict[str, Any]) -> bytes | Path:
+def _content(connection: socket.socket, request: Json) -> bytes | Path:
     if "path" in request:
         return Path(request["path"])
     return connection.recv(request["size"], socket.MSG_WAITALL) if request["size"] else b""
@@ -134,7 +134,7 @@ def _refusal(error: SessionError) -> bytes:
     return json.dumps({"refused": {"schedule": schedule, "problems": problems, "source": error.source}}).encode()
 
 
-def _mapped(request: dict[str, Any]) -> int:
+def _mapped(request: Json) -> int:
     """Bytes of a file that may be mapped: this takes address space, but memory that the kernel can take back."""
     return MAPS * Path(request["path"]).stat().st_size if "path" in request else 0
 

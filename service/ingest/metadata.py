@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems, cut
@@ -40,7 +41,7 @@ def last_step(key: str) -> str:
 
 def nested(rows: Sequence[tuple[str, float | str | None]], problems: Problems) -> dict[str, object]:
     """The metadata as a document; records keys that are given twice or misplaced."""
-    document: dict[str, Any] = {}
+    document: Json = {}
     for key, value in rows:
         steps = key.strip().replace("[", ".").replace("]", "").split(".")
         parent = _parent(document, steps)
@@ -53,7 +54,7 @@ def nested(rows: Sequence[tuple[str, float | str | None]], problems: Problems) -
     return document
 
 
-def _parent(document: dict[str, Any], steps: list[str]) -> dict[str, Any] | None:
+def _parent(document: Json, steps: list[str]) -> Json | None:
     node: Any = document
     for step in steps[:-1]:
         node = node.setdefault(step, {})

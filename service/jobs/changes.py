@@ -91,7 +91,7 @@ def cancel_job(storage: Storage, id: int, person: Person, who: str, now: datetim
         Audit(store).write(now, who, "cancel job", job.subject or "fleet", {"job": id, "done": job.done})
         cancelled = Jobs(store).get(id)
     if job.sent is not None:
-        drop_waiting(storage.files, job.sent)
+        drop_waiting(storage.files, job.sent.place)
     return cancelled
 
 

@@ -7,8 +7,8 @@ from enum import StrEnum
 from pydantic import computed_field
 
 from service.kit.answer import Hidden, answer
-from service.kit.arriving_files import Sent
 from service.models.records import Scope
+from service.sessions.sent import Sent
 
 KEPT = timedelta(days=7)
 """Retention of a report: a week's leave; it can be made again at any time."""

@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Select, String, cast, delete, func, literal, or_, select, union_all, update
 from sqlalchemy.orm import InstrumentedAttribute
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.diagnosis.tables import DiagnosisRow
 from service.diagnosis.words.diagnosis import CANNOT
@@ -16,7 +17,6 @@ from service.flags.tables import DeliveryRow
 from service.groups.tables import GroupDiagnosisRow
 from service.jobs.records import Job, JobFailure, JobKind, JobState, Made, NewJob, RecalibrationPiece
 from service.jobs.tables import JobRow
-from service.kit.arriving_files import Replaced, Sent
 from service.kit.failure import Failed, FailedKind
 from service.models.records import Scope, task_of
 from service.models.store import Recomputations, concerned
@@ -24,6 +24,7 @@ from service.queue.records import WorkKind
 from service.queue.store import RETRY_AT_ONCE, WorkQueue, work_of
 from service.queue.tables import WorkRow
 from service.sessions.records import DiagnosisState
+from service.sessions.sent import Replaced, Sent
 from service.storage.columns import is_made_of
 from service.storage.queries import Queries
 from service.units.tables import UnitRow
@@ -240,7 +241,7 @@ def _record(row: JobRow, held_up: str = "", *, is_leased: bool = False) -> Job:
     )  # fmt: skip
 
 
-def _sent(document: dict[str, Any]) -> Sent:
+def _sent(document: Json) -> Sent:
     replaces = document["replaces"]
     return Sent(**{**document, "replaces": None if replaces is None else Replaced(**replaces)})
 

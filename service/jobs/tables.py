@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, Index, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import BYTES, IS_AT_WORK, IS_FAILED, only_where
 from service.storage.tables import Base
 
@@ -44,7 +45,7 @@ class JobRow(Base):
     sha256: Mapped[str] = mapped_column(String(64))
     kept_until: Mapped[datetime | None]
     """Of its file; NULL where there is none any more."""
-    sent: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    sent: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
     """Of an upload: the received file, as `Sent`; its hash is in ``sha256``."""
     is_storing: Mapped[bool] = mapped_column(server_default=false())
     """Of an upload: the holder of its lease is storing it."""

@@ -132,8 +132,8 @@ def _uncalibrated(unit: str, since: datetime | None) -> ScheduleError:
     """That the unit has no calibration, and what to do first."""
     service = "" if since is None else say(" since its service of {date}", date=f"{since:%Y-%m-%d}")
     message = say(
-        "{unit} has no calibration yet{service}, and a recording in service is compared with "
-        "one: upload a calibration session of the unit first, then this file again",
+        "{unit} has no calibration{service} to compare a recording in service with: upload a calibration session "
+        "first, then this file again",
         unit=unit,
         service=service,
     )

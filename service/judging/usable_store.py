@@ -1,10 +1,10 @@
-"""Everything that decides what units may be used for, in three queries for however many units."""
+"""Everything that decides what units may be used for, in one query for however many units."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ScalarSelect, Select, func, or_, select
+from sqlalchemy import ScalarSelect, Select, exists, func, or_, select
 from sqlalchemy.orm import aliased
 
 from estimator.session import CALIBRATIONS
@@ -25,10 +25,8 @@ from service.sessions.states import RecordState
 from service.sessions.states_store import IS_BREAK
 from service.sessions.store import is_waiting
 from service.sessions.tables import CalibrationRow, SessionRow
-from service.stands.records import StandCertificate
-from service.stands.store import StandCertificates
-from service.stands.tables import StandRow
-from service.stands.words import held
+from service.stands.store import certificate_record
+from service.stands.tables import StandCertificateRow, StandRow
 from service.storage.columns import RESOLVED
 from service.storage.queries import Queries
 from service.types.rules import tolerances_of
@@ -39,8 +37,8 @@ from service.units.tables import ServiceRow, UnitRow
 Other = aliased(SessionRow)
 """A session of the unit, beside its latest one."""
 MATTERS = tuple(Matter)
-Certificates = Mapping[str, Sequence[StandCertificate]]
-"""Of stands by name, oldest issue first."""
+Renewed = aliased(StandCertificateRow)
+"""The same certificate as it was recorded again."""
 
 
 class UseStore(Queries):
@@ -48,36 +46,30 @@ class UseStore(Queries):
 
     def facts(self, units: Sequence[UnitSummary], now: datetime) -> tuple[UseFacts, ...]:
         """Of units, in their order."""
-        serials = tuple(unit.serial for unit in units)
-        flags, certificates = self._flags(serials), StandCertificates(self._store).every()
-        rows = {row[0]: row[1:] for row in self._session.execute(_facts(now).where(UnitRow.serial.in_(serials)))}
-        return tuple(_record(u, rows[u.serial], tuple(flags.get(u.serial, ())), certificates) for u in units)
-
-    def _flags(self, serials: Sequence[str]) -> dict[str, list[OpenFlag]]:
-        """The open flags of units, the gravest first, whichever was raised first."""
-        query = select(UnitRow.serial, FlagRow).join(UnitRow, UnitRow.id == FlagRow.unit_id)
-        own = (UnitRow.serial.in_(serials), FlagRow.scope == Scope.UNIT, FlagRow.state != RESOLVED)
-        found: dict[str, list[OpenFlag]] = {}
-        for serial, row in self._session.execute(query.where(*own)):
-            flag = OpenFlag(row.id, Matter(row.matter), row.severity, row.place, row.summary)
-            found.setdefault(serial, []).append(flag)
-        return {serial: sorted(flags, key=_gravity) for serial, flags in found.items()}
+        query = _facts(now).where(UnitRow.serial.in_([unit.serial for unit in units]))
+        rows: dict[str, list[Sequence[Any]]] = {}
+        for row in self._session.execute(query):
+            rows.setdefault(row[0], []).append(row)
+        return tuple(_record(unit, rows[unit.serial]) for unit in units)
 
 
 def _gravity(flag: OpenFlag) -> tuple[int, int, str]:
+    """The gravest first, whichever was raised first."""
     return MATTERS.index(flag.matter), -flag.severity, flag.place
 
 
 def _facts(now: datetime) -> Select[*tuple[Any, ...]]:
-    """One row a unit; the calibration of a session only where it is a reference, which may stand alone."""
+    """A row for each open flag of a unit, or one; the calibration of a session only where it is a reference, which may
+    stand alone."""
     in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
     own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
     diagnosis = (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id)
+    flags = (FlagRow.unit_id == UnitRow.id) & (FlagRow.scope == Scope.UNIT) & (FlagRow.state != RESOLVED)
     serviced = _serviced(now)
     return (
         select(
-            UnitRow.serial, SessionRow.programme, SessionRow.started_at, StandRow.name, is_waiting(SessionRow.basis),
-            WorkRow.failed, serviced, _correction(serviced), _questioned(),
+            UnitRow.serial, FlagRow, SessionRow.programme, SessionRow.started_at, StandRow.name, StandCertificateRow,
+            is_waiting(SessionRow.basis), WorkRow.failed, serviced, _correction(serviced), _questioned(),
             OutlookRow.document["action"].as_string(), CalibrationRow.document, UnitTypeRow, ToleranceRow,
         )
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
@@ -85,6 +77,8 @@ def _facts(now: datetime) -> Select[*tuple[Any, ...]]:
         .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+        .outerjoin(StandCertificateRow, StandCertificateRow.id == _certificate())
+        .outerjoin(FlagRow, flags)
         .outerjoin(WorkRow, diagnosis)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
         .outerjoin(CalibrationRow, own & SessionRow.is_reference)
@@ -111,22 +105,36 @@ def _questioned() -> ScalarSelect[datetime]:
     return select(func.max(Other.started_at)).where(*own).correlate(UnitRow, SessionRow).scalar_subquery()
 
 
-def _record(unit: UnitSummary, row: Sequence[Any], flags: tuple[OpenFlag, ...], certificates: Certificates) -> UseFacts:
-    programme, measured_at, stand, waiting, failed, serviced, correction, questioned, action, document, *types = row
-    certificate = None if stand is None else held(certificates.get(stand, ()), measured_at.date())
+def _certificate() -> ScalarSelect[int]:
+    """The latest certificate of the stand that was issued by the day of measurement."""
+    row = StandCertificateRow
+    renewed = exists().where(Renewed.stand_id == row.stand_id, Renewed.number == row.number, Renewed.id > row.id)
+    own = (row.stand_id == SessionRow.stand_id, row.issued_on <= SessionRow.started_at, ~renewed)
+    query = select(row.id).where(*own).order_by(row.issued_on.desc(), row.id.desc()).limit(1)
+    return query.correlate(SessionRow).scalar_subquery()
+
+
+def _record(unit: UnitSummary, rows: Sequence[Sequence[Any]]) -> UseFacts:
+    programme, at, stand, held, waiting, failed, serviced, correction, questioned, action, document, *types = rows[0][
+        2:
+    ]
     return UseFacts(
         unit=unit,
         is_calibration=programme in CALIBRATIONS,
         serviced_at=serviced,
         action=None if action is None else Action(action),
-        flags=flags,
+        flags=tuple(sorted((_flag(row[1]) for row in rows if row[1] is not None), key=_gravity)),
         questioned_at=questioned,
         uncertain=() if document is None else _uncertain(document, *types),
-        expired=certificate if certificate is not None and certificate.valid_until < measured_at.date() else None,
+        expired=None if held is None or held.valid_until >= at.date() else certificate_record(stand, held),
         not_diagnosed=failed or "",
         is_waiting=bool(waiting),
         correction=correction,
     )
+
+
+def _flag(row: FlagRow) -> OpenFlag:
+    return OpenFlag(row.id, Matter(row.matter), row.severity, row.place, row.summary)
 
 
 def _uncertain(document: bytes, unit_type: UnitTypeRow, tolerances: ToleranceRow) -> tuple[str, ...]:

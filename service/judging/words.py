@@ -30,16 +30,16 @@ from service.sessions.words.conditions import Condition, but, condition_of
 
 REPEAT = "repeat the session"
 CORRECT = "correct the file and upload it again"
-STAND = "put the stand right and repeat the session"
-FIXTURE = "seat the block again and repeat the session"
-RESTATE = "state the errors that the readings have and upload the file again"
+STAND = "correct the stand and repeat the session"
+FIXTURE = "remount the block and repeat the session"
+RESTATE = "state the true standard errors and upload the file again"
 ADD = "add positions"
-REPORT = "see what its diagnosis says"
+REPORT = "see its diagnosis"
 ADVICE = {"record": CORRECT, "stand": STAND, "fixture": FIXTURE}
 """By what a cause is of; of a sensor, a session is repeated first."""
-TOO_FEW = "it was not checked for causes, because it has too few positions"
+TOO_FEW = "causes were not checked: too few positions"
 AGAIN = "ask again in some seconds"
-FAILED = "it was not checked for causes"
+FAILED = "causes were not checked"
 
 
 def advice_on_structure(structure: Structure) -> str:
@@ -54,32 +54,32 @@ def advice_on(cause: str) -> str:
 
 
 def named(finding: Finding, size: str) -> str:
-    """``the zero of A2 jumps once and stays (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
+    """``the bias of A2 has one step (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
     what = choice_of(finding) if finding.alternatives else finding.sentence
     return say("{limit}{size}", limit=within(what), size=say(" ({size})", size=size) if size else "")
 
 
 def unexplained(structures: Sequence[Structure], size: str) -> str:
-    """``something is there in A3 that no known cause explains (20 µg, tolerance 50 µg)``."""
+    """``an effect in A3 that no known cause explains (20 µg, tolerance 50 µg)``."""
     first = structures[0]
     if first.of_record:
         return within(MIXED_UP)
     where = say(" in {sensors}", sensors=joined(", ", first.sensors)) if first.sensors else " in all sensors"
-    return say("something is there{place} that no known cause explains ({size})", place=where, size=size)
+    return say("an effect{where} that no known cause explains ({size})", where=where, size=size)
 
 
 def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *, named: bool = False) -> str:
-    """``it would be unfit with warm up (A2) in the model``; without a cause: if none of those named acted.
+    """``Unfit with warm up (A2) corrected``; without a cause: if none of those named acted.
 
     ``named``: the causes are those that the diagnosis names.
     """
-    word = uncapitalised(condition_of(verdict).word)
+    word = condition_of(verdict).word
     if named:
-        return say("it would be {verdict} with what was found in the model", verdict=word)
+        return say("{word} with these effects corrected", word=word)
     if not causes:
-        return say("it would be {verdict} if what acts were none of the known causes", verdict=word)
+        return say("{word} if the cause is none of the known ones", word=word)
     names = [cause_on(causes[0], sensors), *(cause_on(cause, ()) for cause in causes[1:])]
-    return say("it would be {verdict} with {names} in the model", verdict=word, names=joined(" and ", names))
+    return say("{word} with {names} corrected", word=word, names=joined(" and ", names))
 
 
 def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], tolerance: float) -> str:
@@ -110,8 +110,8 @@ def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: s
     below = "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})"
     away = say(above if outside > 0 else below, **parts)
     if worth:
-        return say("{difference}, and the temperature alone may be worth {effect}", difference=away, effect=worth)
-    return say("{difference}, and the temperature alone can make or hide a change", difference=away)
+        return say("{away}; temperature alone may account for {worth}", away=away, worth=worth)
+    return say("{away}; temperature alone can cause or hide a change", away=away)
 
 
 def worth_in(parameter: str, sensor: str, size: str) -> str:
@@ -142,19 +142,17 @@ def within(sentence: str) -> str:
     return uncapitalised(clause) if head[1:].islower() or len(head) == 1 else clause
 
 
-FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
-NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
+FIRST_SESSION = "First session of this unit: later sessions are judged against it."
+NEW_EPOCH = "First session after a service: later sessions are judged against it."
 CHOSEN = "Chosen as the reference: the unit's other sessions are judged against it."
 OPENINGS = {Opening.FIRST: FIRST_SESSION, Opening.SERVICE: NEW_EPOCH, Opening.CHOSEN: CHOSEN}
-NOTHING_JUDGED = "Nothing could be judged: no parameter of this session has a tolerance."
+NOTHING_JUDGED = "Not judged: no parameter of this session has a tolerance."
 ALL_PASS = "Every parameter is within its tolerance by more than U; closest to it: {closest}."
 
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
-    """A verdict as it is said wherever it stands: ``Fit, but the zero of A2 jumps once: repeat the session``."""
-    if reservations == ():
-        return condition.word
-    return say("{verdict}{reservations}", verdict=condition.word, reservations=but(reservations))
+    """A verdict as it is said wherever it stands: ``Fit, but the bias of A2 has one step: repeat the session``."""
+    return say("{word}{but}", word=condition.word, but=but(reservations)) if reservations != () else condition.word
 
 
 def unit_in_words(unit: UnitSummary) -> str:
@@ -187,7 +185,7 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
         return say(
             ALL_PASS,
             closest=say(
-                "{place}, moved {change} (U {spread}) of {tolerance} allowed",
+                "{place}, changed by {change} (U {spread}), tolerance ±{tolerance}",
                 place=place,
                 change=moved,
                 spread=spread,
@@ -196,7 +194,7 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
         )
     if worst.verdict is Verdict.FAIL:
         return say(
-            "{place} moved {change} (U {spread}) beyond the tolerance of {tolerance}.",
+            "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}.",
             place=place,
             change=moved,
             spread=spread,
@@ -204,7 +202,7 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
         )
     if worst.verdict is Verdict.CONDITIONAL_FAIL:
         return say(
-            "{place} moved {change} (U {spread}): beyond the tolerance of {tolerance}, by less than U.",
+            "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance} by less than U.",
             place=place,
             change=moved,
             spread=spread,
@@ -212,7 +210,7 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
         )
     if worst.verdict is Verdict.CONDITIONAL_PASS:
         return say(
-            "{place} moved {change} (U {spread}): within the tolerance of {tolerance}, by less than U.",
+            "{place} changed by {change} (U {spread}), within the tolerance of ±{tolerance} by less than U.",
             place=place,
             change=moved,
             spread=spread,
@@ -224,15 +222,15 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
 def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
     if worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
-            "{place} is known to U {spread} only, more than its tolerance of {tolerance}: measure more "
-            "positions or better averages, or set a tolerance that can be decided.",
+            "{place} has U {spread}, more than its tolerance of ±{tolerance}: measure more positions, average longer, "
+            "or set a wider tolerance.",
             place=place,
             spread=spread,
             tolerance=allowed,
         )
     return say(
-        "{place} moved {change} (U {spread}), beyond the tolerance of {tolerance} but no more than "
-        "noise makes the largest of so many numbers: measure again.",
+        "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}, but noise alone can do this "
+        "to one of so many parameters: measure again.",
         place=place,
         change=moved,
         spread=spread,
@@ -245,10 +243,10 @@ def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     named = joined(", ", sensors[:6]) + (
         say(" and {sensors} more", sensors=len(sensors) - 6) if len(sensors) > 6 else ""
     )
-    missing = "has none in the reference session to compare with"
+    missing = "cannot be compared: the reference session does not have it"
     if worst.value is None:
-        missing = "is not observable in this session: add the positions that show it"
-    return say("{worst} of {parameters} {missing}.", worst=capitalised(_name(worst)), parameters=named, missing=missing)
+        missing = "is not observable in this session: add positions"
+    return say("{worst} of {named} {missing}.", worst=capitalised(_name(worst)), named=named, missing=missing)
 
 
 def _name(decision: Decision) -> str:
@@ -259,10 +257,10 @@ def _words(decision: Decision, si: float, *, signed: bool = False) -> str:
     return in_words(decision.kind, decision.parameter, si, signed=signed)
 
 
-ALIKE = "with one another as they did at the calibration"
-SAME = say("The sensors agree {tolerance}", tolerance=ALIKE)
-CHANGED = say("The sensors do not agree {tolerance}", tolerance=ALIKE)
-TOO_MUCH_MOTION = "Moving too much to tell"
+ALIKE = "with one another as at the calibration"
+SAME = say("The sensors agree {alike}", alike=ALIKE)
+CHANGED = say("The sensors do not agree {alike}", alike=ALIKE)
+TOO_MUCH_MOTION = "Too much motion for a decision"
 REST = 15
 """Blocks at rest that are asked for: twelve are needed, and the first and the last are never whole."""
 MOSTLY_MOTION = 0.5
@@ -282,9 +280,9 @@ def recording_in_words(result: ParityResult, decisions: tuple[Decision, ...]) ->
     if result.detected:
         return say("{result}.", result=found)
     if not unseen:
-        allowed = ", with what motion does allowed for" if result.moving else ""
+        allowed = ", motion taken into account" if result.moving else ""
         return say(
-            "{result}{limit}: a change as large as any tolerance would have been seen.", result=SAME, limit=allowed
+            "{same}{allowed}: a change as large as any tolerance would have been detected.", same=SAME, allowed=allowed
         )
     return (
         say("{result}.", result=found)
@@ -297,8 +295,8 @@ def found_in_words(result: ParityResult) -> str:
     """What was found, without its full stop."""
     if result.moving:
         return say(
-            "{too_much_motion}: the sensors disagree, and lever arms, delays between channels or "
-            "vibration could be why; {result}",
+            "{too_much_motion}: the sensors disagree, possibly because of lever arms, delays between channels or "
+            "vibration; {result}",
             too_much_motion=TOO_MUCH_MOTION,
             result=stillness(result),
         )
@@ -307,8 +305,7 @@ def found_in_words(result: ParityResult) -> str:
     best = result.candidates[0]
     if not result.explained:
         return say(
-            "A change that no single sensor explains; {sensor} explains most of it. Calibrate the "
-            "unit before it is used",
+            "No single sensor explains the change; {sensor} explains most of it. Calibrate the unit before use",
             sensor=best.sensor,
         )
     if result.isolated is not None:
@@ -328,7 +325,7 @@ def found_in_words(result: ParityResult) -> str:
         ),
     )
     return say(
-        "Something has changed since the calibration, and this recording cannot tell what: {suspects}", suspects=listed
+        "A parameter has changed since the calibration; this recording cannot tell which: {listed}", listed=listed
     )
 
 
@@ -336,8 +333,8 @@ def stillness(result: ParityResult) -> str:
     """What to do so that motion does not hide a change."""
     seconds = REST * (result.block_seconds or 1.0)
     return say(
-        "hold the unit still for {seconds} s while recording, or state where its sensors sit "
-        "(position_m) and record its gyros beside them",
+        "hold the unit still for {seconds} s while recording, or state where its sensors are (position_m) and record "
+        "its gyros too",
         seconds=f"{seconds:.0f}",
     )
 
@@ -348,9 +345,7 @@ def clipped_in_words(result: ParityResult, sensor: str) -> str:
     return (
         ""
         if share is None
-        else say(
-            "{sensor} stood at the end of its range in {share} of the samples", sensor=sensor, share=percent(share)
-        )
+        else say("{sensor} was at the end of its range in {share} of the samples", sensor=sensor, share=percent(share))
     )
 
 
@@ -381,14 +376,15 @@ def _limit(unseen: list[Decision], result: ParityResult) -> str:
     if blind:
         names = {PARAMETER_NAMES[d.parameter] for d in blind}
         return say(
-            "{names} cannot be seen without motion: turn the unit while recording", names=joined(" and ", sorted(names))
+            "{names} cannot be observed without motion: turn the unit while recording",
+            names=joined(" and ", sorted(names)),
         )
     worst = max(unseen, key=lambda d: (d.critical or 0.0) / d.tolerance)
     needed = in_words(worst.kind, worst.parameter, worst.critical or 0.0)
     allowed = in_words(worst.kind, worst.parameter, worst.tolerance)
-    longer = "record longer, with slower turns, or set a tolerance that can be decided"
+    longer = "record longer, turn more slowly, or set a wider tolerance"
     return say(
-        "{sensor} {parameter_names} must change by {change} to be seen, and {tolerance} are allowed: {longer}",
+        "a change of {sensor} {parameter_names} is detected from {change} on, tolerance ±{tolerance}: {longer}",
         sensor=worst.sensor,
         parameter_names=PARAMETER_NAMES[worst.parameter],
         change=needed,

@@ -19,8 +19,9 @@ from service.groups.store import Groups
 from service.groups.words import over, since_in_words
 from service.models.records import ModelRevision, NewLasting, Pooled, Progress, Recomputation, Scope
 from service.models.rules import in_force, pooled_of
+from service.models.sections import gain_of
 from service.models.store import Models, Recomputations
-from service.models.words import gain_of, left_in_words, moved_in_words, progress_of
+from service.models.words import left_in_words, moved_in_words, progress_of
 from service.people.dependencies import SEE_OTHER, By, Number, Why
 from service.records.dependencies import ReceptionOf
 from service.records.models import accept_lasting, withdraw_model

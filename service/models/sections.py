@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.diagnosis.words.causes import cause_on
+from service.diagnosis.words.gain import gain_in_words
 from service.models.records import ModelRevision
-from service.models.words import gain_of
 
 
 @dataclass(frozen=True)
@@ -21,6 +21,12 @@ class AcceptedCause:
     note: str
     gain: str
     """What it gained, in one sentence."""
+
+
+def gain_of(revision: ModelRevision) -> str:
+    """What an accepted cause gained for its sensors in the session that showed it; empty where none was measured."""
+    evidence = revision.evidence
+    return "" if evidence is None or evidence.gain is None else gain_in_words(evidence.gain, revision.sensors)
 
 
 def accepted_causes(revisions: Sequence[ModelRevision]) -> tuple[AcceptedCause, ...]:

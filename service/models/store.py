@@ -2,10 +2,10 @@
 
 from dataclasses import asdict, dataclass
 from datetime import datetime
-from typing import Any
 
 from sqlalchemy import ColumnElement, String, and_, bindparam, cast, func, or_, select, update
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
@@ -34,12 +34,12 @@ from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
 
-def evidence_to_dict(evidence: Evidence | None) -> dict[str, Any]:
+def evidence_to_dict(evidence: Evidence | None) -> Json:
     """The document of a revision's evidence; empty for a withdrawal."""
     return {} if evidence is None else STORED.written(evidence)
 
 
-def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
+def evidence_from_dict(entry: Json) -> Evidence | None:
     """Reads a document of `evidence_to_dict`."""
     return STORED.read(Evidence, entry) if entry else None
 
@@ -291,7 +291,7 @@ def _of(task: Task) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     return RecomputationRow.revision == task.revision, RecomputationRow.unit_id == unit
 
 
-def _read(document: dict[str, Any]) -> Recomputed:
+def _read(document: Json) -> Recomputed:
     """Reads a document of `settle`."""
     furthest = document["furthest"]
     return Recomputed(

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 
 from estimator.message import say, without_stop
-from service.diagnosis.words.gain import gain_in_words
 from service.kit.measures import COVERAGE, HARD, PARAMETER_NAMES, THIN, Measure, decimals, deviation_measure, number
-from service.models.records import ModelRevision, MovedParameter, Progress, Recomputation
+from service.models.records import MovedParameter, Progress, Recomputation
 
 GIVEN_UP = (
     "The program failed at it, several times: its sessions keep what they had. An administrator can try again: see "
@@ -14,12 +13,6 @@ GIVEN_UP = (
 AGAIN = "The last try failed: {why}. It is tried again by itself."
 CANCELLED = "Cancelled before its turn: its sessions keep what they had."
 NO_CHANGE = "no parameter moved"
-
-
-def gain_of(revision: ModelRevision) -> str:
-    """What an accepted cause gained for its sensors in the session that showed it; empty where none was measured."""
-    evidence = revision.evidence
-    return "" if evidence is None or evidence.gain is None else gain_in_words(evidence.gain, revision.sensors)
 
 
 def progress_of(recomputations: Sequence[Recomputation]) -> str:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
-from typing import Any
 
 import numpy as np
 from sqlalchemy import ColumnElement, Row, Select, delete, func, or_, select
@@ -12,12 +11,13 @@ from estimator.health.error_laws import FREEDOMS
 from estimator.health.fits import PART_KINDS, PARTS, WALKS
 from estimator.health.pooled import Evidence
 from estimator.health.shapes import Kind
+from estimator.json_object import Json
 from estimator.session import IN_SERVICE
 from service.outlook.populations import Placed, Population
 from service.outlook.records import DueDate, ParameterTrend, Rate, UnitOutlook
 from service.outlook.tables import HistoryRow, OutlookRow, PopulationRow
 from service.sessions.states_store import IS_ACCEPTED
-from service.sessions.tables import DecisionRow, SessionRow
+from service.sessions.tables import MOVES_DATES, DecisionRow, SessionRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.types.store import counts_for_type
@@ -25,14 +25,14 @@ from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
 
-def outlook_to_dicts(outlook: UnitOutlook) -> tuple[dict[str, Any], dict[str, Any]]:
+def outlook_to_dicts(outlook: UnitOutlook) -> tuple[Json, Json]:
     """What `outlook_from_dicts` reads; times are ISO 8601."""
-    written: dict[str, Any] = STORED.written(outlook)
+    written: Json = STORED.written(outlook)
     fans = [trend.pop("fan") for trend in written["trends"]]
     return written, {"risk": written.pop("risk"), "fans": fans}
 
 
-def outlook_from_dicts(document: dict[str, Any], drawn: dict[str, Any] | None = None) -> UnitOutlook:
+def outlook_from_dicts(document: Json, drawn: Json | None = None) -> UnitOutlook:
     """The outlook that was written; without its fans and its risk where what is drawn was left in the store."""
     if drawn is None:
         return STORED.read(UnitOutlook, document)
@@ -77,9 +77,6 @@ def unpacked(content: bytes) -> tuple[Evidence, ...]:
 
 MOST_UNITS = 60
 """Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
-
-MOVES_DATES = or_(~SessionRow.is_check, SessionRow.is_reference)
-"""A check moves no date; one that is a reference counts, for all changes are counted from it."""
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ def drift_stands_out(sensor: str, parameter: str, value: float) -> str:
 def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
     """Of one parameter of a lot."""
     return say(
-        "Lot {lot} of {unit_type}: {parameter_names} drifts unlike that of the other units.",
+        "Lot {lot} of {unit_type}: {parameter_names} drifts unlike in the other units.",
         lot=lot,
         unit_type=unit_type,
         parameter_names=PARAMETER_NAMES[parameter],
@@ -55,11 +55,10 @@ def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
 
 
 CHANGED = {
-    "jump": "{what} has jumped between {after} and {before} by {moved}; {allowed} are allowed.",
-    "drift": "{what} has been drifting since {after} by {moved}; {allowed} are allowed.",
-    "aging": "{what} is aging since {after}, by {moved} in the first year and slower from then on; "
-    "{allowed} are allowed.",
-    "walk": "{what} has moved since {after}, at no steady rate; by {moved} so far; {allowed} are allowed.",
+    "jump": "{what} jumped by {moved} between {after} and {before}; tolerance ±{allowed}.",
+    "drift": "{what} has drifted at {moved} since {after}; tolerance ±{allowed}.",
+    "aging": "{what} has aged since {after}: {moved} in the first year, then more slowly; tolerance ±{allowed}.",
+    "walk": "{what} has changed by {moved} since {after}, at no steady rate; tolerance ±{allowed}.",
 }
 
 
@@ -71,7 +70,7 @@ def changes_of(trend: ParameterTrend) -> tuple[str, ...]:
 
 
 def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
-    """``A3 bias has jumped between 2 Mar 2026 and 4 May 2026 by +40 ± 3 µg; 50 µg are allowed.``"""
+    """``A3 bias jumped by +40 ± 3 µg between 2 Mar 2026 and 4 May 2026; tolerance ±50 µg.``"""
     rate = _sized(trend, change.size, change.sigma, "{rate} a year")
     return say(
         CHANGED[change.kind],
@@ -114,9 +113,9 @@ def place_of(trend: ParameterTrend) -> str:
 
 def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
     return say(
-        "{sensor} follows the temperature of the session, by {coefficient}; its trend goes on without that.",
-        sensor=place_of(trend),
-        coefficient=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
+        "{trend} depends on the temperature of the session ({trend2}); the trend is stated without this effect.",
+        trend=place_of(trend),
+        trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
     )
 
 
@@ -128,7 +127,7 @@ def _sized(trend: ParameterTrend, size: float, sigma: float, per: str = "{rate}"
 
 UNFIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 """Verdicts after which no date helps."""
-NOTHING_DUE = "Nothing is due any more."
+NOTHING_DUE = "Nothing is due."
 
 
 def reason_of(basis: DueBasis, due: datetime | None) -> str:
@@ -137,29 +136,29 @@ def reason_of(basis: DueBasis, due: datetime | None) -> str:
         return "No calibration yet."
     if basis.rule is DueRule.RISK and due is not None:
         level = f"{100 * (basis.risk or 0):.0f} %"
-        chance = say("The chance that it is out of tolerance reaches {level} on {date}", level=level, date=day_of(due))
+        chance = say("The risk that it is out of tolerance reaches {level} on {due}", level=level, due=day_of(due))
         return say("{chance}; {basis} contributes most.", chance=chance, basis=_place(basis))
     if basis.rule is DueRule.MAY_BE_OUT:
-        return say("{basis} may be out of its tolerance already. Measure it again.", basis=_place(basis))
+        return say("{basis} may already be out of tolerance. Measure it again.", basis=_place(basis))
     return _since(basis, day_of(basis.at))
 
 
 def _since(basis: DueBasis, day: str) -> str:
     """By a rule that names the day it starts from."""
     interval = say(
-        "calibrate every {interval_days} at least", interval_days=counted(round(basis.interval_days or 0), "day")
+        "calibrate at least every {interval_days}", interval_days=counted(round(basis.interval_days or 0), "day")
     )
     if basis.rule is DueRule.INTERVAL:
         return say("Last calibrated on {day}; {interval}.", day=day, interval=interval)
     if basis.rule is DueRule.NO_TREND:
-        return say("Last calibrated on {day}, which shows no trend yet; {interval}.", day=day, interval=interval)
+        return say("Last calibrated on {day}; no trend known yet; {interval}.", day=day, interval=interval)
     if basis.rule is DueRule.UNFIT:
         return say(
             "Found out of tolerance on {day}: adjust, repair or withdraw it, record the service and measure it again.",
             day=day,
         )
     if basis.rule is DueRule.UNDECIDED:
-        return say("The session of {day} did not decide. {reason}", day=day, reason=basis.because)
+        return say("The session of {day} is undecided. {because}", day=day, because=basis.because)
     return say("Serviced on {day}: measure it again.", day=day)
 
 
@@ -239,7 +238,7 @@ def next_calibration(outlook: UnitOutlook, now: datetime) -> NextCalibration:
 def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:
     found = [text for trend in trends for text in changes_of(trend)]
     found += [_wandered(trend) for trend in trends if has_moved(trend) and not trend.changes]
-    return tuple(found) if found or not trends else ("No parameter has changed beyond what chance explains.",)
+    return tuple(found) if found or not trends else ("No parameter has changed significantly.",)
 
 
 def has_moved(trend: ParameterTrend) -> bool:
@@ -252,7 +251,7 @@ def _wandered(trend: ParameterTrend) -> str:
     moved = signed(trend.level, COVERAGE * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return say(
-        "{trend} has moved by {change}, at no steady rate; {tolerance} are allowed.",
+        "{trend} has changed by {change}, at no steady rate; tolerance ±{tolerance}.",
         trend=place_of(trend),
         change=moved,
         tolerance=allowed,

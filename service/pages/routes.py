@@ -34,6 +34,8 @@ from service.people.dependencies import Key, StorageOf
 from service.people.view_store import SavedViews
 from service.people.views import ListPage
 from service.planning.pattern import type_names
+from service.queue.store import PendingWork
+from service.queue.words import pending_in_words
 from service.records.dependencies import ReceptionOf
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.doubt import Remedies
@@ -82,6 +84,7 @@ def show_fleet(
         stands=announced.stands,
         questioned=announced.questioned,
         choices=Fleet(store).choices(),
+        pending=pending_in_words(PendingWork(store).counts()),
         kept=saved(SavedViews(store).of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
     )
     return render(request, "fleet.html", shown)

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.store import Fleet
@@ -39,7 +40,7 @@ PDF, XML = "application/pdf", "application/xml"
 """Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
 """How OpenAPI describes a file."""
-FILES: dict[int | str, dict[str, Any]] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
+FILES: dict[int | str, Json] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
 Format = Annotated[
     Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
 ]

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from estimator.applied_vector import magnitude, stand_geometry
 from estimator.calibration.calibrate import averaged
 from estimator.codec import json_numbers
 from estimator.correction import BlockCorrection, Correction, SensorCorrection, correction_of
+from estimator.json_object import Json
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array, CalibrationSession
 from service.errors import NotFoundError
@@ -66,7 +66,7 @@ def corrected(storage: Storage, id: str) -> Corrected:
     return Corrected(stored, calibration, session, correction, revisions)
 
 
-def correction_document(storage: Storage, id: str) -> dict[str, Any]:
+def correction_document(storage: Storage, id: str) -> Json:
     """imu-correction/1; NotFoundError where the session's programme gives none."""
     result = corrected(storage, id)
     return {
@@ -83,7 +83,7 @@ def _reasons(correction: Correction) -> Iterator[str]:
     yield from (f"{name}: {why}" for name, why in correction.left_out)
 
 
-def _identity(stored: StoredSession, calibration: Calibration) -> dict[str, Any]:
+def _identity(stored: StoredSession, calibration: Calibration) -> Json:
     return {
         "format": "imu-correction/1",
         "unit": stored.unit,
@@ -99,7 +99,7 @@ def _identity(stored: StoredSession, calibration: Calibration) -> dict[str, Any]
     }
 
 
-def _block(block: BlockCorrection, session: CalibrationSession) -> dict[str, Any]:
+def _block(block: BlockCorrection, session: CalibrationSession) -> Json:
     unit = _unit(block)
     return {
         "kind": block.kind,
@@ -114,7 +114,7 @@ def _unit(block: BlockCorrection) -> str:
     return "m/s²" if block.kind == ACCELEROMETER else "rad/s"
 
 
-def _sensor(sensor: SensorCorrection, unit: str) -> dict[str, Any]:
+def _sensor(sensor: SensorCorrection, unit: str) -> Json:
     per = "rad" if sensor.count_time else unit
     return {
         "name": sensor.name,
@@ -135,7 +135,7 @@ def _sensor(sensor: SensorCorrection, unit: str) -> dict[str, Any]:
     }
 
 
-def _example(block: BlockCorrection, session: CalibrationSession) -> dict[str, Any]:
+def _example(block: BlockCorrection, session: CalibrationSession) -> Json:
     """The first row of the session, corrected step by step."""
     names = [sensor.name for sensor in session.sensors]
     readings = session.readings[0, [names.index(sensor.name) for sensor in block.sensors]]
@@ -196,7 +196,7 @@ def _assumed(block: BlockCorrection) -> str:
     return f"quadratic term of {', '.join(names)}: not observed by this session, taken as zero" if names else ""
 
 
-def _revision(revision: ModelRevision) -> dict[str, Any]:
+def _revision(revision: ModelRevision) -> Json:
     """An accepted cause: the parameters were estimated with it in the model, the formula does not contain it."""
     evidence = evidence_to_dict(revision.evidence)
     return {

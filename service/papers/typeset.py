@@ -11,6 +11,7 @@ from typing import Any
 import typst
 import vl_convert
 
+from estimator.json_object import Json
 from service.kit.printable import printable_data
 from service.languages import typst_sources
 from service.languages.catalogue import catalogue_of
@@ -88,7 +89,7 @@ def picture(charts: ChartSet, panel: Panel, width: int, language: Language = Lan
     definition = {**charts.spec, "datasets": {**charts.spec.get("datasets", {}), **panel.datasets}, "width": width}
     if language is not Language.ENGLISH:
         definition = catalogue_of(language).chart(definition)
-    spec: dict[str, Any] = json.loads(VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(definition)))
+    spec: Json = json.loads(VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(definition)))
     spec["config"]["font"] = LAYOUT_FONT
     svg: str = vl_convert.vegalite_to_svg(spec)
     return svg.replace(LAYOUT_FONT, PRINT_FONT)

@@ -4,9 +4,12 @@ route is open by oversight."""
 from collections.abc import Iterable, Mapping
 
 from service.kit.person import Role
+from service.sessions.records import MARKS
 from service.web.headers import API
 
 UNIT, SESSION = f"{API}/units/{{serial:path}}", f"{API}/sessions/{{id}}"
+MARKED = "\n".join(f"POST /sessions/{{id}}/{word}\nPUT {SESSION}/{word}" for word in MARKS)
+"""What is said of a session with yes or no."""
 Route = tuple[str, str]
 """Method and path as in the route table."""
 
@@ -126,7 +129,7 @@ POST /sessions/{{id}}/notes
 POST /attachments
 POST /attachments/{{id}}/withdraw
 POST /sessions/{{id}}/stage
-POST /sessions/{{id}}/check
+{MARKED}
 POST {API}/sessions
 POST {API}/layouts/preview
 GET {API}/uploads
@@ -136,7 +139,6 @@ POST {API}/plan/ready
 POST /ready
 POST /missing
 PUT {SESSION}/stage
-PUT {SESSION}/check
 GET {SESSION}/certificate
 GET {API}/certificates
 POST {UNIT}/services

@@ -14,7 +14,6 @@ from estimator.planning import ExpectedSigma, Missing
 from estimator.readiness import DriftOutlook, Readiness, ReadinessState
 from estimator.results import PARAMETERS
 from service.errors import RefusedError
-from service.kit.arriving_files import SentFile
 from service.kit.measures import COVERAGE, MEASURES, THIN, heading, number
 from service.people.dependencies import StorageOf
 from service.planning.charts import readiness_charts
@@ -23,6 +22,7 @@ from service.planning.question import ReadyQuestion, blank
 from service.planning.rules import Asked, missing_of, readiness_of
 from service.planning.words import amount, clock, minutes, missing_in_words, readiness_headline, reasons
 from service.sessions.charts import ChartSet
+from service.sessions.sent import SentFile
 from service.sessions.words.conditions import Condition
 from service.uploads.received import ArrivingOf, LandedFile
 from service.web.dependencies import Reading

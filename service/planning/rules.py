@@ -14,11 +14,12 @@ from estimator.session import CalibrationSession
 from service.errors import NotFoundError, RefusedError
 from service.ingest import in_turn, read_first_rows, read_upload
 from service.ingest.layout.envelope import wrapped
-from service.kit.arriving_files import SentFile, held, where
+from service.kit.arriving_files import held, where
 from service.kit.measures import leading_kind
 from service.planning.pattern import completed, earlier, sensors_of, why_not
 from service.planning.question import PlanQuestion, ReadyQuestion
 from service.sessions.records import PARAMETERS
+from service.sessions.sent import SentFile
 from service.storage import Storage
 from service.types.rules import DEFAULTS, tolerances_of
 from service.types.store import UnitTypes

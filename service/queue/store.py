@@ -32,6 +32,15 @@ RETRY_AT_ONCE: dict[str, Any] = {"state": WorkState.WAITING, "not_before": None,
 _Other = aliased(WorkRow)
 
 
+class PendingWork(Queries):
+    """Work of all kinds that has not failed."""
+
+    def counts(self) -> dict[WorkKind, int]:
+        """How much of each kind is to be done."""
+        counted = select(WorkRow.kind, func.count(func.distinct(WorkRow.key))).where(WorkRow.failed.is_(None))
+        return {WorkKind(kind): count for kind, count in self._session.execute(counted.group_by(WorkRow.kind))}
+
+
 class WorkQueue(Queries):
     """Work of one kind, across all processes of all services on this database."""
 

@@ -22,7 +22,7 @@ from service.records.follow import follow
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Judged
 from service.sessions.doubt import Remedies
-from service.sessions.records import StoredSession
+from service.sessions.records import MARKS, StoredSession
 from service.sessions.states import RecordKind, RecordState, Step
 from service.sessions.states_store import States
 from service.sessions.store import NOT_JUDGED, Sessions
@@ -175,16 +175,16 @@ def _require_choice(store: Store, session: StoredSession) -> None:
         )
 
 
-def set_check(storage: Storage, way: Deriving, id: str, step: Step, *, is_check: bool) -> StoredSession:
+def set_mark(storage: Storage, way: Deriving, id: str, step: Step, word: str, *, is_so: bool) -> StoredSession:
     """Marks a session and works out its unit's dates again; no verdict changes. The same mark again changes nothing."""
     derived: Derived | None = None
     with storage.database.writing() as store:
         Units(store).hold(Sessions(store).get(id).unit)
         session = Sessions(store).get(id)
-        if session.is_check != is_check:
-            Sessions(store).set_check(id, is_check)
-            details = {"unit": session.unit, "is_check": is_check, "why": step.why}
-            Audit(store).write(step.at, step.who, "check", id, details)
+        if (word in session.words) != is_so:
+            Sessions(store).mark(id, **{MARKS[word]: is_so})
+            details = {"unit": session.unit, MARKS[word]: is_so, "why": step.why}
+            Audit(store).write(step.at, step.who, word, id, details)
             derived = derive_again(store, way, session.unit, END_OF_TIME)
     if derived is not None:
         follow(storage, way, session.unit, derived)
@@ -197,7 +197,7 @@ def set_stage(storage: Storage, id: str, stage: str | None, who: str, now: datet
     with storage.database.writing() as store:
         session = Sessions(store).get(id)
         if session.stage != stage:
-            Sessions(store).set_stage(id, stage)
+            Sessions(store).mark(id, stage=stage)
             Audit(store).write(now, who, "stage", id, {"unit": session.unit, "before": session.stage, "stage": stage})
         return Sessions(store).get(id)
 

@@ -9,11 +9,11 @@ from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.plausible import doubts
 from service.judging.reference import known_unit
-from service.kit.arriving_files import Replaced
 from service.records.changes import change
 from service.records.derive_again import Derived, Deriving, derive_again
 from service.records.follow import follow
 from service.sessions.records import StoredSession
+from service.sessions.sent import Replaced
 from service.sessions.states import RecordKind, RecordState, Step
 from service.sessions.states_store import States
 from service.sessions.store import Sessions

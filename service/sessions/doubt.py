@@ -64,11 +64,11 @@ class Doubt:
         remedy = (
             ""
             if self.correction is None
-            else say(" A file with the {correction} would put it right.", correction=self.correction.text)
+            else say(" A file with the {text} would correct it.", text=self.correction.text)
         )
         if self.stands_for is not None:
-            remedy = " Together they would count twice: say which one counts."
-        return say("{place}: {slip}.{remedy}", place=self.what, slip=self.slip, remedy=remedy)
+            remedy = " Together they would count twice: choose the one that counts."
+        return say("{what}: {slip}.{remedy}", what=self.what, slip=self.slip, remedy=remedy)
 
 
 @dataclass(frozen=True)

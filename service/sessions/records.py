@@ -1,8 +1,10 @@
 """Stored sessions, lists of them, and the history of their parameters."""
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, fields
 from datetime import datetime
 from enum import StrEnum
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, computed_field
 
@@ -21,10 +23,36 @@ ALL_PARAMETERS = (*PARAMETERS, "misalignment")
 """With what only a turntable shows."""
 
 
-@answer
+@dataclass(frozen=True, kw_only=True)
+class Marks:
+    """What is said of a session with yes or no, with its file or later; carried whole wherever it goes."""
+
+    is_check: bool = False
+    """Whether it is only a check, which moves no due date unless it is a reference."""
+
+    @property
+    def marks(self) -> dict[str, Any]:
+        """Each by its name."""
+        return {field.name: getattr(self, field.name) for field in fields(Marks)}
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Those that are so, as addresses, forms and lists call them."""
+        return tuple(word for word, name in MARKS.items() if getattr(self, name))
+
+
+MARKS = {field.name.removeprefix("is_"): field.name for field in fields(Marks)}
+"""The word of each mark, and its name."""
+
+
+def marks_said(words: Collection[str]) -> dict[str, Any]:
+    """All marks by their names; those of these words are so."""
+    return {name: word in words for word, name in MARKS.items()}
+
+
 @dataclass(frozen=True)
-class StoredSession:
-    """One stored session."""
+class _StoredSession:
+    """What is known of a stored session without what is said of it."""
 
     id: str
     """The first 20 digits of the content's SHA-256."""
@@ -68,10 +96,14 @@ class StoredSession:
     """The session that stands for a superseded one."""
     temperature: Hidden[float | None] = None
     """°C, the mean over the session; None where it was not recorded."""
-    is_check: bool = False
-    """Whether it is only a check, which moves no due date unless it is a reference."""
     time_since_power_on: float | None = None
     """Seconds from switching the unit on to the first row; null where the file does not say."""
+
+
+@answer
+@dataclass(frozen=True)
+class StoredSession(Marks, _StoredSession):
+    """One stored session."""
 
 
 @dataclass(frozen=True)
@@ -99,10 +131,9 @@ class ParameterValue:
     axis: tuple[float, float, float] | None
 
 
-@answer
 @dataclass(frozen=True)
-class Receipt:
-    """The answer to an upload."""
+class _Receipt:
+    """What an upload is answered with, without what is said of the session."""
 
     id: str
     """The session's id, made from the content: the same bytes have the same id."""
@@ -120,8 +151,12 @@ class Receipt:
     """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
     """`questioned` where the file cannot be as it says; then it tells nothing."""
-    is_check: bool = False
-    """Whether it is only a check; of what was stored before, as that was."""
+
+
+@answer
+@dataclass(frozen=True)
+class Receipt(Marks, _Receipt):
+    """The answer to an upload; of what was stored before everything is as it was."""
 
 
 class SessionOrder(StrEnum):

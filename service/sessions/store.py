@@ -103,14 +103,9 @@ class Sessions(Queries):
         own = {"unit_id": unit, "stand_id": stand, "block": block, **asdict(digests), "basis": NOT_JUDGED}
         self.insert_many(SessionRow, ({**values, **own},))
 
-    def set_stage(self, id: str, stage: str | None) -> None:
-        """Says of a session whether it shows the unit as found or as left."""
-        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(stage=stage))
-        self._session.expire_all()
-
-    def set_check(self, id: str, is_check: bool) -> None:
-        """Says of a session whether it is a check, which moves no date."""
-        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(is_check=is_check))
+    def mark(self, id: str, **said: bool | str | None) -> None:
+        """Writes what is said of a session."""
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(**said))
         self._session.expire_all()
 
     def of_unit(self, serial: str) -> tuple[StoredSession, ...]:

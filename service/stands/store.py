@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import Integer, Select, cast, delete, func, select
 
 from estimator.health.common_motion import SEPARATED
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
@@ -99,7 +100,7 @@ class Stands(Queries):
         return tuple(reversed(found))
 
 
-def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
+def _stands() -> Select[Json | None, str, int, int, datetime | None]:
     """The document of its own health, then the fields of `StandUse`."""
     last = select(func.max(SessionRow.started_at)).where(SessionRow.stand_id == StandRow.id, IS_ACCEPTED)
     counts = (func.coalesce(StandTallyRow.sessions, 0), func.coalesce(StandTallyRow.units, 0))
@@ -111,7 +112,7 @@ def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
     )
 
 
-def _known(document: dict[str, Any] | None, *use: Any) -> KnownStand:
+def _known(document: Json | None, *use: Any) -> KnownStand:
     return KnownStand(StandUse(*use), None if document is None else STORED.read(StandCondition, document))
 
 
@@ -148,7 +149,7 @@ class StandCertificates(Queries):
         for name, row in self._session.execute(query):
             own = found.setdefault(name, [])
             if row is not None:
-                own.append(_certificate(name, row))
+                own.append(certificate_record(name, row))
         return {name: _by_issue(own) for name, own in found.items()}
 
     def of_stand(self, stand: str) -> tuple[StandCertificate, ...]:
@@ -159,7 +160,7 @@ class StandCertificates(Queries):
             .where(StandRow.name == stand)
             .order_by(StandCertificateRow.id)
         )
-        return _by_issue([_certificate(stand, row) for row in self._session.scalars(query)])
+        return _by_issue([certificate_record(stand, row) for row in self._session.scalars(query)])
 
     def known(self, stand: str) -> tuple[StandCertificate, ...]:
         """The same of a stand that must be known."""
@@ -193,5 +194,6 @@ def _by_issue(recorded: Sequence[StandCertificate]) -> tuple[StandCertificate, .
     return tuple(sorted((recorded[place] for place in sorted(last.values())), key=lambda c: c.issued_on))
 
 
-def _certificate(stand: str, row: StandCertificateRow) -> StandCertificate:
+def certificate_record(stand: str, row: StandCertificateRow) -> StandCertificate:
+    """A stored certificate of a stand."""
     return StandCertificate(stand, row.number, row.issued_by, row.issued_on, row.valid_until)

@@ -14,6 +14,7 @@ from typing import Any
 from sqlalchemy import String, select, text
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.kit.answer import answer
 from service.storage.queries import Queries, Store
 from service.storage.tables import Base
@@ -29,7 +30,7 @@ class AuditRow(Base):
     account: Mapped[str] = mapped_column(String(260), server_default="")
     action: Mapped[str] = mapped_column(String(40))
     subject: Mapped[str]
-    details: Mapped[dict[str, Any]]
+    details: Mapped[Json]
     hash: Mapped[str] = mapped_column(String(64), server_default="")
 
 
@@ -58,7 +59,7 @@ class AuditLine:
     """What was done."""
     subject: str
     """To what: a session, a unit, a type, a stand, an account."""
-    details: dict[str, Any]
+    details: Json
     """What before, what after and why, as far as the action has them."""
     hash: str
     """SHA-256 of this line and of the one before it."""
@@ -84,7 +85,7 @@ class Audit(Queries):
         super().__init__(store)
         self._account = store.account
 
-    def write(self, at: datetime, who: str, action: str, subject: str, details: dict[str, Any]) -> None:
+    def write(self, at: datetime, who: str, action: str, subject: str, details: Json) -> None:
         """Records an action; never changed afterwards."""
         row = AuditRow(at=at.astimezone(UTC), who=who, action=action, subject=subject, details=details)
         row.account = self._account

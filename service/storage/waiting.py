@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from pathlib import Path
 
 from service.errors import DamagedError
-from service.kit.arriving_files import Content, Landed, Sent
+from service.kit.arriving_files import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.files import Files, file_hash
 from service.storage.folders import is_name, make_folder, named_durably, named_in, sync_folder, written_whole
@@ -34,9 +34,9 @@ def put_waiting(files: Files, place: str, content: Content) -> None:
         sync_folder(target.parent)
 
 
-def waiting_file(files: Files, sent: Sent) -> Landed:
+def waiting_file(files: Files, place: str, digest: str, size: int) -> Landed:
     """The bytes as they were sent; DamagedError where they are missing."""
-    return Landed(whole_file(files, sent.sha256, (sent.place,)), sent.sha256, sent.size)
+    return Landed(whole_file(files, digest, (place,)), digest, size)
 
 
 def whole_file(files: Files, digest: str, places: Sequence[str]) -> Path:
@@ -48,12 +48,12 @@ def whole_file(files: Files, digest: str, places: Sequence[str]) -> Path:
     raise DamagedError(MISSING)
 
 
-def drop_waiting(files: Files, sent: Sent) -> None:
+def drop_waiting(files: Files, place: str) -> None:
     """Removes what is left of it; an invalid name is none of ours."""
-    if not is_name(sent.place):
+    if not is_name(place):
         return
     with disk_faults():
-        _path(files, sent.place).unlink(missing_ok=True)
+        _path(files, place).unlink(missing_ok=True)
 
 
 def drop_orphaned(files: Files, known: frozenset[str], now: datetime) -> None:

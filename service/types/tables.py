@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.tables import Base
 
 
@@ -31,5 +32,5 @@ class ToleranceRow(Base):
     unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), primary_key=True)
     revision: Mapped[int] = mapped_column(primary_key=True)
     since: Mapped[datetime]
-    tolerances: Mapped[dict[str, Any]]
-    gyro_tolerances: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    tolerances: Mapped[Json]
+    gyro_tolerances: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))

@@ -5,17 +5,18 @@ Without a preference, and for a small file or one that is stored already, the an
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field, TypeAdapter
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.jobs.records import Job, JobKind, under_way
 from service.jobs.store import Jobs
-from service.kit.arriving_files import SentFile, held
+from service.kit.arriving_files import held
 from service.kit.limits import in_force
 from service.kit.person import Person
 from service.languages.language import asked
@@ -26,6 +27,7 @@ from service.planning.question import PlanQuestion
 from service.records.reception import Reception
 from service.sessions.records import StoredSession
 from service.sessions.schemas import SaidSession, said_session
+from service.sessions.sent import SentFile
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 from service.uploads.preview import felt_length, first_rows, preview
@@ -197,7 +199,7 @@ class LayoutColumn(BaseModel):
 class PreviewSchema(BaseModel):
     """A table under a mapping; correct the mapping and send it again, or with the file to `POST /sessions`."""
 
-    mapping: dict[str, Any] = Field(description="imu-mapping/1, complete as it is to be sent.")
+    mapping: Json = Field(description="imu-mapping/1, complete as it is to be sent.")
     remembered: bool = Field(description="Whether it is that of an earlier file with the same headings.")
     fingerprint: str = Field(description="SHA-256 of the headings.")
     rows: int = Field(description="Of the file.")

@@ -18,11 +18,11 @@ from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.plausible import doubts
 from service.judging.reference import known_unit
-from service.kit.arriving_files import Replaced, SentFile
 from service.records.reception import Reception
 from service.records.supersede import supersede_session
 from service.sessions.doubt import Correction, Doubt, Remedies, Remedy, remedies_among
 from service.sessions.records import Receipt
+from service.sessions.sent import Replaced, SentFile
 from service.sessions.states import RecordState, StateChange
 from service.sessions.store import Sessions
 from service.storage import Storage
@@ -47,9 +47,9 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
         session_document(corrected(source, corrections, say("Corrected: {done}.", done=summary)))
     ).encode()
     with reception.storage.database.reading() as store:
-        is_check = Sessions(store).get(id).is_check
+        marks = Sessions(store).get(id).marks
     replaced = Replaced(id, by, say("corrected: {done}", done=summary))
-    return receive(reception, SentFile(f"{id}-corrected.json", content, replaces=replaced, is_check=is_check), now)
+    return receive(reception, SentFile(f"{id}-corrected.json", content, replaces=replaced, **marks), now)
 
 
 def remedies_of(storage: Storage, id: str, states: Sequence[StateChange]) -> Remedies:

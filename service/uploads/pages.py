@@ -8,10 +8,10 @@ from service.diagnosis.sections import DiagnosisLine, diagnosis_line
 from service.errors import RefusedError
 from service.jobs.records import Job
 from service.jobs.words import ending_of, progress_of
-from service.kit.arriving_files import SentFile
 from service.kit.limits import in_force
 from service.sessions.doubt import Reservations
 from service.sessions.records import DiagnosisSummary, Receipt, StoredSession
+from service.sessions.sent import SentFile
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import QUESTIONED, Condition, condition_of
 from service.settings import Settings

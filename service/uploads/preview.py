@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.writing import session_document
@@ -35,13 +36,13 @@ NO_STAND = {"id": ""}
 class Preview:
     """A table under a mapping."""
 
-    mapping: dict[str, Any]
+    mapping: Json
     """Complete: with the settings of the parser."""
     fingerprint: str
     """Of the headings."""
     remembered: bool
     """Whether the mapping is that of an earlier file."""
-    seen: dict[str, Any]
+    seen: Json
     """Result of the first look: headings, cells, sheets."""
     session: CalibrationSession | None
     """As it would be stored; None while something is missing."""
@@ -69,7 +70,7 @@ def preview(
     return Preview(complete, fingerprint(look), is_remembered, look, session, problems)
 
 
-def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: str) -> tuple[dict[str, Any], bool]:
+def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: str) -> tuple[Json, bool]:
     """The mapping of the last file with this layout, or of the last session of the unit or its type."""
     with storage.database.reading() as store:
         if unit and not unit_type and Units(store).exists(unit):
@@ -84,17 +85,17 @@ def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: s
     return {"columns": columns, "session": _with_unit(found, unit)}, False
 
 
-def _log_facts(look: Mapping[str, Any]) -> dict[str, Any]:
+def _log_facts(look: Mapping[str, Any]) -> Json:
     """Facts of a log that differ between logs of the same layout."""
     return {key: value for key, value in look["facts"].items() if key in OF_A_LOG}
 
 
-def _with_unit(facts: Mapping[str, Any], unit: str) -> dict[str, Any]:
+def _with_unit(facts: Mapping[str, Any], unit: str) -> Json:
     """The facts with the given unit, or else that of the file."""
     return {**facts, "unit": unit or facts.get("unit", "")}
 
 
-def facts_of(storage: Storage, unit: str, unit_type: str) -> dict[str, Any]:
+def facts_of(storage: Storage, unit: str, unit_type: str) -> Json:
     """Facts of the last session of the unit or type that also hold for the next; else none."""
     try:
         last = earlier(storage, unit, unit_type)
@@ -106,7 +107,7 @@ def facts_of(storage: Storage, unit: str, unit_type: str) -> dict[str, Any]:
     return {key: value for key, value in document.items() if key not in ("format", "table", *PER_FILE_FIELDS)}
 
 
-def _unknown(columns: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def _unknown(columns: Sequence[Mapping[str, Any]]) -> Json:
     """Sensors from the headings, of a block of which nothing else is known."""
     sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
     gyros = sum(str(column["as"]).startswith("G") for column in sensor_columns)
@@ -146,15 +147,15 @@ def _read(
         return None, fault.problems
 
 
-def first_rows(session: CalibrationSession) -> list[dict[str, Any]]:
+def first_rows(session: CalibrationSession) -> list[Json]:
     """The first rows as they will be stored, SI: angles in rad, readings in m/s² or rad/s."""
     count_time = session.count_time or 1.0
     offset = np.array([sensor.nominal_offset or 0.0 for sensor in session.sensors])
     scale = np.array([sensor.nominal_scale for sensor in session.sensors])
     inputs = (session.readings[:FIRST_ROWS] - offset) / (scale * count_time)
-    rows: list[dict[str, Any]] = []
+    rows: list[Json] = []
     for j, inputs_of_row in enumerate(inputs):
-        row: dict[str, Any] = {} if session.flipped is None else {"run": "flipped" if session.flipped[j] else "direct"}
+        row: Json = {} if session.flipped is None else {"run": "flipped" if session.flipped[j] else "direct"}
         for name, column in (
             ("beta_rad", session.beta),
             ("time_s", session.time),

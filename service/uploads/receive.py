@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import Any
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import changed, say
 from service.errors import RefusedError
 from service.ingest import in_turn, look_at
@@ -23,7 +24,7 @@ from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.reference import KnownUnit, known_unit
-from service.kit.arriving_files import NOTHING_STATED, Content, Received, Replaced, SentFile, Stated, held, where
+from service.kit.arriving_files import Content, held, where
 from service.models.rules import model_for
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -37,6 +38,7 @@ from service.records.supersede import give_way, settled_by, supersede
 from service.sessions.decision import Verdict
 from service.sessions.doubt import remedies_among
 from service.sessions.records import Digests, Receipt, StoredSession
+from service.sessions.sent import NOTHING_STATED, Received, Replaced, SentFile, Stated
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -300,8 +302,8 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         stage=session.stage,
         reservations=None,
         temperature=None if session.temperature is None else float(session.temperature.mean()),
-        is_check=received.is_check,
         time_since_power_on=session.time_since_power_on,
+        **received.marks,
     )
 
 
@@ -316,7 +318,7 @@ def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
         is_reference=record.is_reference,
         reservations=record.reservations,
         state=record.state,
-        is_check=record.is_check,
+        **record.marks,
     )
 
 
@@ -333,7 +335,7 @@ def receive_mapped(reception: Reception, file: SentFile, mapping: Mapping[str, A
     return receipt
 
 
-def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
+def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[Json, str]:
     """The mapping with all settings of the parser, so that the file is always read in the same way."""
     try:
         layout_of(mapping, file.filename)

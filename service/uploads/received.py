@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass, replace
 from io import BytesIO
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Depends, Query, Request
 from python_multipart.exceptions import FormParserError
@@ -13,17 +13,20 @@ from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException, MultiPartParser
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import ForbiddenError, RefusedError, TooLargeError
 from service.ingest.formats import may_be_log
 from service.ingest.layout.envelope import mapping_of
-from service.kit.arriving_files import Content, Replaced, SentFile, held
+from service.kit.arriving_files import Content, held
 from service.kit.limits import in_force
 from service.kit.person import Role
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.records.unit_changes import Attaching
+from service.sessions.records import MARKS, marks_said
 from service.sessions.schema import SESSION_FILE
+from service.sessions.sent import Replaced, SentFile
 from service.storage.landing import Landing, Landings
 from service.web.dependencies import UploadSlotOf, limited
 from service.web.fields import LongText, Text
@@ -231,12 +234,12 @@ async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentF
     mapping = (
         held(await mapping_part.content()) if isinstance(mapping_part, LandedFile) else str(mapping_part or "").encode()
     )
-    is_check = str(form.get("check", "")).strip().lower() in YES
+    marks = marks_said([word for word in MARKS if str(form.get(word, "")).strip().lower() in YES])
     replaces, read_by = _replaced(stated | form_fields), _mapping(mapping, name)
-    return SentFile(name, await file.content(), is_check=is_check, replaces=replaces, mapping=read_by)
+    return SentFile(name, await file.content(), replaces=replaces, mapping=read_by, **marks)
 
 
-def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:
+def _mapping(text: bytes, filename: str) -> Json | None:
     """The mapping of a table, from a part of the form, be it a file or not; RefusedError for invalid JSON."""
     if not text.strip():
         return None
@@ -267,7 +270,7 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
 FileOf = Annotated[SentFile, Depends(_received)]
 """The uploaded file."""
 
-REQUEST_BODY: dict[str, Any] = {
+REQUEST_BODY: Json = {
     "requestBody": {
         "required": True,
         "description": "A session file, as the body or as the part `file` of a form.",
@@ -298,8 +301,8 @@ async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:
     """The chosen files."""
     form = await arriving.form(MOST_FILES)
     chosen = [file for file in form.getlist("files") if isinstance(file, LandedFile) and file.filename]
-    is_check = bool(form.get("check"))
-    return tuple([SentFile(file.filename or "upload", await file.content(), is_check=is_check) for file in chosen])
+    marks = marks_said([word for word in MARKS if form.get(word)])
+    return tuple([SentFile(file.filename or "upload", await file.content(), **marks) for file in chosen])
 
 
 FormFiles = Annotated[tuple[SentFile, ...], Depends(_files)]

@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, and_, or_, select, true
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.sessions.store import session_record, session_rows
@@ -99,7 +100,7 @@ class Layouts(Queries):
             self._session.add(LayoutRow(**values, who=who, remembered_at=at))
             self._session.flush()
 
-    def find(self, fingerprint: str, unit_type: str = "", *, only: bool = False) -> dict[str, Any] | None:
+    def find(self, fingerprint: str, unit_type: str = "", *, only: bool = False) -> Json | None:
         """The mapping for units of a type; unless ``only`` or a type is given, also the last one of any."""
         query = select(LayoutRow.mapping).where(LayoutRow.fingerprint == fingerprint)
         typed = query.where(LayoutRow.unit_type == unit_type).order_by(LayoutRow.id.desc()).limit(1)

@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import BYTES
 from service.storage.tables import Base
 
@@ -29,6 +30,6 @@ class LayoutRow(Base):
     id: Mapped[int] = mapped_column(primary_key=True)
     fingerprint: Mapped[str] = mapped_column(String(64), index=True)
     unit_type: Mapped[str] = mapped_column(String(200))
-    mapping: Mapped[dict[str, Any]] = mapped_column(JSON)
+    mapping: Mapped[Json] = mapped_column(JSON)
     who: Mapped[str]
     remembered_at: Mapped[datetime]

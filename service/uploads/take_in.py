@@ -23,10 +23,10 @@ from service.ingest.checked import plain_filename
 from service.jobs.changes import UploadHooks, require_room
 from service.jobs.records import KILOBYTE, Job, JobFailure, JobKind, NewJob
 from service.jobs.store import Jobs
-from service.kit.arriving_files import Received, Sent, SentFile
 from service.kit.person import Person
 from service.records.reception import Reception
 from service.sessions.records import Receipt
+from service.sessions.sent import Received, Sent, SentFile
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -67,10 +67,10 @@ def ask_upload(storage: Storage, file: SentFile, person: Person, place: str, now
             existing = next((job for job in Jobs(store).sending(digest) if _is_same(job, new)), None)
             job = _added(store, new, now) if existing is None else existing
     except BusyError:
-        drop_waiting(storage.files, sent)
+        drop_waiting(storage.files, place)
         raise
     if existing is not None:
-        drop_waiting(storage.files, sent)
+        drop_waiting(storage.files, place)
     return job
 
 
@@ -137,7 +137,7 @@ def take_in(reception: Reception, id: int, now: datetime, tick: Callable[[], Non
             pass
         except FINAL as fault:
             give_up(reception.storage, id, fault.detail, now)
-    drop_waiting(reception.storage.files, job.sent)
+    drop_waiting(reception.storage.files, job.sent.place)
 
 
 def give_up(storage: Storage, id: int, reason: str, now: datetime) -> None:
@@ -146,7 +146,7 @@ def give_up(storage: Storage, id: int, reason: str, now: datetime) -> None:
         job = Jobs(store).get(id)
         Jobs(store).fail(id, JobFailure(job.subject, reason), now)
     if job.sent is not None:
-        drop_waiting(storage.files, job.sent)
+        drop_waiting(storage.files, job.sent.place)
 
 
 def _taken_in(reception: Reception, job: Job, sent: Sent, job_hooks: _JobHooks) -> None:
@@ -154,7 +154,7 @@ def _taken_in(reception: Reception, job: Job, sent: Sent, job_hooks: _JobHooks) 
     acting = replace(storage, database=storage.database.acting(sent.account))
     hooks = UploadHooks(job_hooks.keeping, job_hooks.stored, job_hooks.refused)
     job_reception = replace(reception, storage=acting, who=job.who, course=hooks)
-    file_on_disk = waiting_file(storage.files, sent)
+    file_on_disk = waiting_file(storage.files, sent.place, sent.sha256, sent.size)
     file = SentFile(job.subject, file_on_disk, **sent.stated())
     try:
         with reports_progress_to(job_hooks.read_on):

@@ -16,6 +16,7 @@ import xlsxwriter
 from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import ACCELEROMETER, COUNTERS, GYROSCOPE, PROGRAMMES, STAGES, CalibrationSession
 from estimator.writing import session_document
@@ -56,7 +57,6 @@ def _unchanged(text: str) -> str:
     return text
 
 
-DOCUMENT = dict[str, Any]
 FILLED_IN = ("unit", "started_at", "powered_on_at", "stage", "operator", "notes")
 """Fields that differ from session to session, in the order of the sheet."""
 NOT_COPIED = ("table", "origin", "time_since_power_on_s", *FILLED_IN)
@@ -122,7 +122,7 @@ def _looks(book: xlsxwriter.Workbook) -> dict[str, Format]:
     }
 
 
-def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
+def _session_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
     """Keys, values, and hints; yellow cells are to be filled in."""
     sheet.set_column(0, 0, 30)
     sheet.set_column(1, 1, 34)
@@ -140,7 +140,7 @@ def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
     sheet.protect("", {"format_columns": True, "format_rows": True})
 
 
-def _rows(document: DOCUMENT) -> Iterator[tuple[str, Any]]:
+def _rows(document: Json) -> Iterator[tuple[str, Any]]:
     """Keys and known values, the fields to fill in after the format; the origin is "measured"."""
     known = {key: value for key, value in document.items() if key not in NOT_COPIED}
     yield "format", known.pop("format")
@@ -170,7 +170,7 @@ def _short(value: Any) -> Any:
     return round(value, AXIS_DIGITS) + 0.0 if isinstance(value, float) else value
 
 
-def _readings_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
+def _readings_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
     """The schedule, and empty columns for measured values."""
     columns = _columns(document)
     planned = len(next(iter(columns.values()))) <= MOST_PLANNED and "sample_rate_hz" not in document
@@ -187,7 +187,7 @@ def _readings_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
     sheet.protect("", {"format_columns": True, "insert_rows": True, "delete_rows": True, "sort": True})
 
 
-def _columns(document: DOCUMENT) -> DOCUMENT:
+def _columns(document: Json) -> Json:
     """Of the table, with columns for time, temperature and standard errors that a pattern may lack."""
     table = dict(document["table"])
     rows = len(next(iter(table.values())))
@@ -200,14 +200,14 @@ def _columns(document: DOCUMENT) -> DOCUMENT:
     return settings | readings | {f"{name}_se": table.get(f"{name}_se", [None] * rows) for name in sensors}
 
 
-def _headings(sheet: Worksheet, style: Style, document: DOCUMENT, names: list[str]) -> None:
+def _headings(sheet: Worksheet, style: Style, document: Json, names: list[str]) -> None:
     for place, name in enumerate(names):
         sheet.write_string(0, place, style.words.heading(name), style.looks["head"])
         sheet.write_comment(0, place, style.words.say(_hint(name, document)), {"author": "imu-health"})
     sheet.freeze_panes(1, 0)
 
 
-def _hint(name: str, document: DOCUMENT) -> str:
+def _hint(name: str, document: Json) -> str:
     """Hint for a column, with its unit."""
     for sensor in document["sensors"]:
         if name == sensor["name"]:
@@ -217,7 +217,7 @@ def _hint(name: str, document: DOCUMENT) -> str:
     return COLUMN_HINTS.get(name, "")
 
 
-def _example_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
+def _example_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
     """The first rows filled in, with example values next to them; ignored by an upload."""
     columns = _columns(document)
     _headings(sheet, style, document, list(columns))

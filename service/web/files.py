@@ -8,6 +8,8 @@ from urllib.parse import quote
 import polars as pl
 from fastapi import Request, Response
 
+from estimator.json_object import Json
+
 FORMS = {
     "application/json": "json",
     "text/csv": "csv",
@@ -48,7 +50,7 @@ TIME = pl.Datetime("us", "UTC")
 """Microseconds, as stored by both databases."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 """Schema of a table in OpenAPI."""
-TABLES: dict[str, Any] = {media: BINARY for media, form in FORMS.items() if form != "json"}
+TABLES: Json = {media: BINARY for media, form in FORMS.items() if form != "json"}
 BY_HEADER = {"Vary": "Accept"}
 """Of an answer whose form depends on the header `Accept`."""
 FORMULA = r"^[=+\-@\t\r]"

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import dataclass
-from typing import Any
 from urllib.parse import quote
 
 from fastapi import FastAPI, Request, Response
@@ -10,6 +9,7 @@ from fastapi.responses import RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.kit.log import REQUEST_ID
 from service.web.headers import HEADERS
 from service.web.render import render
@@ -44,7 +44,7 @@ class ProblemPage:
     """Of the request in the log; empty where it has none."""
 
 
-def problem_page(problem: dict[str, Any]) -> ProblemPage:
+def problem_page(problem: Json) -> ProblemPage:
     """The page of a problem+json document."""
     status = int(problem["status"])
     return ProblemPage(

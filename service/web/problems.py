@@ -13,6 +13,7 @@ from starlette.routing import Match
 from starlette.types import Receive, Scope, Send
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, RefusedError, ServiceError, SignInError, TooOftenError
 from service.kit.log import log, request_id
@@ -58,7 +59,7 @@ class ProblemAnswer(JSONResponse):
         await super().__call__(scope, receive, send)
 
 
-def _translated(content: Mapping[str, Any], say: Callable[[str], str]) -> dict[str, Any]:
+def _translated(content: Mapping[str, Any], say: Callable[[str], str]) -> Json:
     """A problem with translated sentences; its keys and fields stay."""
     translated = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
     if "problems" in translated:
@@ -74,7 +75,7 @@ def problem(
     id: str | None = None,
 ) -> ProblemAnswer:
     """The answer to a request that was not carried out; ``id`` where the context does not have it."""
-    content: dict[str, Any] = {
+    content: Json = {
         "type": "about:blank",
         "title": HTTPStatus(status).phrase,
         "status": status,

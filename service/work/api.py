@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.jobs.changes import cancel_job, file_of
 from service.jobs.records import Job, JobKind, NewJob
 from service.jobs.store import Failures, Jobs
@@ -83,7 +84,7 @@ def job_answer(job: Job, problems: Iterable[Problem] = ()) -> JobAnswer:
 
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
-ACCEPTED: dict[int | str, dict[str, Any]] = {
+ACCEPTED: dict[int | str, Json] = {
     202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "Where the job is followed."}}}
 }
 MEDIA_TYPES = {"xlsx": XLSX, "pdf": PDF}

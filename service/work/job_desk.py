@@ -8,12 +8,12 @@ from uuid import uuid4
 from service.jobs.changes import ask_job, retry_failed
 from service.jobs.records import Job, NewJob
 from service.jobs.store import Jobs
-from service.kit.arriving_files import SentFile
 from service.kit.bell import Bell
 from service.kit.guard import FORESEEN, Guard
 from service.kit.metrics import Metrics
 from service.kit.person import Person
 from service.records.reception import Reception
+from service.sessions.sent import SentFile
 from service.storage import Storage
 from service.uploads.take_in import ask_upload, take_in
 from service.work.kinds import JOBS, LEASE, UPLOADS, Kind, work_piece

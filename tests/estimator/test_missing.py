@@ -22,7 +22,7 @@ def rows(document: Document, *kept: int) -> Document:
 
 def after(document: Document, *kept: int, **how: int | bool) -> Missing:
     """What is missing after these rows."""
-    return missing(read_session(rows(document, *kept)), **how)  # type: ignore[arg-type]
+    return missing(read_session(rows(document, *kept)), **how)
 
 
 def test_of_a_run_half_done_the_rest_is_to_come_and_then_the_other_run() -> None:

@@ -171,7 +171,7 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
     for scale in noise_scales(state):
         if scale.factor > BEYOND_NOISE:
             where = say(
-                "scatter {factor} times the stated standard errors: more than noise can be",
+                "scatter {factor} times the stated standard errors: too large for noise",
                 factor=f"{scale.factor:.0f}",
             )
             yield Structure(where, scale.sensors, 0.0, float(np.sqrt(scale.freedom)) * scale.factor)
@@ -179,7 +179,11 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
 
 def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
     """A sensor whose scatter is not that of noise."""
-    where = "scatter that is not distributed as noise is" if unlike.of_its_kind else "scatter far beyond its kind's"
+    where = (
+        "scatter that is not distributed as noise is"
+        if unlike.of_its_kind
+        else ("scatter far larger than that of the other sensors of its kind")
+    )
     where = "readings that switch between levels from row to row" if unlike.switches else where
     return Structure(where, (state.names[unlike.sensor],), unlike.p_value, unlike.strength)
 
@@ -187,8 +191,8 @@ def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
 def place(course: Autocorrelation) -> str:
     """Where a residual lives that fits no pattern, in words."""
     if course.plain:
-        return say("smooth along {order}, in no pattern known", order=course.order)
-    return say("larger than stated, as well noise as smooth along {order}", order=course.order)
+        return say("smooth along {order}, in no known pattern", order=course.order)
+    return say("larger than stated: either noise or a smooth course along {order}", order=course.order)
 
 
 def notes(state: SearchState) -> tuple[str, ...]:
@@ -198,8 +202,8 @@ def notes(state: SearchState) -> tuple[str, ...]:
     far = max(f.best.strength for f in state.in_tails)
     return (
         say(
-            "Single readings lie up to {distance} standard errors off. The errors of all readings have "
-            "such tails: no cause is named for them.",
-            distance=f"{far:.1f}",
+            "Single readings deviate by up to {far} standard errors. All readings have errors with such tails, so no "
+            "cause is named for them.",
+            far=f"{far:.1f}",
         ),
     )

@@ -20,7 +20,7 @@ def shared_course(cause: Cause, finding: Finding, who: str, more: int) -> Findin
     """A finding of sensors that share a course, in words for all of them; ``more`` only follow it."""
     text = capitalised(say(cause.shared_sentence, sensors=who))
     if more:
-        text = joined(" ", (text, say("{number} more follow it below what can be named of one alone.", number=more)))
+        text = joined(" ", (text, say("{more} more follow it too weakly to be named singly.", more=more)))
     return replace(finding, sentence=text, advice=cause.shared_advice)
 
 

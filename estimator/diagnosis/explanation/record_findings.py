@@ -117,8 +117,8 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
     names = tuple(session.sensors[i].name for i in axes.sensors)
     who = "input axes" if names else "the whole block"
     where = say(
-        "{subject_and_verb} {angle}° off: columns, runs or angles of the record are mixed up",
-        subject_and_verb=who,
+        "{who} {angle}° wrong: columns, runs or angles of the record are mixed up",
+        who=who,
         angle=f"{np.degrees(axes.angle):.0f}",
     )
     return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST)), of_record=True),)

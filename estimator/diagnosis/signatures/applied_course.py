@@ -110,7 +110,7 @@ def kernels(setting: Setting) -> Iterator[tuple[str, Array]]:
     yield "the order measured", np.minimum(place[:, None], place) + 1 / setting.rows
     for length in LENGTHS:
         yield "the order measured", bending(place, length)
-    yield "no order: anew at every row", np.eye(setting.rows)
+    yield "no order: independent in every row", np.eye(setting.rows)
     if setting.beta is None or setting.flipped is None:
         return
     same_run = setting.flipped[:, None] == setting.flipped
@@ -118,7 +118,7 @@ def kernels(setting: Setting) -> Iterator[tuple[str, Array]]:
         kernel = around(setting.beta, length)
         yield "β", kernel
         if not same_run.all():
-            yield "β, each run for itself", kernel * same_run
+            yield "β, each run separately", kernel * same_run
 
 
 def hypotheses(setting: Setting) -> Iterator[CourseHypothesis]:
@@ -147,7 +147,7 @@ def changes(setting: Setting) -> Iterator[tuple[str, Array]]:
         yield words, fixed
         if 0 < setting.flipped.sum() < setting.rows:
             yield (
-                say("{course}, each run for itself", course=words),
+                say("{words}, each run separately", words=words),
                 np.concatenate([fixed * flipped, fixed * ~flipped], axis=-1),
             )
 

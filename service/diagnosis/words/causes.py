@@ -15,7 +15,7 @@ EVERY_SENSOR = "every sensor of its kind"
 """Where what a group shows acts on all of them."""
 LEARNED = "empirical term"
 """What a term is called that was learned, in place of a cause."""
-ONE_NOT_KNOWN = "one that is not in the catalogue"
+ONE_NOT_KNOWN = "a cause outside the catalogue"
 COMPARABLE = 3.0
 """Times that one share of probability may be another's and both still pass for equally likely: evidence below that is
 not worth a mention (Jeffreys)."""
@@ -38,6 +38,16 @@ def cause_name(identifier: str) -> str:
 def cause_on(identifier: str, sensors: Sequence[str]) -> str:
     """``bias temperature (A5)``."""
     return cause_name(identifier) + _on(sensors)
+
+
+def weighty_first(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """As they are told: how the block sits in its fixture since earlier sessions, without which it is judged, last."""
+    return tuple(sorted(findings, key=_is_seating))
+
+
+def _is_seating(finding: Finding) -> bool:
+    known = find(finding.cause)
+    return known is not None and known.scope == "fixture" and known.between
 
 
 def is_lone(finding: Finding) -> bool:

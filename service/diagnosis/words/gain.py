@@ -1,8 +1,9 @@
 """What naming causes gains: one sentence with one number for every sensor."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import floor, isfinite, log10
+from statistics import median
 
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Gain
@@ -36,19 +37,27 @@ class HeldOut:
     """Of its kind, before."""
 
 
+Errors = Mapping[str, Mapping[str, float]]
+"""Root mean square of every sensor, m/s² (rad/s), by kind and name."""
+
+
 def gain_in_words(gain: Gain, sensors: Sequence[str] = ()) -> str:
     """``Held-out error of A2 halves: 14 → 7 µg (readings that took no part).``
 
     Of some sensors, or of all where none is named; empty where a version that stated none made it.
     """
-    known = [one for one in _errors(gain) if not sensors or one.sensor in sensors]
-    if not known:
-        return ""
+    parts = errors_in_words(gain.before.rms_by_sensor or {}, gain.after.rms_by_sensor or {}, sensors)
+    return say("Held-out error {parts} (readings that took no part).", parts=parts) if parts else ""
+
+
+def errors_in_words(before: Errors, after: Errors, sensors: Sequence[str] = ()) -> str:
+    """``of A2 halves: 14 → 7 µg; of A5 falls from 9 to 8 µg``: the worst first, the rest counted; empty without any."""
+    known = [one for one in _errors(before, after) if not sensors or one.sensor in sensors]
     worst = sorted(known, key=lambda one: -one.before / one.typical)
     parts = [_of_sensor(one) for one in worst[:NAMED]]
     if len(worst) > NAMED:
         parts.append(say("and {number} more", number=len(worst) - NAMED))
-    return say("Held-out error {parts} (readings that took no part).", parts=joined("; ", parts))
+    return joined("; ", parts) if parts else ""
 
 
 def concerned(findings: Iterable[Finding]) -> tuple[str, ...]:
@@ -57,14 +66,14 @@ def concerned(findings: Iterable[Finding]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(sensor for sensors in each for sensor in sensors)) if all(each) else ()
 
 
-def _errors(gain: Gain) -> Iterator[HeldOut]:
+def _errors(before: Errors, after: Errors) -> Iterator[HeldOut]:
     """Of every sensor of which both errors are known."""
-    before, after = gain.before, gain.after
-    for kind, own in (before.rms_by_sensor or {}).items():
+    for kind, own in before.items():
+        typical = median(own.values())
         for sensor, error in own.items():
-            since = (after.rms_by_sensor or {}).get(kind, {}).get(sensor, 0.0)
+            since = after.get(kind, {}).get(sensor, 0.0)
             if error > 0 and since > 0 and isfinite(error) and isfinite(since):
-                yield HeldOut(sensor, kind, error, since, before.rms_by_kind[kind])
+                yield HeldOut(sensor, kind, error, since, typical)
 
 
 def _of_sensor(one: HeldOut) -> str:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
@@ -61,7 +62,7 @@ def _start(path: Path, count: int) -> bytes:
         return file.read(count)
 
 
-def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
+def unwrapped(content: bytes, filename: str) -> tuple[Json, bytes]:
     """The mapping and the uploaded bytes; FormatError for a damaged archive."""
     try:
         with ZipFile(BytesIO(content)) as archive:
@@ -77,7 +78,7 @@ def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
     return mapping_of(text, filename), table
 
 
-def mapping_of(text: bytes, filename: str) -> dict[str, Any]:
+def mapping_of(text: bytes, filename: str) -> Json:
     """The mapping in a JSON text, not yet checked."""
     if len(text) > LONGEST_MAPPING:
         raise refusal(

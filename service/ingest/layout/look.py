@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Mapping
 from typing import Any
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.ingest import hdf5, mat, parquet
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
@@ -53,7 +54,7 @@ def is_session(content: bytes, filename: str) -> bool:
 
 def look(content: bytes, filename: str) -> object:
     """Preview of a table, with the settings of its mapping where it has one."""
-    table, stated = content, dict[str, Any]()
+    table, stated = content, Json()
     if is_wrapped(content):
         document, table = unwrapped(content, filename)
         stated = dict(layout_of(document, filename).table)
@@ -78,7 +79,7 @@ def look(content: bytes, filename: str) -> object:
     }
 
 
-def _column(heading: str, cells: Any, grid: Grid) -> dict[str, Any]:
+def _column(heading: str, cells: Any, grid: Grid) -> Json:
     decimal = str(grid.taken.get("decimal", "."))
     filled = [cell for cell in cells if not is_nothing(cell)]
     numbers = sum(number_of(cell, decimal) is not None for cell in filled)

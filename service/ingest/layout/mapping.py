@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from estimator.errors import FormatError, Problem
+from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.reading.keys import COLUMNS, TOP
 from estimator.reading.problems import shown
@@ -162,7 +163,7 @@ def meanings(sensors: list[str]) -> tuple[str, ...]:
     return (*sensors, *COLUMNS, *(f"{name}_se" for name in sensors))
 
 
-def remembered(document: Mapping[str, Any]) -> dict[str, Any]:
+def remembered(document: Mapping[str, Any]) -> Json:
     """The mapping for the next file of this layout."""
     session = {key: value for key, value in document.get("session", {}).items() if key not in PER_FILE_FIELDS}
     return {**document, "session": session}

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from estimator.json_object import Json
 from service.ingest.layout.vocabulary import (
     ASIDE,
     BY_WORD,
@@ -43,10 +44,10 @@ class Seen:
     """Meaning stated in the file."""
 
 
-def understood(columns: Sequence[Seen], sensors: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def understood(columns: Sequence[Seen], sensors: Sequence[Mapping[str, Any]]) -> list[Json]:
     """Columns of a mapping; ``sensors`` are those of the unit or its type, empty where unknown."""
     names = {_plain(str(sensor.get("name", ""))): str(sensor.get("name", "")) for sensor in sensors}
-    guesses: list[dict[str, Any]] = []
+    guesses: list[Json] = []
     used: set[str] = set()
     for column in columns:
         guess = _guess(column, names)
@@ -76,9 +77,9 @@ def split_unit(heading: str) -> tuple[str, str]:
     return (match_any["name"], "") if match_any else (heading, "")
 
 
-def _guess(column: Seen, names: Mapping[str, str]) -> dict[str, Any]:
+def _guess(column: Seen, names: Mapping[str, str]) -> Json:
     name, unit = split_unit(column.heading)
-    guess: dict[str, Any] = {"heading": column.heading, "as": None}
+    guess: Json = {"heading": column.heading, "as": None}
     if column.empty:
         return guess
     meaning = column.meaning or _meaning(name, unit, column, names)

@@ -105,6 +105,8 @@ class FleetPage:
     """What the list can be narrowed to."""
     dates: Mapping[str, str]
     """Choices of the next calibration's date, in words."""
+    pending: str
+    """What is still being worked out; empty where nothing is."""
     saved: Saved
     """Views of the list that were kept."""
 
@@ -131,6 +133,7 @@ def fleet_page(
     stands: Sequence[StandCondition] = (),
     questioned: Sequence[Questioned] = (),
     choices: FleetChoices = NO_CHOICES,
+    pending: str = "",
     kept: Saved = NONE_SAVED,
 ) -> FleetPage:
     """One page of units."""
@@ -152,6 +155,7 @@ def fleet_page(
         else "",
         choices=choices,
         dates=DUE,
+        pending=pending,
         saved=kept,
     )
 

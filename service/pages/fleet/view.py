@@ -10,7 +10,7 @@ from service.sessions.decision import Verdict
 from service.sessions.words.conditions import REFERENCE, RESERVED
 from service.web.list_view import Asked, ListView, Words, one_of
 
-DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Act now or repeat"}
+DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Do not use, or repeat"}
 """Choices of the next calibration's date, in words."""
 REFERENCES = {REFERENCE.key: True, Verdict.UNDECIDABLE.value: False}
 """Conditions that tell whether the latest session is a reference."""

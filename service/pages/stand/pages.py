@@ -27,6 +27,8 @@ from service.models.sections import AcceptedCause, accepted_causes
 from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, flags_in_words, fleet_row
 from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.store import Sessions
@@ -64,6 +66,8 @@ class StandLine:
     """Oldest issue first."""
     flags: int
     """How many are open that find it at fault."""
+    is_pending: bool
+    """Whether what stands do is being worked out with the latest records."""
 
 
 @dataclass(frozen=True)
@@ -83,14 +87,16 @@ class StandReport:
 
 
 def every_stand(store: Store) -> tuple[StandLine, ...]:
-    """All stands, by name, in three queries."""
+    """All stands, by name, in four queries."""
     certificates, flags = StandCertificates(store).every(), Flags(store).open_about(*AT_FAULT)
+    is_pending = WorkQueue(store, WorkKind.SUMMARY).count() > 0
     return tuple(
         StandLine(
             use=known.use,
             condition=known.condition,
             certificates=certificates.get(known.use.stand, ()),
             flags=sum(flag.place == known.use.stand for flag in flags),
+            is_pending=is_pending,
         )
         for known in Stands(store).every()
     )
@@ -103,7 +109,13 @@ def stand_report(store: Store, name: str, now: datetime) -> StandReport:
     units = Fleet(store).units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1))
     at_fault = sum(flag.matter in AT_FAULT for flag in flags)
     return StandReport(
-        line=StandLine(known.use, known.condition, StandCertificates(store).of_stand(name), at_fault),
+        line=StandLine(
+            known.use,
+            known.condition,
+            StandCertificates(store).of_stand(name),
+            at_fault,
+            WorkQueue(store, WorkKind.SUMMARY).count() > 0,
+        ),
         flags=flags,
         units=units,
         uses=usable_of(store, units, now),
@@ -151,6 +163,8 @@ class StandPage:
     use: StandUse
     word: StandWord
     reasons: tuple[str, ...]
+    is_pending: bool
+    """Whether what its units show is being worked out."""
     certificates: tuple[tuple[str, str, str, str], ...]
     """Number, issued by, issued on, valid until; the latest first."""
     flags: tuple[FlagCard, ...]
@@ -181,7 +195,8 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
     return StandPage(
         use=line.use,
         word=_word(line, now),
-        reasons=(certificate, condition_in_words(condition)),
+        reasons=(certificate, condition_in_words(condition, is_pending=line.is_pending)),
+        is_pending=condition is None and line.is_pending,
         certificates=tuple(map(_certificate, reversed(line.certificates))),
         flags=flag_cards(report.flags[:MOST]),
         shifts=() if condition is None else _shifts(condition),
@@ -197,8 +212,14 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
 
 def _row(line: StandLine, now: datetime) -> StandRow:
     latest = held(line.certificates, now.date())
-    until = "none on record" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
-    return StandRow(line.use, _word(line, now), condition_in_words(line.condition), until, flags_in_words(line.flags))
+    until = "none recorded" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
+    return StandRow(
+        line.use,
+        _word(line, now),
+        condition_in_words(line.condition, is_pending=line.is_pending),
+        until,
+        flags_in_words(line.flags),
+    )
 
 
 def _word(line: StandLine, now: datetime) -> StandWord:
@@ -223,13 +244,13 @@ def _shift(one: StandEvidence) -> ShiftRow:
         if one.until is None
         else say("{start} to before {end}", start=day_of(one.since), end=day_of(one.until))
     )
-    word, tone = ("shifted", "conditional-fail") if lasts else ("back where it was", "conditional-pass")
+    word, tone = ("shifted", "conditional-fail") if lasts else ("shift has ended", "conditional-pass")
     return _shift_row(one, when, word, tone)
 
 
 def _steady(one: StandEvidence) -> ShiftRow:
     return _shift_row(
-        one, say("most evident since {date}", date=day_of(one.since)), "steady: no more than chance", "pass"
+        one, say("most evident since {since}", since=day_of(one.since)), "stable: no significant change", "pass"
     )
 
 

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 from hashlib import sha256
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 from pydantic import TypeAdapter
 
+from estimator.json_object import Json
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_unit
 from service.kit.answer import answer
@@ -28,7 +29,7 @@ class UsableAnswer(Usable):
 router = APIRouter(prefix="/units", tags=["units"])
 NOT_MODIFIED = 304
 JSON = TypeAdapter(UsableAnswer)
-HELD: dict[int | str, dict[str, Any]] = {
+HELD: dict[int | str, Json] = {
     NOT_MODIFIED: {"description": "The answer that the caller holds is still true, but for `as_of`."}
 }
 

@@ -197,7 +197,7 @@ def statements(found: CertifiedSession) -> Iterator[Element]:
     yield _statement("Uncertainty", uncertainty_in_words(found.report.calibration, nominal_factor_of(decisions)))
     yield _statement("Item", RELATES)
     yield _statement("Reproduction", WHOLE)
-    yield _statement("What the simulation gets wrong", found.diagnosis.summary)
+    yield _statement("Diagnosis", found.diagnosis.summary)
 
 
 def _reference(found: CertifiedSession) -> str:

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any
 
 import altair as alt
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.wording import counted
 from service.fleet.records import LAST, NOT_JUDGED, STEP, Tally
@@ -37,9 +37,9 @@ def is_drawn(tally: Tally) -> bool:
     return tally.bar != NOT_JUDGED and tally.verdict is not Verdict.UNDECIDABLE
 
 
-def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[dict[str, Any]]:
+def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[Json]:
     """Bars with the better conditions below."""
-    rows: list[dict[str, Any]] = []
+    rows: list[Json] = []
     top: dict[int, int] = {}
     for (left, condition), count in sorted(counts.items(), key=lambda item: (item[0][0], -item[0][1].rank)):
         below = top.get(left, 0)
@@ -49,7 +49,7 @@ def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[dict[str, Any]
 
 
 @cache
-def _spec() -> dict[str, Any]:
+def _spec() -> Json:
     names = [condition.formal for condition in CONDITIONS]
     colours = [f"var(--{condition.key})" for condition in CONDITIONS]
     x = alt.X("left:Q", title=TITLE, scale=alt.Scale(domain=[0, LAST + STEP]), axis=alt.Axis(values=TICKS))

@@ -36,7 +36,7 @@ FLEET = (
     Column("Last session, UTC", CellKind.TIME, 17), Column("Next calibration due", CellKind.DATE, 13),
     Column("Overdue", width=9),
     Column("Sessions", CellKind.NUMBER, 9), Column("Open flags", CellKind.NUMBER, 9), Column("Simulated", width=10),
-    Column("Why", width=60), Column("Why due then", width=50), Column("What the simulation gets wrong", width=60),
+    Column("Why", width=60), Column("Why due then", width=50), Column("Diagnosis", width=60),
     SESSION, Column("Verdict in words", width=60), Column("May it be used", width=40),
 )  # fmt: skip
 PARAMETERS = (

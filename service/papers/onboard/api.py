@@ -1,9 +1,10 @@
 """Exports to flight controllers and robots over HTTP."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
+from estimator.json_object import Json
 from service.papers.onboard import FORMS, System
 from service.papers.onboard.given import check
 from service.papers.onboard.stored import given_of
@@ -17,7 +18,7 @@ from service.work.dependencies import ReaderOf
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
 PLAIN = "text/plain; charset=utf-8"
-TEXT_FILE: dict[int | str, dict[str, Any]] = {200: {"content": {"text/plain": {"schema": {"type": "string"}}}}}
+TEXT_FILE: dict[int | str, Json] = {200: {"content": {"text/plain": {"schema": {"type": "string"}}}}}
 
 
 @router.get("/{id}/export", responses={**TEXT_FILE, **errors(404, 409, 422)}, response_class=Response)

@@ -14,6 +14,7 @@ from joserfc import jwt
 from joserfc.errors import JoseError
 from joserfc.jwk import KeySet
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
@@ -70,7 +71,7 @@ class OpenIdProvider:
             keys = _json(http, "GET", self._allowed(metadata, "jwks_uri"))
         return self._checked(token, keys, journey, now)
 
-    def _metadata(self, http: httpx.Client) -> dict[str, Any]:
+    def _metadata(self, http: httpx.Client) -> Json:
         """The provider's metadata; it must be of the configured issuer."""
         metadata = _json(http, "GET", self._own.issuer.rstrip("/") + WELL_KNOWN)
         if metadata.get("issuer") != self._own.issuer:
@@ -162,7 +163,7 @@ def _http() -> httpx.Client:
     return httpx.Client(timeout=TIMEOUT, follow_redirects=False, trust_env=False)
 
 
-def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> dict[str, Any]:
+def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> Json:
     """A JSON object of the provider; AwayError for any other answer."""
     try:
         with http.stream(method, address, headers={"Accept": "application/json"}, **sent) as answer:

@@ -41,7 +41,7 @@ FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
-NEW_REFERENCE = "The session of {day} is the reference that {sensor} is judged against now."
+NEW_REFERENCE = "{sensor} is now judged against the session of {day}."
 
 
 def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: Refreshed) -> None:

@@ -50,7 +50,7 @@ PROBABLY_FIT = Condition(
 FIT = Condition("pass", "Fit", "pass", "circle", "Within tolerance, by more than the uncertainty of the measurement.")
 REFERENCE = Condition(
     "reference", "Reference set", "reference", "triangle-right",
-    "The session that later ones are judged against; there was nothing to judge it by.",
+    "Later sessions are judged against it; it is not judged itself.",
 )  # fmt: skip
 NOT_MEASURED = Condition("none", "Not measured", "no session", "stroke", "No session has been uploaded yet.")
 QUESTIONED = Condition(
@@ -58,7 +58,7 @@ QUESTIONED = Condition(
     "Questioned",
     "questioned",
     "stroke",
-    "It cannot be as its file says, and counts once an engineer accepts it.",
+    "It cannot be as its file states; it counts once an engineer accepts it.",
 )
 NOT_JUDGED = Condition("none", "Not judged", "not judged", "circle", "No tolerance or no reference is set.")
 
@@ -70,7 +70,7 @@ WITH_RESERVATION = "with reservation"
 """What is added to the word of a verdict that something speaks against."""
 RESERVED = Condition(
     "reserved", "With reservation", WITH_RESERVATION, "stroke",
-    "Something that was found about the session speaks against taking the verdict as it stands; it says what.",
+    "A finding about the session qualifies the verdict; it is stated.",
 )  # fmt: skip
 
 _BY_VERDICT = {
@@ -108,9 +108,11 @@ STATES = {
 }
 MEANINGS = {
     RecordState.ACCEPTED: "",
-    RecordState.QUESTIONED: "It is stored and drawn, and is no reference and no verdict until an engineer accepts it.",
-    RecordState.WITHDRAWN: "It stays readable, and nothing that is known of the unit rests on it.",
-    RecordState.SUPERSEDED: "Another session stands for it.",
+    RecordState.QUESTIONED: (
+        "It is stored and plotted; until an engineer accepts it, it is no reference and has no verdict."
+    ),
+    RecordState.WITHDRAWN: "It stays readable; nothing about the unit is based on it.",
+    RecordState.SUPERSEDED: "Another session replaces it.",
 }
 
 
@@ -125,7 +127,7 @@ def state_in_words(change: StateChange) -> str:
     )
 
 
-LOOKING = "causes are still being looked for"
+LOOKING = "the search for causes is not finished"
 STILL_LOOKING = say("; {looking}", looking=LOOKING)
 MOST_TOLD = 2
 """Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""

@@ -23,12 +23,12 @@ NAMES = {
 }
 """The one that most records decide first."""
 MEANINGS = {
-    "white-noise": "What an average over one second scatters by, at rest: velocity or angle random walk.",
-    "bias-instability": "Flicker of the zero at rest: no average, however long, is better than about two thirds of it.",
-    "random-walk": "How the zero walks away at rest, from an average of one second to the next.",
+    "white-noise": "Scatter of a one-second average at rest: velocity or angle random walk.",
+    "bias-instability": "Flicker noise of the bias at rest: averaging does not get below about two thirds of it.",
+    "random-walk": "Random walk of the bias at rest, from one one-second average to the next.",
     "quantisation": "Rounding of the counted velocity or angle, at rest.",
 }
-NOT_DECIDED = "not decided by a record of this length"
+NOT_DECIDED = "cannot be determined from a record of this length"
 SEVERAL = 3
 """Sensors of a kind, from which on all of them together are told in one sentence."""
 LEVEL = 0.01
@@ -90,8 +90,8 @@ def _sentences(courses: Sequence[Points], found: Sequence[Growth]) -> tuple[str,
     sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
     return (
         say(
-            "{names} is larger in all {sensors}: {least} to {greatest} times what it was. Look at the "
-            "bench and at what runs beside it first.",
+            "{names} has grown in all {sensors}, {least} to {greatest} times. Check the bench and nearby "
+            "machinery first.",
             names=NAMES[last.parameter],
             sensors=sensors,
             least=least,
@@ -107,7 +107,7 @@ def _place(point: HistoryPoint) -> tuple[str, str]:
 def _sentence(last: HistoryPoint, found: Growth) -> str:
     measure = NOISE[last.kind, last.parameter]
     return say(
-        "{names} of {sensor} is {times} times what it was: {value}, before {usual_value}{thin_space}{label}.",
+        "{names} of {sensor} has grown {times} times: {value}, previously {usual_value}{thin_space}{label}.",
         names=NAMES[last.parameter],
         sensor=last.sensor,
         times=number(found.times, 2),
@@ -161,7 +161,7 @@ def _whose(scale: NoiseScale, kinds: Collection[str]) -> str:
 def _how_far_off(factor: float) -> str:
     """Of the factor by which they are too small; below one they are too large."""
     if not isfinite(factor) or factor <= 0:
-        return "wrong by more than can be told"
+        return "wrong by an unknown factor"
     side = "small" if factor > 1 else "large"
     return say("about {factor} times too {size}", factor=_rounded(max(factor, 1 / factor)), size=side)
 

@@ -14,12 +14,14 @@ from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.errors import RefusedError
 from service.ingest.layout.understand import run_words, split_unit
-from service.kit.arriving_files import SentFile, held
+from service.kit.arriving_files import held
 from service.kit.limits import in_force
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
+from service.sessions.sent import SentFile
 from service.storage.aside import aside, set_aside
 from service.storage.files import Files
 from service.uploads.preview import is_sensor
@@ -51,7 +53,7 @@ class LayoutForm:
     file: SentFile
     """Empty where it was not sent again."""
     fields: Mapping[str, str]
-    mapping: dict[str, Any] | None
+    mapping: Json | None
     """As on the previous page; None at first."""
     owner: str = ""
     """Login of the sender; empty where there are no accounts."""
@@ -122,7 +124,7 @@ def _bytes(text: str) -> bytes:
         ) from fault
 
 
-def _mapping(text: str) -> dict[str, Any] | None:
+def _mapping(text: str) -> Json | None:
     if not text:
         return None
     try:
@@ -136,7 +138,7 @@ def _mapping(text: str) -> dict[str, Any] | None:
     return document
 
 
-def corrected(form: LayoutForm) -> dict[str, Any] | None:
+def corrected(form: LayoutForm) -> Json | None:
     """The mapping with everything that was chosen or written; None where there is none to correct yet."""
     if form.mapping is None:
         return None
@@ -155,8 +157,8 @@ def corrected(form: LayoutForm) -> dict[str, Any] | None:
     }
 
 
-def _chosen(fields: Mapping[str, str]) -> dict[str, Any]:
-    settings: dict[str, Any] = {}
+def _chosen(fields: Mapping[str, str]) -> Json:
+    settings: Json = {}
     for key in CHOSEN:
         text = fields.get(f"table.{key}", "")
         if text:
@@ -164,12 +166,12 @@ def _chosen(fields: Mapping[str, str]) -> dict[str, Any]:
     return settings
 
 
-def _column(fields: Mapping[str, str], k: int, before: Any) -> dict[str, Any]:
+def _column(fields: Mapping[str, str], k: int, before: Any) -> Json:
     """One column as chosen."""
     known = before if isinstance(before, dict) else {}
     meaning, unit = fields.get(f"as.{k}", known.get("as") or ""), fields.get(f"unit.{k}", known.get("unit") or "")
     heading = str(known.get("heading", ""))
-    column: dict[str, Any] = {"heading": heading, "as": meaning or None}
+    column: Json = {"heading": heading, "as": meaning or None}
     if meaning and (unit.strip() or split_unit(heading)[1]) and meaning not in ("run", "position"):
         column["unit"] = unit.strip()
     if meaning == "run":
@@ -180,7 +182,7 @@ def _column(fields: Mapping[str, str], k: int, before: Any) -> dict[str, Any]:
     return column
 
 
-def _session(fields: Mapping[str, str], before: Any, columns: list[dict[str, Any]]) -> dict[str, Any]:
+def _session(fields: Mapping[str, str], before: Any, columns: list[Json]) -> Json:
     """The facts with what was written; an empty field states nothing."""
     session = json.loads(json.dumps(before if isinstance(before, dict) else {}))
     for key in (*TEXTS, *NUMBERS):
@@ -213,7 +215,7 @@ def moment(session: Mapping[str, Any]) -> tuple[str, str, str]:
     )
 
 
-def _put(session: dict[str, Any], key: str, value: Any) -> None:
+def _put(session: Json, key: str, value: Any) -> None:
     parent, _, step = key.rpartition(".")
     node = session.setdefault(parent, {}) if parent else session
     if not isinstance(node, dict):
@@ -237,9 +239,7 @@ def _value(text: str) -> float | str | None:
         return text
 
 
-def _sensors(
-    fields: Mapping[str, str], session: Mapping[str, Any], columns: list[dict[str, Any]]
-) -> list[dict[str, Any]]:
+def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: list[Json]) -> list[Json]:
     """One sensor per column of readings, with known facts and what was written."""
     known = {s.get("name"): s for s in session.get("sensors") or () if isinstance(s, dict)}
     sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
@@ -280,7 +280,7 @@ def _components(text: str) -> list[float | str]:
     return [number for part in parts if (number := _value(part.strip(","))) is not None]
 
 
-def filled_in(session: Mapping[str, Any], facts: Mapping[str, Any]) -> dict[str, Any]:
+def filled_in(session: Mapping[str, Any], facts: Mapping[str, Any]) -> Json:
     """What was written, completed by the facts; sensors by their names."""
     by_name = {sensor["name"]: sensor for sensor in facts.get("sensors", ())}
     merged = dict(session)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
@@ -274,7 +275,7 @@ def _sensor(sensor: Mapping[str, Any], session: Mapping[str, Any]) -> SensorRow:
     )
 
 
-def _first(preview: Preview) -> dict[str, Any]:
+def _first(preview: Preview) -> Json:
     """The first rows as they will be read, and the length of the measured vector."""
     if preview.session is None:
         return {"preview": (), "headings": (), "felt": ""}

@@ -12,6 +12,7 @@ from service.kit.arriving_files import held
 from service.people.dependencies import SEE_OTHER
 from service.planning.pattern import type_names
 from service.records.dependencies import ReceptionOf
+from service.sessions.records import MARKS, marks_said
 from service.storage import Storage
 from service.storage.aside import drop_aside
 from service.uploads.layout.form import LayoutForm, LayoutFormOf, carried, corrected, filled_in
@@ -22,8 +23,8 @@ from service.web.dependencies import Now
 from service.web.render import render
 
 NO_FILE = "The table did not come with the form, or is kept no longer: upload it again."
-STORE, CHECK = "store", "check"
-"""Buttons of the form that store the session; a check moves no date."""
+STORE = "store"
+"""The button of the form that stores the session; others carry the name of a mark that it gets too."""
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
@@ -39,11 +40,10 @@ def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, no
         types = type_names(store)
     page = layout_page(carried_file, preview_shown, form, types)
     action = form.fields.get("do")
-    if action in (STORE, CHECK) and page.can_store and preview_shown.mapping == form.mapping:
+    if action in (STORE, *MARKS) and page.can_store and preview_shown.mapping == form.mapping:
         try:
-            receipt = receive_mapped(
-                reception, replace(form.file, is_check=action == CHECK), preview_shown.mapping, now
-            )
+            file = replace(form.file, **marks_said((action,)))
+            receipt = receive_mapped(reception, file, preview_shown.mapping, now)
         except RefusedError as fault:
             failed = Preview(**{**vars(preview_shown), "problems": fault.problems, "session": None})
             return render(request, "layout.html", layout_page(carried_file, failed, form, types), fault.status)

@@ -40,7 +40,7 @@ def runs(name: str) -> list[Case]:
 def test_errors_are_as_large_as_their_covariance_says(name: str) -> None:
     cases = runs(name)
     nees = sum(float(c.error @ np.linalg.solve(c.covariance, c.error)) for c in cases)
-    low, high = chi2.ppf([0.001, 0.999], RUNS * len(cases[0].error))
+    low, high = chi2.ppf(np.array([0.001, 0.999]), RUNS * len(cases[0].error))
     assert low < nees < high
     z = np.array([c.error / np.sqrt(np.diag(c.covariance)) for c in cases])
     assert np.abs(z).max() < 4.2

@@ -20,10 +20,10 @@ EARLIER = 1800.0
 """s before the clock's zero."""
 
 
-def warming() -> CalibrationSession:
+def warming(seed: int = 1) -> CalibrationSession:
     """A session on whose clock A2 has settled from time 0 on."""
     where = scene(ACCELEROMETER, 0)
-    return with_readings(where.measured(1), change("warm-up", where) * where.world.truth.scale)
+    return with_readings(where.measured(seed), change("warm-up", where) * where.world.truth.scale)
 
 
 @cache
@@ -89,3 +89,16 @@ def test_sessions_of_one_unit_have_one_amplitude() -> None:
 def test_every_record_of_a_group_is_a_number_however_long_the_unit_was_on() -> None:
     record = statistics_of(replace(warming(), switched_on=-1.6e7, started_at="2026-03-01T09:00:00Z"))
     assert all(np.isfinite(getattr(record, name)).all() for name in ("size", "score", "correlation"))
+
+
+@pytest.mark.parametrize(("now", "before"), [(-EARLIER, None), (None, -EARLIER), (-EARLIER, -EARLIER)])
+def test_what_an_earlier_session_has_too_is_not_new_though_one_of_them_says_no_power_on(
+    now: float | None, before: float | None
+) -> None:
+    earlier = replace(warming(seed=2), switched_on=before, started_at="2026-02-01T09:00:00Z")
+    found = diagnose(replace(warming(), switched_on=now), history=[earlier])
+    (finding,) = (f for f in found.findings if f.cause == "warm-up")
+    assert finding.new is False
+    gain = found.gain.session
+    assert gain is not None
+    assert gain.after.rms < gain.before.rms

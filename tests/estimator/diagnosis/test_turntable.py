@@ -37,7 +37,8 @@ def test_lever_arms_are_named_with_their_place() -> None:
 
 def test_the_sentence_says_how_far() -> None:
     assert (
-        diagnose(turned(AWAY)).findings[0].sentence == "A1 stands 9.1 ± 0.3 cm from the turn axis and feels the turns."
+        diagnose(turned(AWAY)).findings[0].sentence
+        == "A1 is 9.1 ± 0.3 cm from the turn axis and measures the rotation."
     )
 
 
@@ -154,7 +155,7 @@ def test_positions_that_hold_leave_nothing_to_say() -> None:
 def test_of_two_positions_that_the_turns_contradict_either_may_be_wrong() -> None:
     [finding] = diagnose(stated(A1=0.03)).findings
     assert (finding.cause, finding.sensors) == ("lever-arm", ("A1", "A2"))
-    assert "do not stand to one another as the file says: one of them is 2." in finding.sentence
+    assert "are not at their stated positions relative to one another: one of them is 2." in finding.sentence
 
 
 def cone_of_six(places: Array, said: Array | None = None) -> CalibrationSession:

@@ -54,7 +54,7 @@ def test_a_cause_of_the_catalogue_stays_without_a_doubt() -> None:
 def test_what_is_taken_back_is_told_with_the_terms_that_fit_better() -> None:
     found = diagnose_group(sessions(WARM))
     assert (found.findings, found.unexplained) == ((), True)
-    assert "|a|·(T − T̄) fits better: it has no name" in " ".join(found.notes)
+    assert "|a|·(T − T̄) agrees better: it has no name" in " ".join(found.notes)
     assert [term.words for term in found.terms] == [("|a|·(T − T̄)",)]
 
 

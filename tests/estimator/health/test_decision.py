@@ -19,8 +19,8 @@ TIGHT = np.eye(2) * 1e-6**2
 
 def judged(current: dict[str, object], reference: dict[str, object] | None = None) -> dict[str, ParameterJudgement]:
     """Judgements of one sensor by parameter."""
-    then = calibration(sensor(**(reference or {}), covariance=TIGHT))  # type: ignore[arg-type]
-    now = calibration(sensor(**({"covariance": TIGHT} | current)))  # type: ignore[arg-type]
+    then = calibration(sensor(**(reference or {}), covariance=TIGHT))
+    now = calibration(sensor(**({"covariance": TIGHT} | current)))
     return {j.parameter: j for j in judge(now, then, TOLERANCES)}
 
 

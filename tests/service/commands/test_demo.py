@@ -30,7 +30,7 @@ from service.storage.schema import upgrade
 from service.units.remarks_store import Notes
 from service.units.store import Services
 from service.uploads.receive import upload
-from service.work.watch import relearn
+from service.work.watch import update_outlooks
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.commands.conftest import COMMAND, Run, started
@@ -137,7 +137,7 @@ def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
 
 def test_a_unit_has_one_flag_at_most_and_none_where_it_is_fit_without_a_reservation(demonstration: Storage) -> None:
     """Faults of stands are flags of the stands."""
-    relearn(demonstration, END)
+    update_outlooks(demonstration, END)
     flag_overdue(demonstration, END)
     flag_shifted_stands(demonstration, END)
     with demonstration.database.reading() as store:

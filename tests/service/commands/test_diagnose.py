@@ -33,7 +33,7 @@ def test_one_file_with_json_gives_the_object(run: Run, warm_file: Path) -> None:
 
 def test_people_read_the_cause_its_size_and_what_to_do(run: Run, warm_file: Path) -> None:
     shown = run("diagnose", warm_file).out
-    for part in ("The zero of A5 follows the temperature.", "What to do:", "±", "µg/K", "Not seen"):
+    for part in ("The bias of A5 depends on temperature.", "What to do:", "±", "µg/K", "Not seen"):
         assert part in shown
 
 
@@ -62,13 +62,13 @@ def test_wrong_standard_errors_are_said(run: Run, tmp_path: Path) -> None:
 
 def test_what_all_sensors_show_sends_people_to_the_stand(run: Run, tmp_path: Path) -> None:
     shown = run("diagnose", write(tmp_path, "a.json", swaying_stand())).out
-    assert "Something common to all sensors, of the stand or fixture" in shown
+    assert "An effect common to all sensors, of the stand or fixture" in shown
     assert "What to do: All sensors show the same" in shown
 
 
 def test_a_name_beside_an_unknown_cause_keeps_its_advice(run: Run, tmp_path: Path) -> None:
     shown = run("diagnose", write(tmp_path, "a.json", drawn(TWO_AT_ONCE).session)).out
-    assert "Two causes at once, or one that is not in the catalogue (G2)" in shown
+    assert "Two causes at once, or a cause outside the catalogue (G2)" in shown
     assert "If it comes back: Model the cubic term" in shown
 
 

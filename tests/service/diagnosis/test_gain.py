@@ -63,9 +63,8 @@ def test_a_gain_of_one_kind_alone_is_a_gain() -> None:
 def told(before: dict[str, float], after: dict[str, float], *sensors: str) -> str:
     """The sentence about accelerometers of so many µg before and after."""
     each = ({ACCELEROMETER: {name: error * MICRO_G for name, error in own.items()}} for own in (before, after))
-    return gain_in_words(Gain(*(replace(BEFORE, rms_by_sensor=own) for own in each), "positions"), sensors).replace(
-        "\u202f", " "
-    )
+    first, second = (replace(BEFORE, rms_by_sensor=own) for own in each)
+    return gain_in_words(Gain(first, second, "positions"), sensors).replace("\u202f", " ")
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ def test_a_cause_that_an_unknown_one_may_be_raises_its_flag_with_the_doubt(holdi
     assert ("cause", "G2", "raised") in flagged(client, id)
     said = [flag["summary"] for flag in client.get("/api/v1/flags").json()["flags"] if flag["place"] == "G2"]
     assert said == [
-        "Two causes at once, or one that is not in the catalogue (G2): cubic nonlinearity and scale asymmetry."
+        "Two causes at once, or a cause outside the catalogue (G2): cubic nonlinearity and scale asymmetry."
     ]
 
 
@@ -51,7 +51,7 @@ def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding)
     content = json.dumps(swaying_stand()).encode()
     (flag,) = holding(content, diagnosed=True).get("/api/v1/flags").json()["flags"]
     assert (flag["matter"], flag["place"]) == ("unexplained", "")
-    assert flag["summary"].startswith("Something common to all sensors, of the stand or fixture")
+    assert flag["summary"].startswith("An effect common to all sensors, of the stand or fixture")
 
 
 def test_a_cause_that_nobody_knows_cannot_be_accepted(holding: Holding) -> None:

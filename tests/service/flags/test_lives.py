@@ -49,7 +49,7 @@ def flagged(filled: Filled) -> Storage:
 def test_a_failing_session_raises_a_flag_on_the_sensor(flagged: Storage) -> None:
     [flag] = flags(flagged)
     assert (flag.matter, flag.place, flag.state) == (Matter.TOLERANCE, "A3", FlagState.RAISED)
-    assert flag.summary.startswith("A3 bias moved +9")
+    assert flag.summary.startswith("A3 bias changed by +9")
     assert kinds(flag) == ["raised"]
 
 
@@ -57,7 +57,7 @@ def test_the_same_matter_again_updates_the_open_flag(flagged: Storage) -> None:
     latest = measured(flagged, 3, 120.0)
     [flag] = flags(flagged)
     assert flag.session == latest
-    assert flag.summary.startswith("A3 bias moved +1")
+    assert flag.summary.startswith("A3 bias changed by +1")
     assert kinds(flag) == ["raised", "seen"]
 
 
@@ -121,7 +121,7 @@ def test_a_session_that_comes_in_late_says_what_it_would_have_said_in_time(flagg
     measured(flagged, 4)
     measured(flagged, 3, 300.0)
     [flag] = flags(flagged)
-    assert flag.summary.startswith("A3 bias moved +30")
+    assert flag.summary.startswith("A3 bias changed by +30")
     assert flag.proposal == "The session of 1 Apr 2026 finds every parameter of A3 within its tolerance."
     assert kinds(flag) == ["raised", "clear", "seen", "clear"]
 

@@ -32,7 +32,7 @@ def session_report(
         programme=session.programme, stand="ODG-1", operator="K. Ito", notes="", started_at=NOON, uploaded_at=NOON,
         verdict=judged.verdict, reason=judged.reason, is_reference=reference is None, simulated=False,
     )  # fmt: skip
-    return SessionReport(replace(stored, **changes), calibration, judged.decisions)  # type: ignore[arg-type]
+    return SessionReport(replace(stored, **changes), calibration, judged.decisions)
 
 
 def bias_point(day: int, value: float | None, *, reference: float | None = 0.0, sensor: str = "A1") -> HistoryPoint:

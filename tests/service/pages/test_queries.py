@@ -39,7 +39,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "condition": (1, lambda store: Fleet(store).condition()),
     "history": (2, lambda store: History(store).points(Units(store).key("BA-000"), HistoryQuery())),
     "unit": (3, lambda store: unit_report(store, "BA-000", NOW)),
-    "what units may be used for": (4, lambda store: usable_of(store, Fleet(store).units(FleetQuery()), NOW)),
+    "what units may be used for": (2, lambda store: usable_of(store, Fleet(store).units(FleetQuery()), NOW)),
     "flags": (1, lambda store: Flags(store).page(FlagQuery())),
     "flags of a unit": (1, lambda store: Flags(store).page(FlagQuery("BA-000"))),
     "outlook": (4, lambda store: outlook_of(store, "BA-000", NOW)),
@@ -48,11 +48,11 @@ PAGES: dict[str, tuple[int, Page]] = {
     "stands": (1, stand_conditions),
     "types": (1, lambda store: UnitTypes(store).page(0, 100)),
     "list of sessions": (1, lambda store: Sessions(store).wanted(SessionQuery())),
-    "list of stands": (3, every_stand),
-    "stand": (9, lambda store: stand_report(store, "ODG-1", NOW)),
+    "list of stands": (4, every_stand),
+    "stand": (8, lambda store: stand_report(store, "ODG-1", NOW)),
     "uploads": (2, lambda store: Arrivals(store).page(ArrivalQuery())),
     "list of types": (2, every_type),
-    "type": (11, lambda store: type_report(store, "accelerometer × 6, V", NOW)),
+    "type": (9, lambda store: type_report(store, "accelerometer × 6, V", NOW)),
 }
 
 

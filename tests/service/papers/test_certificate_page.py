@@ -23,7 +23,7 @@ def test_a_form_of_another_site_changes_nothing(flagged: httpx.Client) -> None:
 
 
 def test_the_customer_is_named_on_the_unit_s_page(flagged: httpx.Client) -> None:
-    assert "a customer who is not stated" in flagged.get("/units/BA-017").text
+    assert "No customer entered" in flagged.get("/units/BA-017").text
     assert sent(flagged, "/units/BA-017/customer", CUSTOMER).status_code == 303
     page = flagged.get("/units/BA-017").text
     assert "<b>Aero Works Ltd</b>, 1 Hangar Road, Derby" in page

@@ -115,7 +115,7 @@ def test_an_unknown_unit_has_none(client: httpx.Client) -> None:
     ],
 )
 def test_what_may_not_be_used_says_so_in_place_of_a_date(changes: dict[str, object], use: str, due: str) -> None:
-    unit = replace(unit_summary(), **{"due": datetime(2027, 2, 28, tzinfo=UTC), **changes})  # type: ignore[arg-type]
+    unit = replace(unit_summary(), **{"due": datetime(2027, 2, 28, tzinfo=UTC), **changes})
     drawn = label_of(unit, use_of(unit), BASE, with_due=True)
     assert (drawn.use, drawn.due.replace(HARD, " ")) == (use, due)
     printed = " ".join(text_of(label_pdf(drawn, NOW)).split())

@@ -121,7 +121,7 @@ def test_signing_out_ends_it(http: httpx.Client) -> None:
 def test_a_shift_later_one_signs_in_again(settings: Settings, storage: Storage, staff: Staff) -> None:
     secret = sign_in(storage, "engineer", PASSWORD, NOW)
     for later, status in ((timedelta(hours=11), 200), (timedelta(hours=13), 303)):
-        with http_client(create_app(settings, clock=lambda later=later: NOW + later)) as client:
+        with http_client(create_app(settings, clock=lambda later=later: NOW + later)) as client:  # type: ignore[misc]
             assert client.get("/flags", headers=PAGE | {"Cookie": f"imu-health={secret}"}).status_code == status
 
 

@@ -24,7 +24,7 @@ def records(rng: np.random.Generator, count: int, *, last: float = 1.0) -> list[
 
 def test_twice_the_noise_is_told_once_for_all_sensors() -> None:
     (sentence,) = grown(records(np.random.default_rng(2), 3, last=2.0))
-    assert sentence.startswith("White noise N is larger in all accelerometers: ")
+    assert sentence.startswith("White noise N has grown in all accelerometers, ")
 
 
 def test_a_single_sensor_is_named() -> None:

@@ -74,7 +74,7 @@ NARROWED: tuple[tuple[dict[str, object], str], ...] = (
 
 
 def test_a_list_is_narrowed(stored: Storage) -> None:
-    found = [(wanted, listed(stored, replace(ALL, **wanted))) for wanted, _ in NARROWED]  # type: ignore[arg-type]
+    found = [(wanted, listed(stored, replace(ALL, **wanted))) for wanted, _ in NARROWED]
     assert found == list(NARROWED)
 
 
@@ -89,4 +89,4 @@ def test_a_list_read_on_in_both_directions_is_the_whole_list(stored: Storage) ->
 
 def test_a_session_that_is_not_there_begins_the_list_anew(stored: Storage) -> None:
     for place in ({"after": "none"}, {"before": "none"}):
-        assert listed(stored, replace(ALL, limit=2, **place)) == "65"  # type: ignore[arg-type]
+        assert listed(stored, replace(ALL, limit=2, **place)) == "65"

@@ -15,7 +15,8 @@ from service.models.records import Scope
 from service.records.changes import withdraw_session
 from service.records.flagging.acts import Occasion, raise_flag
 from service.records.flagging.stands import OF_STAND, flag_shifted_stands
-from service.sessions.store import SessionQuery, Sessions
+from service.sessions.records import SessionQuery
+from service.sessions.store import Sessions
 from service.storage import Storage
 from service.units.store import Units
 from service.uploads.receive import upload
@@ -69,7 +70,7 @@ def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storag
     latest = client.get("/api/v1/units/BA-1").json()["sessions"][0]["id"]
     page = client.get(f"/sessions/{latest}", headers={"Accept": "text/html"}).text
     assert "The whole block turned by 15" in page
-    assert "it sits otherwise, or the stand has turned" in page
+    assert "it was mounted differently, or the stand has turned" in page
 
 
 @pytest.fixture

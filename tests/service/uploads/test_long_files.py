@@ -14,7 +14,6 @@ from service.jobs.changes import cancel_job
 from service.jobs.records import Job, JobState
 from service.jobs.store import Jobs
 from service.kit import limits
-from service.kit.arriving_files import Replaced, SentFile
 from service.kit.bell import Bell
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
@@ -22,6 +21,7 @@ from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.reception import Reception
 from service.sessions.records import SessionQuery
+from service.sessions.sent import Replaced, SentFile
 from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Files, Storage

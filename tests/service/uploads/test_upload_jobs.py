@@ -8,8 +8,8 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.kit.arriving_files import SentFile
 from service.kit.person import EVERYBODY
+from service.sessions.sent import SentFile
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.schema import upgrade

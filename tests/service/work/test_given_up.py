@@ -15,8 +15,8 @@ from service.jobs.changes import retry_failed
 from service.jobs.store import Failures
 from service.judging.usable_reading import usable_unit as usable
 from service.kit.bell import Bell
-from service.kit.failure import unit_failed, with_last_try
-from service.kit.guard import AT_FAULT, Failure
+from service.kit.failure import AT_FAULT, unit_failed, with_last_try
+from service.kit.guard import Failure
 from service.kit.metrics import Metrics
 from service.models.records import Evidence, ModelRevision, Progress, Scope
 from service.models.store import Models, Recomputations

@@ -11,7 +11,8 @@ from service.jobs.changes import add_model_job, ask_job, cancel_job, drop_expire
 from service.jobs.records import KEPT, Job, JobKind, JobState, NewJob, RecalibrationPiece
 from service.jobs.store import Jobs
 from service.kit.bell import Bell
-from service.kit.guard import AT_FAULT, Failure
+from service.kit.failure import AT_FAULT
+from service.kit.guard import Failure
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
 from service.models.records import ModelRevision, Progress, Task
