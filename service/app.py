@@ -82,7 +82,7 @@ def _application(settings: Settings, clock: Callable[[], datetime]) -> Applicati
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
-    """From start to stop: work is done beside the requests, and the database is closed at the end."""
+    """From start to stop: work is done in the background, and the database is closed at the end."""
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -103,7 +103,7 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
 
 
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
-    """What is done beside the requests: its name, what does it, and what that needs."""
+    """What is done in the background: its name, what does it, and what that needs."""
     storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
     metrics, k = application.metrics, application.settings.coverage_factor
     for number in range(application.settings.diagnosis_workers):

@@ -1,4 +1,4 @@
-"""Work beside the requests: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
+"""Background work: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
 
 An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent
 again under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the

@@ -1,4 +1,4 @@
-"""Flow: how the units of a type drift, or how stands stand, made again beside the requests that changed a record."""
+"""Flow: how the units of a type drift, or how stands stand, made again in the background after a change of records."""
 
 from datetime import datetime
 

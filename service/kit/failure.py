@@ -1,4 +1,4 @@
-"""Work beside the requests that has failed."""
+"""Background work that has failed."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -16,7 +16,7 @@ def too_long(seconds: float) -> str:
 
 
 class FailedKind(StrEnum):
-    """What is done beside the requests."""
+    """What is done in the background."""
 
     DIAGNOSIS = "diagnosis"
     """Of a session."""
@@ -39,7 +39,7 @@ class FailedKind(StrEnum):
 @answer
 @dataclass(frozen=True)
 class Failed:
-    """One piece of work beside the requests that has failed."""
+    """One piece of background work that has failed."""
 
     kind: FailedKind
     """What is done."""

@@ -50,7 +50,7 @@ class Limits:
     in_flight: int = 4
     """Large uploads that are received or worked on at once; others are asked back."""
     work: float = 600.0
-    """Seconds that one piece of work beside the requests may take; the largest diagnosis takes tens of them."""
+    """Seconds that one piece of work in the background may take; the largest diagnosis takes tens of them."""
     free: int = 256 * MEBIBYTE
     """Bytes that the disk of uploaded files keeps: a database on it needs room to close what is open."""
 

@@ -1,6 +1,6 @@
 """The tables of outlooks, of histories, and of how the units of types drift.
 
-transaction, and what types and stands show, which is asked for there and made beside the requests. All of it is a
+transaction, and what types and stands show, which is asked for there and made in the background. All of it is a
 function of the other tables and can be made again.
 
     tallied       ──> fleet_tallies     what every unit adds to the counts, and the counts

@@ -47,7 +47,7 @@ OPEN = Condition("none", "Not judged", "not judged", "circle", "No tolerance was
 
 @dataclass(frozen=True)
 class NumberField:
-    """A number that the form asks for."""
+    """A number field of the form."""
 
     name: str
     label: str
@@ -58,7 +58,7 @@ class NumberField:
 
 @dataclass(frozen=True)
 class ExpectedCell:
-    """What is expected of one parameter of one sensor."""
+    """Expectation for one parameter of one sensor."""
 
     heading: str
     value: str
@@ -68,7 +68,7 @@ class ExpectedCell:
 
 @dataclass(frozen=True)
 class Row:
-    """One sensor, or several that are expected to be known alike."""
+    """One sensor, or several with the same expectations."""
 
     name: str
     cells: tuple[ExpectedCell, ...]
@@ -76,7 +76,7 @@ class Row:
 
 @dataclass(frozen=True)
 class PlanFact:
-    """A fact of the plan: what, and in words."""
+    """A fact of the plan in words."""
 
     name: str
     words: str
@@ -84,7 +84,7 @@ class PlanFact:
 
 @dataclass(frozen=True)
 class PlanPage:
-    """Everything the page of a plan shows."""
+    """Contents of the page of a plan."""
 
     question: PlanQuestion
     types: tuple[tuple[str, str], ...]
@@ -192,12 +192,12 @@ def _facts(question: PlanQuestion, plan: Plan) -> tuple[PlanFact, ...]:
 
 
 def _rows(plan: Plan) -> tuple[Row, ...]:
-    """Sensors whose cells read the same share a row."""
-    size, alike = len(PARAMETERS), dict[tuple[ExpectedCell, ...], list[str]]()
+    """Sensors with equal cells share a row."""
+    size, sensors_by_cells = len(PARAMETERS), dict[tuple[ExpectedCell, ...], list[str]]()
     for i in range(0, len(plan.judged), size):
         cells = tuple(_cell(one, plan.request.coverage) for one in plan.judged[i : i + size])
-        alike.setdefault(cells, []).append(plan.judged[i].sensor)
-    return tuple(Row(joined(", ", names), cells) for cells, names in alike.items())
+        sensors_by_cells.setdefault(cells, []).append(plan.judged[i].sensor)
+    return tuple(Row(joined(", ", names), cells) for cells, names in sensors_by_cells.items())
 
 
 def _cell(one: JudgedParameter, coverage: float) -> ExpectedCell:
@@ -207,18 +207,18 @@ def _cell(one: JudgedParameter, coverage: float) -> ExpectedCell:
 
 
 def _sweep(plan: Plan, kind: str, name: str) -> tuple[tuple[str, ...], ...]:
-    """The numbers of a chart: where, U of every parameter, ρ."""
+    """The numbers of a chart: abscissa, U of every parameter, ρ."""
     sweep = getattr(plan, name)
-    at = sweep.at if name == "over_positions" else np.degrees(sweep.at)
+    abscissa = sweep.at if name == "over_positions" else np.degrees(sweep.at)
     factors = np.array([MEASURES[kind, p].factor for p in PARAMETERS]) * plan.request.coverage
     return tuple(
         (number(float(x)), *(number(float(f"{u:.3g}")) for u in row), number(float(rho), 1))
-        for x, row, rho in zip(at, sweep.total * factors, sweep.conditioning, strict=True)
+        for x, row, rho in zip(abscissa, sweep.total * factors, sweep.conditioning, strict=True)
     )
 
 
 def _unseen(plan: Plan) -> tuple[BlindCauses, ...]:
-    """The causes that are not seen, and first the parameters that are not observed."""
+    """Causes that are not seen, after parameters that are not observed."""
     missing = unobserved(plan)
     return (*([BlindCauses(missing, UNSEEN)] if missing else []), *blind(plan))
 
@@ -247,5 +247,5 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 @router.get("/plan")
 def show_plan(request: Request, question: Annotated[PlanQuestion, Query()], storage: StorageOf) -> HTMLResponse:
     """What a session would tell before it is measured."""
-    asked, found = plan(storage, question)
-    return render(request, "plan.html", plan_page(asked, found, plannable_types(storage)))
+    completed_question, result = plan(storage, question)
+    return render(request, "plan.html", plan_page(completed_question, result, plannable_types(storage)))

@@ -1,4 +1,4 @@
-"""What a session still lacks, in words."""
+"""Missing positions, plans and readiness in words."""
 
 from collections.abc import Callable
 from itertools import groupby
@@ -17,11 +17,11 @@ from service.diagnosis.words.diagnosis import BlindCauses, SeenCause, blind_caus
 from service.kit.measures import ARCSEC, MEASURES, MINUS, THIN, deviation_measure, in_measure, number
 
 MOST = 12
-"""Angles that are named; the rest are counted."""
+"""Angles that are listed; the rest are counted."""
 
 
 def missing_in_words(found: Missing) -> tuple[str, ...]:
-    """A sentence how far it is, then one a run or a line a direction, then what is open until then."""
+    """A sentence on progress, then one a run or a line a direction, then what is open until then."""
     if found.is_complete:
         return (say("Complete: {done} positions, and every parameter is observed.", done=found.done),)
     done = found.done
@@ -58,25 +58,25 @@ VERDICTS = {
     "undecidable": "undecidable: U exceeds the tolerance, or nothing is observed",
     "not judged": "no tolerance was given",
 }
-"""What the verdicts of a plan mean."""
+"""Meanings of the verdicts of a plan."""
 UNSEEN = "not observable"
 OF_GYROS = frozenset(cause.identifier for cause in CATALOGUE if cause.kind == GYROSCOPE)
 """Causes that an accelerometer cannot have."""
 
 
 def seen(plan: Plan) -> tuple[SeenCause, ...]:
-    """Causes that the plan would find, with the size from which on."""
+    """Causes that the plan would find, with the smallest size."""
     return seen_causes(plan.limits, {sensor.kind for sensor in plan.schedule.sensors})
 
 
 def blind(plan: Plan) -> tuple[BlindCauses, ...]:
-    """Causes that the plan cannot see; what only gyros have is left out where there are none."""
+    """Causes that the plan cannot see; those of gyros are left out where there are none."""
     has_gyros = any(s.kind == GYROSCOPE for s in plan.schedule.sensors)
     return blind_causes([one for one in plan.limits if has_gyros or one.cause not in OF_GYROS])
 
 
 def unobserved(plan: Plan) -> str:
-    """``scale and axis of every sensor; bias of A2``: what the plan does not observe; empty where it observes all."""
+    """``scale and axis of every sensor; bias of A2``: parameters that the plan does not observe; empty without any."""
     sensors: dict[tuple[str, ...], list[str]] = {}
     for name in PARAMETERS:
         missing = tuple(j.sensor for j in plan.judged if j.parameter == name and j.sigma is None)
@@ -125,7 +125,7 @@ def duration(seconds: float) -> str:
 
 
 def headline(plan: Plan) -> str:
-    """What the plan comes to, in a sentence."""
+    """Summary of the plan in a sentence."""
     size = (
         say("{positions} positions in both runs", positions=plan.positions)
         if len(plan.request.runs) == 2
@@ -152,7 +152,7 @@ FEW = 3
 
 
 def readiness_headline(found: Readiness) -> str:
-    """The one sentence that is read across the room."""
+    """The headline, to be read across the room."""
     match found.state:
         case ReadinessState.READY:
             return "Ready"
@@ -170,16 +170,16 @@ def readiness_headline(found: Readiness) -> str:
 
 
 def reasons(found: Readiness, kind: str) -> tuple[str, ...]:
-    """Why, and what to do, in order of weight."""
+    """Reasons and advice, the most important first."""
     lines = [fault_in_words(fault) for fault in found.faults]
     lines += [disturbance_in_words(one, kind) for one in found.disturbances]
     if found.worst is not None:
-        lines += _of_drift(found, found.worst)
+        lines += _drift_sentences(found, found.worst)
     return tuple(lines)
 
 
 def minutes(seconds: float) -> str:
-    """Whole minutes, never none."""
+    """Whole minutes, at least one."""
     return number(max(1.0, float(f"{seconds / MINUTE:.2g}")), 0)
 
 
@@ -201,10 +201,10 @@ def named(sensors: tuple[str, ...]) -> str:
     return joined(", ", sensors[:FEW]) + (say(" and {rest} more", rest=rest) if rest > 0 else "")
 
 
-def _of_drift(found: Readiness, worst: DriftOutlook) -> list[str]:
+def _drift_sentences(found: Readiness, worst: DriftOutlook) -> list[str]:
     length = minutes(found.duration)
     bound, allowed = amount(worst.kind, worst.bound), amount(worst.kind, worst.allowed)
-    by = (
+    source = (
         "a quarter of the tolerance of its scale factor"
         if worst.limit == "scale"
         else "a quarter of the tolerance of its bias"
@@ -218,10 +218,10 @@ def _of_drift(found: Readiness, worst: DriftOutlook) -> list[str]:
                 bound=bound,
                 name=worst.name,
                 tolerance=allowed,
-                source=by,
+                source=source,
             )
         ]
-    said: list[str] = [
+    sentences: list[str] = [
         say(
             "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
             "allowed are {tolerance}, {source}.",
@@ -229,24 +229,24 @@ def _of_drift(found: Readiness, worst: DriftOutlook) -> list[str]:
             bound=bound,
             length=length,
             tolerance=allowed,
-            source=by,
+            source=source,
         )
     ]
     if found.state is ReadinessState.NOT_WARM:
-        return [*said, *_of_waiting(found)]
+        return [*sentences, *_waiting_advice(found)]
     if found.state is ReadinessState.TOO_EARLY:
-        return [*said, *_of_telling(found, worst)]
-    return said
+        return [*sentences, *_record_advice(found, worst)]
+    return sentences
 
 
-def _of_waiting(found: Readiness) -> list[str]:
+def _waiting_advice(found: Readiness) -> list[str]:
     if found.wait is None:
         return [
             "It drifts steadily or wanders, and does not settle within eight hours: look for the cause, such as a "
             "draught, the sun or a loose fixture, or plan a shorter programme."
         ]
     low, middle, high = found.wait
-    until = (
+    latest = (
         say("up to {minutes} minutes", minutes=minutes(high))
         if high < float("inf")
         else "how long at most cannot be told yet"
@@ -256,12 +256,12 @@ def _of_waiting(found: Readiness) -> list[str]:
             "It settles: wait about {middle} minutes more (at least {low}, {latest}), and ask again with a new record.",
             middle=minutes(middle),
             low=minutes(low),
-            latest=until,
+            latest=latest,
         )
     ]
 
 
-def _of_telling(found: Readiness, worst: DriftOutlook) -> list[str]:
+def _record_advice(found: Readiness, worst: DriftOutlook) -> list[str]:
     if found.needed is not None:
         return [
             say(
@@ -280,7 +280,7 @@ def _of_telling(found: Readiness, worst: DriftOutlook) -> list[str]:
 
 
 def _short(found: Readiness) -> str:
-    one = next(own for own in found.disturbances if not own.passed)
+    one = next(disturbance for disturbance in found.disturbances if not disturbance.passed)
     return SHORT[one.kind](one)
 
 
@@ -291,38 +291,38 @@ SHORT: dict[DisturbanceKind, Callable[[Disturbance], str]] = {
     DisturbanceKind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
     DisturbanceKind.CREEP: lambda one: "the fixture creeps",
 }
-"""What disturbs, in a few words."""
+"""Disturbances in a few words."""
 
 
 def disturbance_in_words(one: Disturbance, kind: str) -> str:
-    """What happened, when, to whom, and what to do."""
-    who, size = named(one.sensors), amount(kind, one.size)
-    after = "; what came after it is judged alone." if one.passed else ". Leave it alone and record anew."
+    """What happened, when, to which sensors, and what to do."""
+    sensors, size = named(one.sensors), amount(kind, one.size)
+    consequence = "; what came after it is judged alone." if one.passed else ". Leave it alone and record anew."
     match one.kind:
         case DisturbanceKind.STEP:
             return say(
                 "{sensors} changed by {size} between {start} and {stop}: somebody touched it{consequence}",
-                sensors=who,
+                sensors=sensors,
                 size=size,
                 start=clock(one.start),
                 stop=clock(one.stop),
-                consequence=after,
+                consequence=consequence,
             )
         case DisturbanceKind.BURST:
             return say(
                 "{sensors} shook by {size} rms from {start} to {stop}{consequence}",
-                sensors=who,
+                sensors=sensors,
                 size=size,
                 start=clock(one.start),
                 stop=clock(one.stop),
-                consequence=after,
+                consequence=consequence,
             )
         case DisturbanceKind.SHAKING:
             return say(
                 "{sensors} shake by {size} rms all the time: a quadratic term within its tolerance would "
                 "turn that into more than the drift allowed. Find what vibrates, or decouple the stand "
                 "from it.",
-                sensors=who,
+                sensors=sensors,
                 size=size,
             )
         case DisturbanceKind.CLIPPED:
@@ -330,7 +330,7 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
             return say(
                 "{sensor} stands at the end of its range for {share} % of the samples: set a larger range, "
                 "or stop what vibrates.",
-                sensor=who,
+                sensor=sensors,
                 share=share,
             )
     turn = number(float(f"{one.size * ARCSEC.factor:.2g}"))
@@ -343,7 +343,7 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
 
 def fault_in_words(fault: RecordFault) -> str:
     """What is wrong with the record, and what to do."""
-    who = named(fault.sensors)
+    sensors = named(fault.sensors)
     match fault.kind:
         case FaultKind.NO_TIME:
             return "The rows have no times: add time_s, or sample_rate_hz for a raw log."
@@ -372,13 +372,13 @@ def fault_in_words(fault: RecordFault) -> str:
             return say(
                 "One and the same reading throughout: {sensors}. That is a dead channel and no rest; check "
                 "power and cables.",
-                sensors=who,
+                sensors=sensors,
             )
         case FaultKind.COARSE:
             return say(
                 "One step of the readings is larger than the drift allowed: {sensors}. Average more samples, "
                 "with more digits.",
-                sensors=who,
+                sensors=sensors,
             )
         case FaultKind.UNITS:
             return say(
@@ -388,7 +388,7 @@ def fault_in_words(fault: RecordFault) -> str:
             )
         case FaultKind.TURNING:
             return say(
-                "The block turns, or the units are wrong: {name}. Let it rest, or check nominal_scale.", name=who
+                "The block turns, or the units are wrong: {name}. Let it rest, or check nominal_scale.", name=sensors
             )
         case FaultKind.NOT_JUDGED:
             return "No tolerance says how far these sensors may drift: give one."
@@ -397,4 +397,4 @@ def fault_in_words(fault: RecordFault) -> str:
                 "There is a gap of {amount} minutes in the record; it is judged all the same.",
                 amount=minutes(fault.amount),
             )
-    return say("{sensor} is alone: a fixture that creeps cannot be told from a drift of its own.", sensor=who)
+    return say("{sensor} is alone: a fixture that creeps cannot be told from a drift of its own.", sensor=sensors)

@@ -62,7 +62,7 @@ class Deriving:
     outlook: bool = True
     """Whether the outlook is asked for: of many files in a row the last one brings it."""
     is_dated_later: bool = False
-    """Whether processes beside the requests make it; else it is made after the transaction (`refresh_beside.date`)."""
+    """Whether background processes make it; else it is made after the transaction (`refresh_beside.date`)."""
 
 
 @dataclass(frozen=True)

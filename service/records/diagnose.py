@@ -1,7 +1,7 @@
 """Flow: what the simulation gets wrong about a stored session, found once and kept.
 
 A session without a diagnosis is one whose diagnosis is pending. An upload asks for it within its own transaction, and
-processes beside the requests make it, or else whoever reads it first: see `service.work.loop`. So an
+background processes make it, or else whoever reads it first: see `service.work.loop`. So an
 acknowledged upload is never left without one.
 """
 

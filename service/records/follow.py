@@ -1,7 +1,7 @@
 """Flow: what follows from a change of records is worked out after the transaction that changed them, with none open.
 
 What that transaction left is kept by the sessions themselves, so whatever ends the process between the two, the work
-beside the requests (`service.work.watch`) finds it.
+in the background (`service.work.watch`) finds it.
 """
 
 from collections.abc import Sequence
@@ -41,7 +41,7 @@ def follow(storage: Storage, way: Deriving, serial: str, derived: Derived) -> No
 
 
 def derive_left(storage: Storage, way: Deriving, serial: str, derived: Derived) -> None:
-    """What a transaction has left to whoever changed the records; the rest is left to the work beside the requests."""
+    """What a transaction has left to whoever changed the records; the rest is left to background work."""
     if not derived.is_left:
         return
 
@@ -111,7 +111,7 @@ def _left(store: Store, way: Deriving, serial: str) -> int:
 
 
 def date(storage: Storage, way: Deriving, *serials: str) -> None:
-    """After a change of records, where no process beside the requests does it. What fails is kept with why, and costs
+    """After a change of records, where no background process does it. What fails is kept with why, and costs
     nobody else anything."""
     for serial in () if way.is_dated_later or not way.outlook else serials:
         with ending_here("outlook", serial):

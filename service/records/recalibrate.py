@@ -233,7 +233,7 @@ def _write_down(store: Store, way: Deriving, changed: Sequence[tuple[StoredSessi
 
 
 def recompute_beside(reception: Reception, now: datetime) -> None:
-    """Wakes whoever works beside the requests; where nobody does, it is done at once."""
+    """Wakes whoever works in the background; where nobody does, it is done at once."""
     reception.ring()
     while not reception.is_dated_later:
         with reception.storage.database.reading() as store:

@@ -74,7 +74,7 @@ class JobsPage:
     earlier: str
     """Address of the next page; empty where there is none."""
     failed: tuple[FailedLine, ...] = ()
-    """Work beside the requests that has failed."""
+    """Background work that has failed."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,7 @@ def show_jobs(
 
 @router.post("/jobs/failed/retry")
 def retry_failed(by: By, desk: JobDeskOf, storage: StorageOf, now: Now) -> RedirectResponse:
-    """Tries again what failed beside the requests."""
+    """Tries again what failed in the background."""
     desk.try_again(storage, now, by)
     return RedirectResponse("/jobs#failed", SEE_OTHER)
 
