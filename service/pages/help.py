@@ -361,7 +361,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/help")
 def show_help(request: Request) -> HTMLResponse:
-    """What to do when, and what the words mean."""
+    "What to do, and what the terms mean."
     return render(request, "help.html", help_page())
 
 

@@ -69,7 +69,7 @@ def test_what_all_sensors_show_sends_people_to_the_stand(run: Run, tmp_path: Pat
 def test_a_name_beside_an_unknown_cause_keeps_its_advice(run: Run, tmp_path: Path) -> None:
     shown = run("diagnose", write(tmp_path, "a.json", drawn(TWO_AT_ONCE).session)).out
     assert "Two causes at once, or a cause outside the catalogue (G2)" in shown
-    assert "If it comes back: Model the cubic term" in shown
+    assert "If it appears again: Model the cubic term" in shown
 
 
 def test_a_history_that_cannot_be_read_is_unusable_input(run: Run, warm_file: Path, bad_file: Path) -> None:

@@ -56,7 +56,7 @@ def test_a_doubt_of_a_name_stands_in_the_headline_and_its_advice_waits(holding: 
     text = unescape(page(*held(holding, TWO_AT_ONCE)))
     assert "Two causes at once, or a cause outside the catalogue (G2)" in headline(text)
     assert "Repeat the session before you act" in text
-    assert text.count("If it comes back:") == 2
+    assert text.count("If it appears again:") == 2
     assert 'value="unexplained"' not in text
 
 

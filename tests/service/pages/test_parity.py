@@ -1,4 +1,4 @@
-"""The page of a recording in service speaks of agreement, of what would have been seen, and of what never is."""
+"""The page of a recording in service speaks of agreement, of what would have been detected, and of what never is."""
 
 import json
 from functools import cache
@@ -30,7 +30,7 @@ def test_it_says_that_the_sensors_do_not_agree(page: str) -> None:
 
 
 def test_it_says_from_what_size_a_change_would_have_been_seen(page: str) -> None:
-    assert "What would have been seen" in page
+    assert "What would have been detected" in page
     assert '<td data-label="Share">50 %</td>' in page
 
 
