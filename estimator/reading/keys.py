@@ -57,7 +57,7 @@ def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
         if meant := meant_key(key, known):
             fields.add(key, say("is not a key of {path}; {meant}", path=fields.path or "the file", meant=meant))
         elif key in HOME and HOME[key] != fields.path:
-            fields.add(key, say("stands in the wrong place; it belongs in {home}", home=HOME[key]))
+            fields.add(key, say("is in the wrong place; it belongs in {home}", home=HOME[key]))
 
 
 def meant_key(key: str, known: Iterable[str]) -> str | None:

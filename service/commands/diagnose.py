@@ -142,6 +142,6 @@ def _scores(what: str, before: Score, after: Score) -> str:
 def _unseen(limits: Sequence[Limit]) -> Iterator[Text]:
     """What this session cannot see, by reason; and how many limits --json states."""
     for row in blind_causes(limits):
-        yield Text(f"  Not seen ({row.reason}): {row.causes}", "dim")
+        yield Text(f"  Not detectable ({row.reason}): {row.causes}", "dim")
     seen = sum(bool(limit.amplitude) for limit in limits)
     yield Text(f"  Smallest effects that would have been found: {counted(seen, 'cause')}, see --json", "dim")

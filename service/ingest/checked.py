@@ -109,7 +109,7 @@ def _fault(text: str) -> str | None:
             "is {text} characters long; at most {longest_notes} are kept", text=len(text), longest_notes=LONGEST_NOTES
         )
     if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
-        return "holds characters that are not text (NUL or half of a pair); remove them"
+        return "contains characters that are not text (NUL or half of a surrogate pair); remove them"
     return None
 
 
@@ -122,7 +122,7 @@ def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:
         return [
             Problem(
                 "started_at",
-                say("lies in the future ({at}); check the date or the clock that wrote it", at=f"{at:%Y-%m-%d}"),
+                say("is in the future ({at}); check the date or the clock of the recorder", at=f"{at:%Y-%m-%d}"),
             )
         ]
     return []

@@ -55,7 +55,7 @@ def _frames(rows: Rows, names: list[str], filename: str) -> Iterator[pl.DataFram
             at += len(frame)
             if at * columns > most:
                 raise refusal(
-                    filename, say("has more than {most} cells, the most of a recording; split it", most=most), "table"
+                    filename, say("has more than {most} cells, the limit for a recording; split it", most=most), "table"
                 )
             yield frame.cast(pl.Float64)
     except UNREADABLE as error:
@@ -67,8 +67,8 @@ Content = bytes | Path
 Reader = Callable[[bytes, str], dict[str, object]]
 
 NO_MAPPING = (
-    "is a log, which does not say which unit it is of or where it was: choose it on the upload page, or send it with a "
-    "mapping, which POST /api/v1/layouts/preview proposes"
+    "is a log, which does not state its unit or place: choose it on the upload page, or send it with a mapping, which "
+    "POST /api/v1/layouts/preview proposes"
 )
 
 READERS: tuple[tuple[bytes, Reader], ...] = (

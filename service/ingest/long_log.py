@@ -292,7 +292,7 @@ class _Scan:
                 if at * columns > most:
                     raise refusal(
                         self.filename,
-                        say("has more than {most} cells, the most of a raw log; split it", most=most),
+                        say("has more than {most} cells, the limit for a raw log; split it", most=most),
                         "table",
                     )
                 if len(frame):

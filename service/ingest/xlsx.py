@@ -54,7 +54,7 @@ def check_workbook(content: bytes, filename: str) -> None:
     for rows, columns in extents:
         check_table(filename, rows, columns)
     if sum(count * lengths[place] for place, count in shared.items() if place < len(lengths)) > MOST_TEXT:
-        raise refusal(filename, "holds far too much text; labels should be short")
+        raise refusal(filename, "contains far too much text; labels should be short")
 
 
 def _look_through(content: bytes, lengths: list[int], shared: Counter[int], extents: list[tuple[int, int]]) -> None:

@@ -88,7 +88,7 @@ def outcome_of(job: Job) -> str:
     other = (
         say("{verdicts} with another verdict", verdicts=counted(job.verdicts, "session"))
         if job.verdicts
-        else "no verdict moved"
+        else "no verdict changed"
     )
     return say("{recomputed} computed again, {other}.", recomputed=counted(job.recomputed, "session"), other=other)
 

@@ -137,7 +137,7 @@ class Progress(StrEnum):
 
     WAITING = "waiting"
     DONE = "done"
-    GIVEN_UP = "given up"
+    GIVEN_UP = "abandoned"
     """No process outlived it: the sessions keep what they had."""
     CANCELLED = "cancelled"
     """Somebody stopped it before its turn: the sessions keep what they had."""

@@ -10,9 +10,9 @@ GIVEN_UP = (
     "The program failed at it, several times: its sessions keep what they had. An administrator can try again: see "
     "Failed work on the page Jobs."
 )
-AGAIN = "The last try failed: {why}. It is tried again by itself."
+AGAIN = "The last try failed: {why}. It is retried automatically."
 CANCELLED = "Cancelled before its turn: its sessions keep what they had."
-UNTOUCHED = "no parameter moved"
+UNTOUCHED = "no parameter changed"
 
 
 def progress_of(found: Sequence[Recomputation]) -> str:
@@ -23,9 +23,7 @@ def progress_of(found: Sequence[Recomputation]) -> str:
     waiting = sum(one.state is Progress.WAITING for one in found)
     sessions, moved = sum(one.recomputed for one in done), sum(len(one.verdicts) for one in done)
     units = say("{done} of {found}", done=len(done), found=_counted(len(found), "unit"))
-    verdicts = (
-        say("the verdict of {moved} is another", moved=_counted(moved, "session")) if moved else "no verdict moved"
-    )
+    verdicts = say("verdict changed: {moved}", moved=_counted(moved, "session")) if moved else "no verdict changed"
     still = say(" {waiting} still to come.", waiting=_counted(waiting, "unit")) if waiting else ""
     return say(
         "{sessions} of {units} computed again: {verdicts}.{still}",

@@ -55,8 +55,8 @@ STATES = {
 """What whoever signs states."""
 BOUND = "Signed in imu-health with the password asked again; holds for the content with SHA-256 {hash}."
 NO_LONGER = (
-    "What certificate {number} rests on has changed since it was {done}: it no longer states what is stored. "
-    "The next certificate will have another number, and must be signed anew."
+    "The data of certificate {number} have changed since it was {done}: it no longer states what is stored. The next "
+    "certificate has another number and must be signed again."
 )
 CHANGED_HASH = "Certificate {number} was signed under another content than is on record: the database was changed."
 NOT_COUNTED = "The session no longer counts: certificate {number} should not be used."

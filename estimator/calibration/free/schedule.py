@@ -61,8 +61,8 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
                 Problem(
                     "table",
                     say(
-                        "all {r} rows show the same orientation: by nominal_scale the readings vary by {swing} "
-                        "g; {advice}",
+                        "all {r} rows have the same orientation: with nominal_scale the readings vary by {swing} g; "
+                        "{advice}",
                         r=R,
                         swing=f"{swing.max():.1g}",
                         advice=advice(0),
@@ -80,10 +80,10 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
 def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
     """Why the accelerometers cannot measure a vector."""
     silent = [s.name for s, dead in zip(session.sensors, ~live & ~gyro, strict=True) if dead]
-    reason = say(" ({silent} did not answer to the turns)", silent=joined(", ", silent)) if silent else ""
+    reason = say(" ({silent} did not respond to the rotation)", silent=joined(", ", silent)) if silent else ""
     return say(
-        "{live} accelerometers whose nominal axes do not span space{reason}; arbitrary "
-        "orientations need three or more axes that do not lie in one plane",
+        "the nominal axes of {live} accelerometers do not span space{reason}; arbitrary orientations need three or "
+        "more axes that are not in one plane",
         live=int(live.sum()),
         reason=reason,
     )

@@ -79,7 +79,7 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     if not any(stream.kind == ACCELEROMETER for stream in ordered):
         raise refusal(
             filename,
-            say("holds no accelerometer with {fewest} samples or more; log the raw IMUs", fewest=FEWEST),
+            say("contains no accelerometer with at least {fewest} samples; log the raw IMU data", fewest=FEWEST),
             "table",
         )
     start = max(float(stream.time[0]) for stream in ordered)
@@ -112,8 +112,8 @@ def _left_out(streams: Sequence[Stream], sound: Sequence[Stream]) -> Iterator[st
         if len(kept.time) < len(stream.time):
             gone = len(stream.time) - len(kept.time)
             yield say_count(
-                "{label}: {n} sample left out for want of a number.",
-                "{label}: {n} samples left out for want of a number.",
+                "{label}: {n} sample without a number left out.",
+                "{label}: {n} samples without a number left out.",
                 gone,
                 label=stream.label,
             )
@@ -125,7 +125,7 @@ def _left_out(streams: Sequence[Stream], sound: Sequence[Stream]) -> Iterator[st
 
 def _torn(kept: int, rows: int) -> Iterator[str]:
     if kept < rows:
-        yield say("{rows} of {rows2} rows left out: some IMU says nothing there.", rows=rows - kept, rows2=rows)
+        yield say("{rows} of {rows2} rows left out: an IMU has no data there.", rows=rows - kept, rows2=rows)
 
 
 def _rate(stream: Stream) -> float:

@@ -142,11 +142,11 @@ TWO_STANDS = (
     "They were measured on different stands, {first} and {second}: the constant errors of each count in full, and what "
     "differs between the stands is part of the difference."
 )
-NO_STAND = "They were not both measured on a stand: the errors of each count in full."
-SERVICED = "Between them the unit was serviced ({days}): a change may be what was done to it."
+NO_STAND = "Not both were measured on a stand: the errors of each count in full."
+SERVICED = "The unit was serviced between them ({days}): a change may come from the service."
 OTHER_MODEL = (
-    "They were calibrated with different causes in the model, revisions {first} and {second}: a part of the difference "
-    "may be the model's."
+    "They were calibrated with different causes in the model, revisions {first} and {second}: part of the difference "
+    "may come from the model."
 )
 OTHER_METHOD = "They were measured in different ways, {first} and {second}."
 
@@ -170,7 +170,7 @@ def _stand(first: str | None, second: str | None) -> str:
     return say(ONE_STAND, stand=first) if first == second else say(TWO_STANDS, first=first, second=second)
 
 
-NOT_COMPARED = "not told by both"
+NOT_COMPARED = "not determined by both"
 
 
 @dataclass(frozen=True)

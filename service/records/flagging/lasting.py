@@ -256,5 +256,5 @@ def _require_whole(one: StandCondition) -> None:
     """Tells of sessions whose common motion cannot be used; without them the stand is still judged."""
     if one.unreadable:
         raise ServiceError(
-            say("What is stored of these sessions cannot be used: {why}.", why=", ".join(one.unreadable))
+            say("The stored data of these sessions cannot be used: {why}.", why=", ".join(one.unreadable))
         )

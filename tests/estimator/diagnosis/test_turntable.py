@@ -196,7 +196,7 @@ def test_many_turns_are_cut_into_fewer_pieces() -> None:
 
 def test_what_no_turn_shows_is_said() -> None:
     found = diagnose(turned(AWAY))
-    assert found.notes[0].startswith("A3 points along the turn axis: where it stands does not show.")
+    assert found.notes[0].startswith("A3 points along the turn axis: its position is not observable.")
     assert [limit.cause for limit in found.limits] == ["lever-arm"]
 
 

@@ -33,7 +33,7 @@ def test_one_file_with_json_gives_the_object(run: Run, warm_file: Path) -> None:
 
 def test_people_read_the_cause_its_size_and_what_to_do(run: Run, warm_file: Path) -> None:
     shown = run("diagnose", warm_file).out
-    for part in ("The bias of A5 depends on temperature.", "What to do:", "±", "µg/K", "Not seen"):
+    for part in ("The bias of A5 depends on temperature.", "What to do:", "±", "µg/K", "Not detectable"):
         assert part in shown
 
 
@@ -63,7 +63,7 @@ def test_wrong_standard_errors_are_said(run: Run, tmp_path: Path) -> None:
 def test_what_all_sensors_show_sends_people_to_the_stand(run: Run, tmp_path: Path) -> None:
     shown = run("diagnose", write(tmp_path, "a.json", swaying_stand())).out
     assert "An effect common to all sensors, of the stand or fixture" in shown
-    assert "What to do: All sensors show the same" in shown
+    assert "What to do: All sensors show it" in shown
 
 
 def test_a_name_beside_an_unknown_cause_keeps_its_advice(run: Run, tmp_path: Path) -> None:

@@ -85,7 +85,7 @@ def test_a_unit_type_without_tolerances_is_diagnosed_like_any_other(holding: Hol
 def test_what_a_cause_explains_is_no_noise(holding: Holding) -> None:
     document = json.dumps(warm(2, "2026-03-05T08:00:00Z")).encode()
     client, id = holding(document), session_id(document)
-    assert "The readings scatter more than that" in client.get(f"/sessions/{id}", headers=HTML).text
+    assert "The readings scatter more:" in client.get(f"/sessions/{id}", headers=HTML).text
     text = page(client, id)
     assert "The band is ±2σ of the stated noise." in text
     assert "scatter more" not in text

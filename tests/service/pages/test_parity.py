@@ -40,7 +40,7 @@ def test_it_says_what_parity_never_sees(page: str) -> None:
 
 
 def test_a_recording_of_one_orientation_is_told_to_turn(holding: Holding) -> None:
-    assert "The recording turns too little" in page_of(holding, recording_bytes(still=True))
+    assert "The recording has too little rotation" in page_of(holding, recording_bytes(still=True))
 
 
 @cache
@@ -62,7 +62,7 @@ def test_a_block_that_moves_too_much_is_told_so_and_what_to_do(holding: Holding)
     page = unescape(client.get(f"/sessions/{session_id(flight)}").text)
     assert "Too much motion for a decision." in page
     assert "Too much motion for a decision: the sensors disagree, possibly because of lever arms, delays" in page
-    assert "hold the unit still for 15 s while recording, or state where its sensors sit (position_m)" in page
+    assert "hold the unit still for 15 s while recording, or state where its sensors are (position_m)" in page
 
 
 def test_nothing_is_lost_for_a_block_that_moves_too_much(holding: Holding) -> None:
