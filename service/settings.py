@@ -69,7 +69,7 @@ class Settings(BaseSettings):
 
     data_folder: Path = Field(
         default_factory=default_data_folder,
-        description="Where uploaded files are kept, and the SQLite database unless database_url says otherwise.",
+        description="Folder of uploaded files, and of the SQLite database unless database_url is set.",
     )
     database_url: str | None = Field(
         default=None,

@@ -84,7 +84,7 @@ def outcome_of(job: Job) -> str:
     if job.kind is JobKind.REPORT:
         return ""
     if job.state is JobState.DONE and not job.recomputed and not job.failed:
-        return "No session needed it: all rest on the models in force already."
+        return "No session needed it: all use the models in force."
     other = (
         say("{verdicts} with another verdict", verdicts=counted(job.verdicts, "session"))
         if job.verdicts

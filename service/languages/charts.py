@@ -7,11 +7,11 @@ READ = frozenset(("title", "text", "description", "subtitle"))
 """Keys of Vega-Lite under which a text stands that people read."""
 
 
-def chart_in(data: Any, say: Callable[[str], str], time: Mapping[str, Any]) -> Any:
-    """A whole definition, its axes of time in the language too; ``time`` is d3's locale of it."""
+def chart_in(data: Any, say: Callable[[str], str], locale: Mapping[str, Any]) -> Any:
+    """A whole definition, its axes of time and numbers in the language too; ``locale`` as d3 wants it."""
     told = _part_in(data, say)
     if isinstance(told, dict) and "config" in told:
-        told["config"] = told["config"] | {"locale": {"time": time}}
+        told["config"] = told["config"] | {"locale": locale}
     return told
 
 

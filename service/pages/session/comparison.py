@@ -134,9 +134,9 @@ def _axis_repeatability(calibration: Calibration, sensor: SensorCalibration) -> 
 
 DIRECT = "They are compared directly, so the reference that both are judged against plays no part in the difference."
 ONE_STAND = (
-    "Both were measured on stand {stand}: unless it was set anew between them, its constant errors act on both alike "
-    "and cancel in the difference. “On one stand” leaves them out; ± U counts them in full for each, as the decision "
-    "rule does, and is the larger of the two."
+    "Both were measured on stand {stand}: unless it was realigned between them, its constant errors cancel in the "
+    "difference. “On one stand” excludes them; ± U includes them in full for each, as the decision rule does, and is "
+    "the larger of the two."
 )
 TWO_STANDS = (
     "They were measured on different stands, {first} and {second}: the constant errors of each count in full, and what "

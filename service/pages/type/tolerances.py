@@ -178,13 +178,13 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
     """What was not looked at, and why."""
     if found.references:
         yield say(
-            "{references} not counted: the latest session is a reference, judged by nothing.",
+            "{references} not counted: the latest session is a reference, which is not judged.",
             references=counted(found.references, "unit"),
         )
     if found.recordings:
         units = counted(found.recordings, "unit")
         yield say(
-            "{units} not counted: the latest session is a recording in service without a calibration beside it.",
+            "{units} not counted: the latest session is a recording in service without a calibration.",
             units=units,
         )
     if found.beyond:

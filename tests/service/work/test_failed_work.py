@@ -95,7 +95,7 @@ def test_work_that_takes_too_long_is_ended_and_says_so(settings: Settings) -> No
         figures = client.get("/metrics").text
     assert diagnosis["detail"].endswith(f"The last try: {late}.")
     assert late in outlook["failed"]
-    assert "не сделано за 0.001 с" in in_russian
+    assert "не закончено за предельное время 0,001 с" in in_russian
     assert 'fault="TookTooLong",work="pending diagnoses"} 3.0' in figures
     with served(settings, 1) as client:
         assert client.post("/api/v1/jobs/failed/retry").json()["retried"] > 0
