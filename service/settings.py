@@ -157,7 +157,7 @@ class Settings(BaseSettings):
         default="", max_length=2000, description="Where it measures, if that is not at its address."
     )
     four_eyes: bool = Field(
-        default=True, description="Whether a certificate must be approved by somebody else than who reviewed it."
+        default=True, description="Whether a certificate must be approved by another person than its reviewer."
     )
     seal_key_file: Path | None = Field(
         default=None,

@@ -62,7 +62,7 @@ def _look_through(content: bytes, lengths: list[int], shared: Counter[int], exte
     with ZipFile(BytesIO(content)) as archive:
         members = archive.infolist()
         if len(members) > MOST_MEMBERS:
-            raise TooMuchError(say("has {members} parts, where a workbook has some twenty", members=len(members)))
+            raise TooMuchError(say("has {members} parts; a workbook has about twenty", members=len(members)))
         for member in members:
             part = _Part(lengths, shared)
             left -= _streamed(archive, member, part, left)

@@ -4,8 +4,8 @@ import re
 from collections.abc import Callable
 
 _NUMBER = r"\d+(?:,\d{3})*(?:\.\d+)?"
-VALUE = re.compile(rf"([+−±]?{_NUMBER}(?:\s±\s{_NUMBER})?)(\s?)([^\s\d.,:;]*)(\s*)")
-"""A text that is one number and at most one measure."""
+VALUE = re.compile(rf"([+−±]?{_NUMBER}(?:(?:\s±\s|–|…){_NUMBER})?)(\s?)([^\s\d.,:;]*)(\s*)")
+"""A text that is one number, or a range, and at most one measure."""
 NARROW = "\u202f"
 """Between thousands."""
 
@@ -16,4 +16,5 @@ def value_in(text: str, say: Callable[[str], str]) -> str:
     if found is None:
         return text
     number, gap, label, rest = found.groups()
-    return f"{number.replace(',', NARROW).replace('.', ',')}{gap}{label and say(label)}{rest}"
+    measure = "/".join(map(say, label.split("/")))
+    return f"{number.replace(',', NARROW).replace('.', ',')}{gap}{measure}{rest}"

@@ -54,8 +54,8 @@ def _vector(direction: list[float]) -> str:
 
 
 VERDICTS = {
-    "enough": "enough: U leaves the tolerance the share that was asked for",
-    "usable": "usable: U stays within the tolerance, but takes more than its share",
+    "enough": "enough: U is within the requested share of the tolerance",
+    "usable": "usable: U is within the tolerance, but larger than the requested share",
     "undecidable": "undecidable: U exceeds the tolerance, or nothing is observed",
     "not judged": "no tolerance was given",
 }

@@ -15,10 +15,7 @@ FOLDER = "waiting"
 """Beside the folders of the uploads, whose names are two hexadecimal digits."""
 UNASKED = timedelta(hours=1)
 """That a file may wait before its job is on record: a commit takes a moment."""
-GONE = (
-    "The file that was sent is gone from the disk of the service, or was changed there. Nothing was stored: upload it "
-    "again."
-)
+GONE = "The received file was deleted or changed on the disk of the service. Nothing was stored: upload it again."
 
 
 def put_waiting(files: Files, place: str, content: Content) -> None:

@@ -182,7 +182,7 @@ def layout_page(carried: Carried, found: Preview, form: LayoutForm, types: Seque
 
 def _dated(problems: tuple[Problem, ...], day: str) -> tuple[Problem, ...]:
     """A history needs the day, which a session file may leave out."""
-    return problems if day else (*problems, Problem("started_at", "missing; say on which day it was measured"))
+    return problems if day else (*problems, Problem("started_at", "missing; state the day of measurement"))
 
 
 def _choices(values: Sequence[str], chosen: str) -> tuple[Choice, ...]:
