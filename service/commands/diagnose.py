@@ -103,7 +103,7 @@ def _finding(finding: FindingView, colour: str) -> Iterator[RenderableType]:
     if finding.doubtful and not finding.lone:
         yield _choices(finding)
     else:
-        yield Text(f"  {'If it comes back' if finding.lone else 'What to do'}: {said(finding.advice)}")
+        yield Text(f"  {'If it appears again' if finding.lone else 'What to do'}: {said(finding.advice)}")
     size = ", ".join(finding.amplitudes)
     parts = [f"size {size}" if size else "", finding.shape, finding.evidence, finding.since]
     yield Text("  " + "; ".join(part.rstrip(".") for part in parts if part))
@@ -144,4 +144,4 @@ def _unseen(limits: Sequence[Limit]) -> Iterator[Text]:
     for row in blind_causes(limits):
         yield Text(f"  Not detectable ({row.reason}): {row.causes}", "dim")
     seen = sum(bool(limit.amplitude) for limit in limits)
-    yield Text(f"  Smallest effects that would have been found: {counted(seen, 'cause')}, see --json", "dim")
+    yield Text(f"  Smallest detectable effects: {counted(seen, 'cause')}, see --json", "dim")

@@ -90,7 +90,7 @@ def test_too_few_live_sensors_are_named():
     measured = session(truth(3), sphere(24, np.random.default_rng(1)))
     stuck = measured.readings.copy()
     stuck[:, 1] = 0.4
-    with pytest.raises(ScheduleError, match="A2 did not answer"):
+    with pytest.raises(ScheduleError, match="A2 did not respond"):
         calibrate_free(replace(measured, readings=stuck))
 
 

@@ -184,7 +184,7 @@ def test_of_many_stated_positions_the_wrong_one_is_named() -> None:
     wrong[2, :2] += 0.04, 0.03
     [finding] = diagnose(cone_of_six(places, wrong)).findings
     assert finding.sensors == ("A3",)
-    assert finding.sentence.startswith("A3 stands 5.")
+    assert finding.sentence.startswith("A3 is 5.")
 
 
 def test_many_turns_are_cut_into_fewer_pieces() -> None:
