@@ -100,7 +100,7 @@ def _rows(lines: list[str], separator: str, problems: Problems) -> list[list[str
         raise problems.fail("file", say("is not a readable CSV table: {error}", error=error)) from error
     if len(rows) != len(lines) or lines[-1].count('"') % 2:
         raise problems.fail(
-            "table", ("a cell contains a line break, or a quote is not closed; keep each row on one line")
+            "table", "a cell contains a line break, or a quote is not closed; keep each row on one line"
         )
     return rows
 

@@ -36,7 +36,7 @@ def parse_json(text: str, problems: Problems) -> dict[str, object]:
         raise problems.fail("file", "is nested far deeper than any session; check the file") from error
     except ValueError as error:
         raise problems.fail(
-            "file", ("contains a number of thousands of digits; write numbers as 0.123 or 1e-6")
+            "file", "contains a number of thousands of digits; write numbers as 0.123 or 1e-6"
         ) from error
     for key in repeated:
         problems.add(key, "is given more than once in one object; keep one")

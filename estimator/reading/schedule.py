@@ -52,7 +52,7 @@ def _check_beta(table: Rows, problems: Problems) -> None:
         return
     if np.unique(np.exp(1j * table.beta).round(9)).size < FEWEST_POSITIONS:
         problems.add_to_schedule(
-            "beta_deg", ("all rows are at a single position; turn the head and measure at several β")
+            "beta_deg", "all rows are at a single position; turn the head and measure at several β"
         )
 
 

@@ -114,9 +114,7 @@ def _evidence(strength: float, pooled: Pooled | None) -> str:
         )
     since = since_in_words(pooled.form, pooled.since)
     fitted = (
-        ("estimated from all sessions together")
-        if pooled.form == "varying"
-        else "not estimated again in single sessions"
+        "estimated from all sessions together" if pooled.form == "varying" else "not estimated again in single sessions"
     )
     return say(
         "{sessions}, {since}: {strength}. Size from these sessions: {fitted}.",
