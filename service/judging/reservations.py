@@ -15,9 +15,10 @@ from estimator.diagnosis import Finding
 from estimator.diagnosis.explanation.accepted import calibrate_extended
 from estimator.diagnosis.explanation.temperature import LEAST_DIFFERENCE, OF_TEMPERATURE
 from estimator.diagnosis.results import NoiseScale, Structure
-from estimator.health.detection import LEVEL, Warmth, warmed
+from estimator.health.detection import LEVEL, warmed
 from estimator.health.fits import Readings
 from estimator.health.prognosis import Track
+from estimator.health.warmth import Warmth
 from estimator.results import Calibration, Residuals
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.diagnosis.words.causes import UNKNOWN_CAUSE
@@ -94,13 +95,13 @@ def covered_by(session: StoredSession, reference: Residuals, earlier: Iterable[S
 def worth_of(covered: Covered) -> tuple[Size, ...] | None:
     """What the step in temperature is worth in every parameter, by the earlier sessions; None where they do not tell.
 
-    It goes on in a straight line beyond the temperatures that they span.
+    The law, a line or a parabola, is taken to go on beyond the temperatures that they span.
     """
     known = histories(covered.changes, covered.references)
     laws = [_law(track) for track in known.tracks]
     if not laws or any(law is None for law in laws):
         return None
-    step = abs(covered.now - covered.reference)
+    step = (covered.reference, covered.now)
     each = zip(known.keys, known.tracks, laws, strict=True)
     return tuple(_size(key, track.tolerance, law, step) for key, track, law in each if law is not None)
 
@@ -113,9 +114,10 @@ def _law(track: Track) -> Warmth | None:
     return warmed(changes, 0.0, track.dof, track.temperature, LEVEL).warmth
 
 
-def _size(key: TrackKey, tolerance: float, law: Warmth, step: float) -> Size:
-    value, sigma = float(np.linalg.norm(law.coefficient)), float(law.sigma.max())
-    return Size((key.sensor,), key.kind, key.parameter, value * step * tolerance, sigma * step * tolerance, tolerance)
+def _size(key: TrackKey, tolerance: float, law: Warmth, step: tuple[float, float]) -> Size:
+    worth, sigma = law.between(*step)
+    value, u = float(np.linalg.norm(worth)) * tolerance, float(sigma.max()) * tolerance
+    return Size((key.sensor,), key.kind, key.parameter, value, u, tolerance)
 
 
 MOST_ALTERNATIVES = 3

@@ -21,7 +21,7 @@ from service.units.store import Services, Units
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
-RULE = b"5"
+RULE = b"6"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""

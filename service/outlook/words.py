@@ -87,6 +87,13 @@ def place_of(trend: ParameterTrend) -> str:
 
 
 def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
+    if warm.curvature is not None:
+        return say(
+            "{trend} follows the temperature of the session along a curve, by {trend2} at its middle; its trend goes "
+            "on without that.",
+            trend=place_of(trend),
+            trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
+        )
     return say(
         "{trend} follows the temperature of the session, by {trend2}; its trend goes on without that.",
         trend=place_of(trend),

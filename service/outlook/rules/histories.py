@@ -8,9 +8,10 @@ import numpy as np
 
 from estimator.health.pooled import Evidence
 from estimator.health.prognosis import Track, evidence
+from estimator.health.warmth import shows_temperature
 from estimator.session import comparable
 from service.kit.measures import YEAR
-from service.outlook.store import ChangeRow, ReferenceRow
+from service.outlook.store import FOLLOW, ChangeRow, ReferenceRow
 from service.sessions.records import HistoryPoint
 from service.units.records import Service
 
@@ -108,6 +109,8 @@ class Histories:
 
 
 Group = tuple[list[ChangeRow], ReferenceRow]
+Measured = tuple[list[float], list[float]]
+"""Change, and its uncertainty."""
 Point = tuple[datetime, list[float], list[float], float | None, float | None]
 """Date, change, its uncertainty with its degrees of freedom, temperature."""
 
@@ -148,8 +151,16 @@ def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, t
     A change's degrees of freedom are those of both its sessions; the reference counts with the fewest.
     """
     fewest = min((row.dof for row in rows if row.dof is not None), default=None)
-    origin: Point = (reference.at, [0.0] * len(rows[-1].change), rows[-1].origin, fewest, reference.temperature)
-    points = sorted([origin, *((row.at, row.change, row.own, row.dof, row.temperature) for row in rows)], key=_date)
+    judged: tuple[Measured, ...] = (
+        ([0.0] * len(rows[-1].change), rows[-1].origin),
+        *((row.change, row.own) for row in rows),
+    )
+    conditions = (
+        (reference.at, fewest, reference.temperature),
+        *((row.at, row.dof, row.temperature) for row in rows),
+    )
+    changes = zip(conditions, _as_measured(rows, reference) or judged, strict=True)
+    points = sorted(((at, *change, dof, warm) for (at, dof, warm), change in changes), key=_date)
     start = points[0][0]
     track = Track(
         time=np.array([(at - start) / YEAR for at, *_ in points]),
@@ -160,6 +171,26 @@ def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, t
         temperature=np.array([np.nan if warm is None else warm for *_, warm in points]),
     )
     return track, tuple(at for at, *_ in points)
+
+
+def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Measured, ...] | None:
+    """The reference's change and those of the rows, nothing taken off, where the sessions span temperature; None of a
+    parameter that does not follow it.
+
+    What all sensors have in common is what a majority agrees on: of sensors that each follow the temperature by a law
+    of their own it is another one at each temperature, and what is left of them follows none.
+    """
+    warm = np.array([reference.temperature, *(row.temperature for row in rows)], dtype=float)
+    first = reference.u.get((rows[-1].sensor, rows[-1].parameter))
+    if rows[-1].parameter not in FOLLOW or first is None or not shows_temperature(warm):
+        return None
+    points = [(row.value, row.reference, row.u) for row in rows]
+    if any(None in point for point in points):
+        return None
+    values = np.array(points, dtype=float)
+    one = values[:, 1] if rows[-1].parameter == "scale" else np.ones(len(rows))
+    change, u = (values[:, 0] - values[:, 1]) / one, values[:, 2] / np.abs(one)
+    return (([0.0], [first / abs(one[-1])]), *(([float(d)], [float(s)]) for d, s in zip(change, u, strict=True)))
 
 
 def _date(point: Point) -> datetime:
