@@ -30,6 +30,7 @@ CATALOGUE = {
     "scale-asymmetry": _hidden(1, SENSOR),
     "cross-coupling": _hidden(2, SENSOR),
     "bias-temperature": _hidden(1, SENSOR, "temperature"),
+    "bias-temperature-curve": _hidden(2, SENSOR, "temperature"),
     "scale-temperature": _hidden(1, SENSOR, "temperature"),
     "bias-ramp": _hidden(1, SENSOR, "time"),
     "warm-up": _hidden(1, SENSOR, "time", free=2),
