@@ -52,6 +52,7 @@ class BiasTemperatureCurve(SensorCause):
     equation = "k1·(T − T̄) + k2·(T − T̄)²"
     units = ("m/s²/K", "m/s²/K²")
     needs = frozenset({"temperature"})
+    contains = frozenset({"bias-temperature"})
     alike = True
     sentence = "The zero of {sensors} follows the temperature along a curve."
     advice = "Model the zero by a parabola over the temperature, or hold the temperature during the session."

@@ -238,7 +238,7 @@ class Doubted:
 def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
     """Everything that the verdict is said with, by how much it matters; empty where it is plain."""
     found = (
-        *_of_temperature(session),
+        *_of_temperature(session.temperatures, session.worth),
         *_of_findings(session),
         *_of_models(session),
         *_of_structures(session),
@@ -260,12 +260,22 @@ def _of_findings(session: Doubted) -> Iterator[Reservation]:
             yield _sized(plain, size)
 
 
-def _of_temperature(session: Doubted) -> Iterator[Reservation]:
+def reservations_at(temperatures: Covered | None) -> tuple[Reservation, ...]:
+    """Of a session that no causes are looked for in, such as a recording in service."""
+    return tuple(_of_temperature(temperatures, worth_at(temperatures)))
+
+
+def worth_at(temperatures: Covered | None) -> tuple[Size, ...] | None:
+    """What a step out of the temperatures that a unit covers is worth in every parameter; None where there is none, or
+    where that is not known."""
+    return None if temperatures is None or not temperatures.is_far else worth_of(temperatures)
+
+
+def _of_temperature(seen: Covered | None, each: tuple[Size, ...] | None) -> Iterator[Reservation]:
     """Where the session lies outside what its unit covers, unless that is known to be worth little."""
-    seen = session.temperatures
     if seen is None or not seen.is_far:
         return
-    worth = None if session.worth is None else max(session.worth, key=_at_most)
+    worth = None if each is None else max(each, key=_at_most)
     if worth is not None and _at_most(worth) <= WORTH_SAYING:
         return
     known = "" if worth is None else worth_in(worth.parameter, worth.sensors[0], _in_words(worth))

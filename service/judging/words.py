@@ -116,7 +116,7 @@ def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: s
         )
     if worth:
         return say("{away}, and the temperature alone may be worth {worth}", away=away, worth=worth)
-    return say("{away}, and the temperature alone can make or hide a change", away=away)
+    return say("{away}, and the temperature alone can make or hide a change of unknown size", away=away)
 
 
 def worth_in(parameter: str, sensor: str, size: str) -> str:

@@ -102,6 +102,10 @@ class Sessions(Queries):
         row = self._session.execute(keys.where(SessionRow.id == named)).one_or_none()
         return None if row is None else tuple(row)
 
+    def block(self, id: str) -> str:
+        """What a session measured: the block's kind."""
+        return self._session.execute(select(SessionRow.block).where(SessionRow.id == id)).scalar_one()
+
     def reference(
         self,
         unit: int,
