@@ -208,6 +208,8 @@ class Cause(ABC):
     """Whether the model of its programme holds it in every session, so that nothing is left to accept."""
     shape_words: ClassVar[str] = ""
     """What its nonlinear parameter is, for people: ``time constant``, ``from`` (a row)."""
+    contains: ClassVar[frozenset[str]] = frozenset()
+    """Causes that it is where some of its amplitudes are zero: beside one that is named it says nothing else."""
     amplitude_words: ClassVar[tuple[str, ...]] = ()
     """What each of several amplitudes is, for people; empty where they are mere coefficients."""
 

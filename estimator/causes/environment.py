@@ -46,6 +46,33 @@ class BiasTemperature(SensorCause):
         return column(warmth(setting))
 
 
+class BiasTemperatureCurve(SensorCause):
+    """A line, which is simpler, is named where the bend does not show."""
+
+    identifier = "bias-temperature-curve"
+    scope = "environment"
+    equation = "k1·(T − T̄) + k2·(T − T̄)²"
+    units = ("m/s²/K", "m/s²/K²")
+    needs = frozenset({"temperature"})
+    contains = frozenset({"bias-temperature"})
+    alike = True
+    sentence = "The bias of {sensors} depends on temperature along a curve."
+    advice = "Model the bias as a parabola over temperature, or hold the temperature during the session."
+    fewest = 4
+    """Different temperatures: a parabola goes through any three."""
+
+    def available(self, setting: Setting) -> bool:
+        return (
+            super().available(setting)
+            and setting.temperature is not None
+            and len(np.unique(setting.temperature)) >= self.fewest
+        )
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 2) T − T̄, °C, and its square, °C²."""
+        return column(warmth(setting), warmth(setting) ** 2)
+
+
 class ScaleTemperature(SensorCause):
     identifier = "scale-temperature"
     scope = "environment"

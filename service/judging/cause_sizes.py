@@ -1,8 +1,8 @@
 """How large a named cause is in the unit of a tolerance: what it does to a zero, a scale factor or a direction.
 
 A cause that acts at the input counts as what it adds to a reading, a coefficient times what the session gave it to act
-on: the span of time or temperature from end to end, or the input itself. One that scales the input counts as a relative
-change, one that turns something as an angle.
+on: the span of time or temperature from end to end, of a square that of half the span about the middle, or the input
+itself. One that scales the input counts as a relative change, one that turns something as an angle.
 """
 
 from collections.abc import Iterator, Mapping
@@ -28,6 +28,7 @@ ACTS_ON = {
     "1/s": ("scale", "time"),
     "input": ("bias", "nothing"),
     "input/K": ("bias", "temperature"),
+    "input/K²": ("bias", "temperature²"),
     "input/s": ("bias", "time"),
     "input/(K/s)": ("bias", "warming"),
     "(input)⁻¹": ("bias", "input²"),
@@ -145,6 +146,8 @@ def _times(by: str, kind: str, residuals: Residuals) -> float:
     match by:
         case "temperature":
             return _span(residuals.temperature)
+        case "temperature²":
+            return (_span(residuals.temperature) / 2) ** 2
         case "time":
             return _span(residuals.time)
         case "warming":

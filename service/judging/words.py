@@ -111,7 +111,7 @@ def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: s
     away = say(above if outside > 0 else below, **parts)
     if worth:
         return say("{away}; temperature alone may account for {worth}", away=away, worth=worth)
-    return say("{away}; temperature alone can cause or hide a change", away=away)
+    return say("{away}; temperature alone can cause or hide a change of unknown size", away=away)
 
 
 def worth_in(parameter: str, sensor: str, size: str) -> str:

@@ -1,7 +1,7 @@
 """Outlooks, one a unit, the changes that they are made of, and those still to be worked out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
 
 import numpy as np
@@ -17,7 +17,7 @@ from service.outlook.populations import Placed, Population
 from service.outlook.records import DueDate, ParameterTrend, Rate, UnitOutlook
 from service.outlook.tables import HistoryRow, OutlookRow, PopulationRow
 from service.sessions.states_store import IS_ACCEPTED
-from service.sessions.tables import MOVES_DATES, DecisionRow, SessionRow
+from service.sessions.tables import MOVES_DATES, DecisionRow, ParameterRow, SessionRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.types.store import counts_for_type
@@ -97,6 +97,11 @@ class ChangeRow:
     """Degrees of freedom of the uncertainty; None where all noise is known."""
     temperature: float | None
     """°C"""
+    value: float | None = None
+    """As measured; None of an axis."""
+    reference: float | None = None
+    u: float | None = None
+    """Of the value."""
     session: str = ""
 
 
@@ -110,6 +115,19 @@ class ReferenceRow:
     temperature: float | None
     """°C"""
     session: str = ""
+    u: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """Of its values that follow the temperature, by sensor and parameter."""
+
+
+FOLLOW = ("scale", "bias")
+"""Parameters that follow the temperature by a law of the sensor's own."""
+OWN = (
+    (ParameterRow.session_id == DecisionRow.session_id)
+    & (ParameterRow.revision == DecisionRow.revision)
+    & (ParameterRow.sensor == DecisionRow.sensor)
+    & (ParameterRow.parameter == DecisionRow.parameter)
+)
+"""The measured parameter that a decision is on."""
 
 
 class Outlooks(Queries):
@@ -121,10 +139,11 @@ class Outlooks(Queries):
             select(
                 SessionRow.started_at, SessionRow.block, SessionRow.programme, DecisionRow.sensor, DecisionRow.kind,
                 DecisionRow.parameter, DecisionRow.tolerance, DecisionRow.change, DecisionRow.change_own,
-                DecisionRow.change_origin, DecisionRow.dof, SessionRow.temperature,
-                SessionRow.id,
+                DecisionRow.change_origin, DecisionRow.dof, SessionRow.temperature, DecisionRow.value,
+                DecisionRow.reference, ParameterRow.u, SessionRow.id,
             )
             .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
+            .outerjoin(ParameterRow, OWN)
             .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
         )  # fmt: skip
         order = (SessionRow.started_at, SessionRow.id, DecisionRow.position)
@@ -134,11 +153,21 @@ class Outlooks(Queries):
 
     def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
         """The sessions since a time that others are judged against, oldest first."""
-        columns = (SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature, SessionRow.id)
-        query = select(*columns).where(SessionRow.is_reference)
+        own = (ParameterRow.session_id == SessionRow.id) & (ParameterRow.revision == SessionRow.revision)
+        query = select(
+            SessionRow.id, SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature,
+            ParameterRow.sensor, ParameterRow.parameter, ParameterRow.u,
+        ).outerjoin(ParameterRow, own & ParameterRow.parameter.in_(FOLLOW))  # fmt: skip
         order = (SessionRow.started_at, SessionRow.id)
-        found = self._session.execute(query.where(*_within(unit, since)).order_by(*order))
-        return tuple(ReferenceRow(*row) for row in found)
+        rows = self._session.execute(query.where(SessionRow.is_reference, *_within(unit, since)).order_by(*order))
+        found: dict[str, ReferenceRow] = {}
+        known: dict[str, dict[tuple[str, str], float]] = {}
+        for id, at, block, programme, warm, sensor, parameter, u in rows:
+            u_of = known.setdefault(id, {})
+            found.setdefault(id, ReferenceRow(at, block, programme, warm, id, u_of))
+            if u is not None:
+                u_of[sensor, parameter] = u
+        return tuple(found.values())
 
     def last_calibration(self, unit: int) -> tuple[str, datetime] | None:
         """The session that last measured the unit, recordings in service and checks apart, and when."""

@@ -112,6 +112,13 @@ def place_of(trend: ParameterTrend) -> str:
 
 
 def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
+    if warm.curvature is not None:
+        return say(
+            "{trend} follows the temperature of the session along a curve, by {trend2} at its middle; its trend goes "
+            "on without that.",
+            trend=place_of(trend),
+            trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
+        )
     return say(
         "{trend} depends on the temperature of the session ({trend2}); the trend is stated without this effect.",
         trend=place_of(trend),

@@ -32,7 +32,7 @@ from service.records.derive_again import NOTHING_LEFT, Derived, Deriving
 from service.records.flagging.fold import flag_diagnosis
 from service.records.follow import follow
 from service.records.keep import keep_noise
-from service.records.weigh import Weighed, weigh, weighing_of
+from service.records.weigh import Weighed, unlooked, weigh, weighing_of
 from service.sessions.records import DiagnosisState, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
@@ -133,7 +133,8 @@ def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     """Reads the stored bytes again and looks for causes, where the programme is one that can show any."""
     if task.session.programme not in DIAGNOSED:
         nothing = json_text(inapplicable_to_dict(task.session.unit))
-        return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
+        inapplicable = _nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now)
+        return replace(inapplicable, document=nothing, reservations=unlooked(storage, task.session.id))
     try:
         return _found(storage, task, now)
     except SessionError as fault:

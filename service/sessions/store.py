@@ -78,6 +78,10 @@ class Sessions(Queries):
         page = SESSIONS.page(self._session, session_rows(), query)
         return page.forward(session_record(*row) for row in self._session.execute(page.cut(session_rows())))
 
+    def block(self, id: str) -> str:
+        """What a session measured: the block's kind."""
+        return self._session.execute(select(SessionRow.block).where(SessionRow.id == id)).scalar_one()
+
     def reference(
         self,
         unit: int,

@@ -9,9 +9,10 @@ import numpy as np
 
 from estimator.health.pooled import Evidence
 from estimator.health.prognosis import Track, evidence
+from estimator.health.warmth import shows_temperature
 from estimator.session import comparable
 from service.kit.measures import YEAR
-from service.outlook.store import ChangeRow, ReferenceRow
+from service.outlook.store import FOLLOW, ChangeRow, ReferenceRow
 from service.sessions.records import HistoryPoint
 from service.units.records import Service
 
@@ -151,6 +152,8 @@ def histories(
 
 
 Group = tuple[list[ChangeRow], ReferenceRow]
+Measured = tuple[list[float], list[float]]
+"""Change, and its uncertainty."""
 Point = tuple[datetime, list[float], list[float], float | None, float | None]
 """Date, change, its uncertainty with its degrees of freedom, temperature."""
 
@@ -186,12 +189,12 @@ def _track(
     A change's degrees of freedom are those of both its sessions; the reference counts with the fewest.
     """
     fewest = min((row.dof for row in rows if row.dof is not None), default=None)
-    still = Left([0.0] * len(rows[-1].change), rows[-1].origin, fewest, [])
-    origin = _point(reference, left.get((reference.session, key.sensor, key.parameter), still))
-    own = (Left(row.change, row.own, row.dof, []) for row in rows)
-    places = ((row.session, key.sensor, key.parameter) for row in rows)
-    rest = [_point(row, left.get(place, whole)) for row, place, whole in zip(rows, places, own, strict=True)]
-    points = sorted([origin, *rest], key=_date)
+    still = ([0.0] * len(rows[-1].change), rows[-1].origin)
+    judged: tuple[Measured, ...] = (still, *((row.change, row.own) for row in rows))
+    sessions = ((reference, fewest), *((row, row.dof) for row in rows))
+    explained = (left.get((of.session, key.sensor, key.parameter)) for of, _ in sessions)
+    changes = zip(sessions, _as_measured(rows, reference) or judged, explained, strict=True)
+    points = sorted((_point(of, change, dof, part) for (of, dof), change, part in changes), key=_date)
     start = points[0][0]
     track = Track(
         time=np.array([(at - start) / YEAR for at, *_ in points]),
@@ -204,8 +207,32 @@ def _track(
     return track, tuple(at for at, *_ in points)
 
 
-def _point(of: ChangeRow | ReferenceRow, left: Left) -> Point:
-    return of.at, left.change, left.own, left.dof, of.temperature
+def _point(of: ChangeRow | ReferenceRow, measured: Measured, dof: float | None, left: Left | None) -> Point:
+    """One session's change, without what a diagnosis explains of it."""
+    change, own = measured
+    if left is None:
+        return of.at, change, own, dof, of.temperature
+    return of.at, np.subtract(change, left.part).tolist(), left.own, left.dof, of.temperature
+
+
+def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Measured, ...] | None:
+    """The reference's change and those of the rows, nothing taken off, where the sessions span temperature; None of a
+    parameter that does not follow it.
+
+    What all sensors have in common is what a majority agrees on: of sensors that each follow the temperature by a law
+    of their own it is another one at each temperature, and what is left of them follows none.
+    """
+    warm = np.array([reference.temperature, *(row.temperature for row in rows)], dtype=float)
+    first = reference.u.get((rows[-1].sensor, rows[-1].parameter))
+    if rows[-1].parameter not in FOLLOW or first is None or not shows_temperature(warm):
+        return None
+    points = [(row.value, row.reference, row.u) for row in rows]
+    if any(None in point for point in points):
+        return None
+    values = np.array(points, dtype=float)
+    one = values[:, 1] if rows[-1].parameter == "scale" else np.ones(len(rows))
+    change, u = (values[:, 0] - values[:, 1]) / one, values[:, 2] / np.abs(one)
+    return (([0.0], [first / abs(one[-1])]), *(([float(d)], [float(s)]) for d, s in zip(change, u, strict=True)))
 
 
 def _date(point: Point) -> datetime:
