@@ -89,6 +89,7 @@ def test_a_page_stays_where_it_was_when_flags_before_it_are_settled(
     monkeypatch.setattr(FlagsView, "PAGE_SIZE", 1)
     second = html.fromstring(client.get("/flags").text).xpath("//a[@rel='next']/@href")[0]
     assert numbers(client, second.removeprefix("/flags")) == [flagged[1]]
+    assert numbers(client, f"?sort=oldest&before={flagged[2]}") == [flagged[1]]
     client.post("/flags/resolve", data=SAID | {"flag": flagged[2:]})
     shown = client.get(second).text
     assert numbers(client, second.removeprefix("/flags")) == [flagged[1]]

@@ -31,6 +31,18 @@ def test_units_are_numbered_through_the_pages() -> None:
     assert page.shown.later
 
 
+def test_a_page_that_is_read_backwards_holds_the_units_next_to_where_it_was_left() -> None:
+    units = [unit_summary(f"U{i}") for i in range(200)]
+    forwards, backwards = (
+        fleet_page(CONDITION, units, view, NOON)
+        for view in (FleetView(page=2, after="X"), FleetView(page=2, before="X"))
+    )
+    size = len(forwards.rows)
+    assert 0 < size < len(units)
+    assert [row.serial for row in forwards.rows] == [unit.serial for unit in units[:size]]
+    assert [row.serial for row in backwards.rows] == [unit.serial for unit in units[-size:]]
+
+
 def test_changing_the_filter_goes_back_to_the_first_page() -> None:
     view = FleetView(q="BA 1", condition="fail", page=3)
     assert view.url() == "/?q=BA+1&condition=fail&page=3"
