@@ -88,7 +88,7 @@ def _require_heading(north: Array, inverse: Array, density: Array, shortest: flo
             size=f"{size * hours:.2g}",
             spread=f"{spread * hours:.2g}",
         )
-        advice = "stand longer at each angle, or use quieter gyros"
+        advice = "rest longer at each angle, or use less noisy gyros"
         raise ScheduleError(
             [Problem("table", say("{message}: too uncertain for a heading; {advice}", message=message, advice=advice))]
         )

@@ -112,12 +112,12 @@ def require_positions(stationary: list[Stop]) -> None:
             say("only at {turn}", turn=joined(", ", (f"{turn:g}°" for turn in sorted(turns)))) if turns else "nowhere"
         )
         advice = say(
-            "stop for {shortest} s and {fewest_rows} rows or longer at two angles or more, 180° apart at best",
+            "stop for at least {shortest} s and {fewest_rows} rows at two or more angles, preferably 180° apart",
             shortest=f"{SHORTEST:g}",
             fewest_rows=FEWEST_ROWS,
         )
         raise ScheduleError(
-            [Problem("turn_angle_deg", say("the table stands {tilt}; {advice}", tilt=where, advice=advice))]
+            [Problem("turn_angle_deg", say("the table rests {where}; {advice}", where=where, advice=advice))]
         )
 
 
@@ -131,14 +131,14 @@ def require_rest(stationary: list[Stop], rates: Array, row: float) -> None:
         fastest = float(np.linalg.norm(whole, axis=1).max())
         if fastest > MOVING:
             problem = say(
-                "the table stands in {rows}, but the gyros read {fastest} °/s",
+                "the table is at rest in {rows}, but the gyros read {fastest} °/s",
                 rows=stop.rows,
                 fastest=f"{np.degrees(fastest):.3g}",
             )
             problems.append(
                 Problem(
                     "turn_angle_deg",
-                    say("{problem}: the block was moved, or the columns do not belong together", problem=problem),
+                    say("{problem}: the block was moved, or the columns are from different records", problem=problem),
                 )
             )
     if problems:

@@ -134,15 +134,16 @@ def _require_both_directions(turns: WholeTurns) -> None:
     for sign, word in ((1, "positive"), (-1, "negative")):
         if not (sign * turns.rates > 0).any():
             message = say(
-                "no whole turn at a {sign} rate; turn both ways, so that the zeros and the Earth's rotation cancel",
-                sign=word,
+                "no whole turn at a {word} rate; turn in both directions, so that biases and the Earth's rotation "
+                "cancel",
+                word=word,
             )
             raise ScheduleError([Problem("turn_rate_deg_s", message)])
     if len(turns.rates) < FEWEST_TURNS:
         held = counted(len(turns.rates), "whole turn")
         message = say(
-            "holds {runs}; give {fewest_turns} or more, so that their scatter is known",
-            runs=held,
+            "contains {held}; at least {fewest_turns} are needed to know their scatter",
+            held=held,
             fewest_turns=FEWEST_TURNS,
         )
         raise ScheduleError([Problem("turn_rate_deg_s", message)])

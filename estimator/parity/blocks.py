@@ -208,12 +208,11 @@ def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
     """Which channels."""
     listed = joined(", ", saturated)
     return say(
-        "{names} stood at the end of the range in {number} of {blocks} blocks; nothing can be "
-        "judged from readings that are cut off: repair the channel, or record with less motion "
-        "or a wider range",
-        names=listed,
-        number=total - clean,
-        blocks=total,
+        "{listed} was at the end of the range in {total} of {total2} blocks; clipped readings cannot be judged: "
+        "repair the channel, or record with less motion or a wider range",
+        listed=listed,
+        total=total - clean,
+        total2=total,
     )
 
 
@@ -221,17 +220,17 @@ def never_still(used: int, total: int) -> str:
     """Nothing at rest."""
     return (
         say(
-            "only {number} of {total} blocks is at rest, {fewest_groups} are needed; let the block "
-            "stand still for a while, or judge it in motion if its sensors sit in one point",
-            number=used,
+            "only {used} of {total} blocks is at rest, {fewest_groups} are needed; keep the block still for longer, "
+            "or judge it in motion if its sensors are at one point",
+            used=used,
             total=total,
             fewest_groups=FEWEST_GROUPS,
         )
         if used == 1
         else say(
-            "only {number} of {total} blocks are at rest, {fewest_groups} are needed; let the block "
-            "stand still for a while, or judge it in motion if its sensors sit in one point",
-            number=used,
+            "only {used} of {total} blocks are at rest, {fewest_groups} are needed; keep the block still for longer, "
+            "or judge it in motion if its sensors are at one point",
+            used=used,
             total=total,
             fewest_groups=FEWEST_GROUPS,
         )

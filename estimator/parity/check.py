@@ -70,7 +70,7 @@ class ParityAccumulator:
         bad = np.flatnonzero(~np.isfinite(readings).all(axis=1))
         if len(bad):
             row = self._samples + int(bad[0]) + 1
-            raise ScheduleError([Problem("table", "holds a value that is not a finite number; take the row out", row)])
+            raise ScheduleError([Problem("table", "contains a value that is not a finite number; remove the row", row)])
         self._samples += len(readings)
         self.ledger.add(readings / self._period)
 

@@ -108,9 +108,9 @@ def too_few(used: int, present: int, kind: str) -> str:
     """Why there is no parity."""
     if present >= FEWEST:
         return say(
-            "the reference calibration knows scale, bias and axis of {number} of {present} {kind}s; "
-            "parity needs {fewest}: calibrate the block first in a programme that shows all three",
-            number=used,
+            "the reference calibration has scale factor, bias and axis of {used} of {present} {kind}s; parity needs "
+            "{fewest}: first calibrate the block with a programme that observes all three",
+            used=used,
             present=present,
             kind=kind,
             fewest=FEWEST,

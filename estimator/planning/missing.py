@@ -113,7 +113,7 @@ def steps_of(beta: Array, flipped: Array) -> int:
     counts = np.concatenate(gaps)
     count = 2 * np.pi / float(counts.min()) if len(counts) else np.inf
     if not count <= MOST or abs(count - round(count)) > SAME:
-        text = "the steps so far are no equal parts of a turn; say how many positions a run is to have"
+        text = "the steps so far are not equal parts of a turn; state the number of positions per run"
         raise ScheduleError([Problem("beta_deg", text)])
     return round(count)
 

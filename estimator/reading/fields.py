@@ -50,7 +50,7 @@ class Fields:
         if text == "":
             self.add(key, say("empty; {advice}", advice=advice))
         elif text is not None and not text.isprintable():
-            self.add(key, "holds line breaks or characters that cannot be shown; write it in one plain line")
+            self.add(key, "contains line breaks or non-printable characters; write it as one plain line")
         return text or ""
 
     def optional_text(self, key: str) -> str | None:

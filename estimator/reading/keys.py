@@ -60,7 +60,7 @@ def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
                 key, say("is not a key of {path}; {suggestion}", path=fields.path or "the file", suggestion=meant)
             )
         elif key in HOME and HOME[key] != fields.path:
-            fields.add(key, say("stands in the wrong place; it belongs in {home}", home=HOME[key]))
+            fields.add(key, say("is in the wrong place; it belongs in {home}", home=HOME[key]))
 
 
 def meant_key(key: str, known: Iterable[str]) -> str | None:

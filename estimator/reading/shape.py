@@ -42,7 +42,7 @@ def read_columns(document: Fields) -> Columns | None:
 
 def check_extent(rows: int, columns: int, problems: Problems) -> None:
     """Raises FormatError where a table of this size is too large."""
-    most, advice = problems.most, "can be read, so average or split it"
+    most, advice = problems.most, "can be read: average or split it"
     if rows > most.rows:
         raise problems.fail(
             "table", say("has {rows} rows; at most {limit} {advice}", rows=rows, limit=most.rows, advice=advice)
@@ -72,7 +72,7 @@ def check_unknown(columns: Columns, names: list[str]) -> None:
     unknown = (name for name in columns.values if name not in known)
     for name in islice(unknown, UNKNOWN_LOOKED_AT):
         if _pattern(name.removesuffix("_se")) in patterns or SENSOR_LIKE.fullmatch(name) or name.endswith("_se"):
-            columns.problems.add(name, "belongs to no declared sensor; declare it in sensors or take the column out")
+            columns.problems.add(name, "belongs to no declared sensor; declare it in sensors or remove the column")
         elif meant := meant_key(name, COLUMNS):
             columns.problems.add(name, say("is not a column of the table; {suggestion}", suggestion=meant))
 

@@ -104,7 +104,7 @@ def _finding(finding: FindingView, colour: str) -> Iterator[RenderableType]:
     if finding.doubtful and not finding.lone:
         yield _choices(finding)
     else:
-        yield Text(f"  {'If it comes back' if finding.lone else 'What to do'}: {translated(finding.advice)}")
+        yield Text(f"  {'If it appears again' if finding.lone else 'What to do'}: {translated(finding.advice)}")
     size = ", ".join(finding.amplitudes)
     parts = [f"size {size}" if size else "", finding.shape, finding.evidence, finding.since]
     yield Text("  " + "; ".join(part.rstrip(".") for part in parts if part))
@@ -147,6 +147,6 @@ def _scores(label: str, before: Score, after: Score) -> str:
 def _unseen(limits: Sequence[Limit]) -> Iterator[Text]:
     """Causes that this session cannot show, by reason; and the number of limits in --json."""
     for row in blind_causes(limits):
-        yield Text(f"  Not seen ({row.reason}): {row.causes}", "dim")
+        yield Text(f"  Not detectable ({row.reason}): {row.causes}", "dim")
     seen = sum(bool(limit.amplitude) for limit in limits)
-    yield Text(f"  Smallest effects that would have been found: {counted(seen, 'cause')}, see --json", "dim")
+    yield Text(f"  Smallest detectable effects: {counted(seen, 'cause')}, see --json", "dim")

@@ -199,7 +199,7 @@ def picture_chart(picture: Picture, kind: str, name: str) -> ChartSet:
     }
     return ChartSet(
         name=f"{name}-picture",
-        heading="What all sessions leave",
+        heading="Residuals common to all sessions",
         spec=filled(_picture_spec(title, by_angle=by_angle), blanks),
         panels=tuple(_picture_panel(picture, side, at, measure) for side in SIDES),
     )

@@ -169,8 +169,8 @@ def _refused_if_process_ended(filename: str, most: Limits) -> Iterator[None]:
         raise refusal(
             filename,
             say(
-                "cannot be read with {memory} MiB of memory in {seconds} s: it is damaged, or much "
-                "larger inside than outside; write it again, or average or split it",
+                "cannot be read with {memory} MiB of memory in {seconds} s: it is damaged, or expands too much; "
+                "write it again, or average or split it",
                 memory=most.memory // 1024**2,
                 seconds=most.seconds,
             ),

@@ -111,7 +111,7 @@ def _fault(text: str) -> str | None:
             longest_notes=LONGEST_NOTES,
         )
     if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
-        return "holds characters that are not text (NUL or half of a pair); remove them"
+        return "contains characters that are not text (NUL or half of a surrogate pair); remove them"
     return None
 
 
@@ -125,7 +125,7 @@ def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:
             Problem(
                 "started_at",
                 say(
-                    "lies in the future ({date}); check the date or the clock that wrote it",
+                    "is in the future ({date}); check the date or the clock of the recorder",
                     date=f"{measured_at:%Y-%m-%d}",
                 ),
             )

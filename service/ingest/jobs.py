@@ -56,7 +56,7 @@ def _frames(rows: TableScan, names: list[str], filename: str) -> Iterator[pl.Dat
             if rows_read * columns > limit:
                 raise refusal(
                     filename,
-                    say("has more than {limit} cells, the most of a recording; split it", limit=limit),
+                    say("has more than {limit} cells, the limit for a recording; split it", limit=limit),
                     "table",
                 )
             yield frame.cast(pl.Float64)
@@ -69,8 +69,8 @@ Content = bytes | Path
 Reader = Callable[[bytes, str], dict[str, object]]
 
 NO_MAPPING = (
-    "is a log, which does not say which unit it is of or where it was: choose it on the upload page, or send it with a "
-    "mapping, which POST /api/v1/layouts/preview proposes"
+    "is a log, which does not state its unit or place: choose it on the upload page, or send it with a mapping, which "
+    "POST /api/v1/layouts/preview proposes"
 )
 
 READERS: tuple[tuple[bytes, Reader], ...] = (

@@ -292,7 +292,7 @@ class _Scan:
                 if rows_read * columns > limit:
                     raise refusal(
                         self.filename,
-                        say("has more than {limit} cells, the most of a raw log; split it", limit=limit),
+                        say("has more than {most} cells, the limit for a raw log; split it", most=limit),
                         "table",
                     )
                 if len(frame):

@@ -20,7 +20,7 @@ def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> di
     problems.raise_if_any()
     if "table" in document:
         raise refusal(
-            filename, say("stands in the {key} metadata; keep the readings in the columns only", key=KEY), "table"
+            filename, say("is in the {key} metadata; keep the readings in the columns only", key=KEY), "table"
         )
     return document | {"table": dict(columns)}
 
@@ -46,7 +46,7 @@ def nested(rows: Sequence[tuple[str, float | str | None]], problems: Problems) -
         steps = key.strip().replace("[", ".").replace("]", "").split(".")
         parent = _parent(document, steps)
         if parent is None or steps[-1] in parent:
-            problems.add(cut(key), "is given twice, or inside something that is not an object; keep one")
+            problems.add(cut(key), "is given twice, or inside a value that is not an object; keep one")
         else:
             parent[steps[-1]] = _value(value, problems)
     if isinstance(document.get("sensors"), dict):
@@ -74,5 +74,5 @@ def _listed(sensors: dict[str, object], problems: Problems) -> list[object]:
     """sensors[1], sensors[2], … in order of their numbers."""
     wrong = [number for number in sensors if not number.isdecimal()]
     for number in wrong:
-        problems.add(f"sensors.{cut(number)}", "is no numbered sensor; write sensors[1].name and so on")
+        problems.add(f"sensors.{cut(number)}", "is not a numbered sensor; write sensors[1].name and so on")
     return [sensors[number] for number in sorted(sensors.keys() - set(wrong), key=lambda n: (len(n), n))]

@@ -25,9 +25,9 @@ def fault_of_name(text: str) -> str | None:
             "is {length} characters long; at most {longest_name} are kept", length=len(text), longest_name=LONGEST_NAME
         )
     if any(unicodedata.category(c) in INVISIBLE for c in text):
-        return "holds characters that nobody sees, such as control characters or marks of direction; remove them"
+        return "contains invisible characters, such as control characters or direction marks; remove them"
     if text and any(part in DOT_SEGMENTS for part in text.split("/")):
-        return "cannot stand in an address: it is or holds . or .. or nothing between slashes; write it otherwise"
+        return "cannot be part of an address: it has ., .. or nothing between slashes; change it"
     return None
 
 

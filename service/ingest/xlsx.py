@@ -54,7 +54,7 @@ def check_workbook(content: bytes, filename: str) -> None:
     for rows, columns in extents:
         check_table(filename, rows, columns)
     if sum(count * lengths[place] for place, count in shared.items() if place < len(lengths)) > MOST_TEXT:
-        raise refusal(filename, "holds far too much text; labels should be short")
+        raise refusal(filename, "contains far too much text; labels should be short")
 
 
 def _check_members(content: bytes, lengths: list[int], shared: Counter[int], extents: list[tuple[int, int]]) -> None:
@@ -62,7 +62,7 @@ def _check_members(content: bytes, lengths: list[int], shared: Counter[int], ext
     with ZipFile(BytesIO(content)) as archive:
         members = archive.infolist()
         if len(members) > MOST_MEMBERS:
-            raise TooMuchError(say("has {members} parts, where a workbook has some twenty", members=len(members)))
+            raise TooMuchError(say("has {members} parts; a workbook has about twenty", members=len(members)))
         for member in members:
             part = _XmlPart(lengths, shared)
             left -= _streamed(archive, member, part, left)

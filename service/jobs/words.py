@@ -6,10 +6,10 @@ from service.jobs.records import KILOBYTE, Job, JobKind, JobState
 from service.kit.measures import number
 from service.models.records import Scope
 
-AT_FAULT = "The program failed at it, several times: the log says more. It keeps what it had."
+AT_FAULT = "The program failed several times: see the log. Nothing was changed."
 FILE_AT_FAULT = (
-    "Nothing was stored: the program failed at this file, several times. Upload it again; where it fails again, the "
-    "log says why."
+    "Nothing was stored: the program failed several times on this file. Upload it again; if it fails again, see the "
+    "log."
 )
 FLEET_REPORTS = {"xlsx": "Fleet report as a workbook", "pdf": "Fleet report on paper (PDF)"}
 WHOLE_FLEET = "All units computed again"
@@ -84,11 +84,11 @@ def outcome_of(job: Job) -> str:
     if job.kind is JobKind.REPORT:
         return ""
     if job.state is JobState.DONE and not job.recomputed and not job.failed:
-        return "No session needed it: all rest on the models in force already."
+        return "No session needed it: all use the models in force."
     verdicts = (
         say("{verdicts} with another verdict", verdicts=counted(job.verdicts, "session"))
         if job.verdicts
-        else "no verdict moved"
+        else "no verdict changed"
     )
     return say(
         "{recomputed} computed again, {verdicts}.", recomputed=counted(job.recomputed, "session"), verdicts=verdicts
@@ -111,6 +111,6 @@ def ending_of(job: Job) -> str:
         case JobState.CANCELLED:
             return "Cancelled between two pieces: what was done until then stays, the rest keeps what it had."
         case JobState.FAILED:
-            return "It could not be done. Ask for it again; where it fails again, the log says why."
+            return "The job failed. Request it again; if it fails again, see the log."
         case _:
             return ""

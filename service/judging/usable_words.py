@@ -8,26 +8,25 @@ from service.kit.measures import day_of
 from service.sessions.doubt import Reservation
 
 YES = "{word} by its session of {day}, and not due before {due}."
-BY_REFERENCE = "Its reference was measured on {day}, nothing speaks against it, and it is not due before {due}."
+BY_REFERENCE = "Its reference was measured on {day}, there is no objection, and it is not due before {due}."
 UNPROVEN = (
-    "No session was held against the reference of {day} yet: whether the unit keeps its values shows with the next one."
+    "No session has been compared with the reference of {day} yet: the next one shows whether the unit is stable."
 )
 TOO_COARSE = (
-    "Its reference of {day} leaves {what} uncertain by more than the tolerance, or does not show it: measure more "
-    "positions."
+    "In its reference of {day}, {what} is more uncertain than the tolerance, or not observed: measure more positions."
 )
 NOTHING_JUDGED = "None of its sessions counts as a calibration: calibrate the unit."
 SINCE_SERVICE = "Nothing was measured since the service of {day}: calibrate the unit, which sets its new reference."
 NOT_FIT = "Not fit by its session of {day}: {reason}"
-UNDECIDED = "Not decided by its session of {day}: {reason}"
+UNDECIDED = "Undecided by its session of {day}: {reason}"
 OVERDUE = "Its calibration was due on {due}: calibrate it. {reason}"
 NO_DUE = "It is not known when its calibration is due: calibrate it."
-FUTURE = "Its session is dated {day}, which is still to come: put the date right."
+FUTURE = "Its session is dated {day}, in the future: correct the date."
 FLAGGED = "Flag {id} is open: {summary}"
 CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
 WAITS = "The session of {day} waits for an engineer and does not count yet: accept it, correct it or withdraw it."
-DATES_PENDING = "Its dates are being worked out with its latest records: ask again in some seconds."
-VERDICT_PENDING = "Its verdict is being worked out with its latest records: ask again in some seconds."
+DATES_PENDING = "Its dates are being computed with its latest records: ask again in a few seconds."
+VERDICT_PENDING = "Its verdict is being computed with its latest records: ask again in a few seconds."
 NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minute."
 EXPIRED = (
     "Traceability is interrupted: certificate {number} of stand {stand} had expired on {until}, before the session of "

@@ -12,7 +12,7 @@ AT_FAULT = "the program failed at it: see the log"
 
 def too_long(seconds: float) -> str:
     """Of what was ended because it was not done in time."""
-    return say("it was not done within {seconds} s, the longest that it may take", seconds=f"{seconds:g}")
+    return say("it was not finished within the limit of {seconds} s", seconds=f"{seconds:g}")
 
 
 class FailedKind(StrEnum):
@@ -50,12 +50,12 @@ class Failed:
 
 
 UNIT = (
-    "Its dates and verdicts could not be worked out with its latest records: {why}. The administrator must act: see "
+    "Its dates and verdicts could not be computed with its latest records: {why}. The administrator must act: see "
     "Failed work on the page Jobs, and the log."
 )
 SESSION = "Its diagnosis failed: {why}. The administrator must act: see Failed work on the page Jobs, and the log."
 GROUP = (
-    "What these sessions show together could not be worked out: {why}. The administrator must act: see Failed work on "
+    "What these sessions show together could not be computed: {why}. The administrator must act: see Failed work on "
     "the page Jobs, and the log."
 )
 NAMES = {

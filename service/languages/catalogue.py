@@ -14,7 +14,8 @@ from estimator.message import Message, filled
 from service.languages.charts import chart_in
 from service.languages.entry import MessageEntry
 from service.languages.language import Language
-from service.languages.time import TIME
+from service.languages.locale import LOCALE
+from service.languages.values import value_in
 
 FOLDER = Path(__file__).parent
 NAMED = frozenset(("unit", "serial", "subject", "stand", "operator", "login", "account", "customer", "filename", "who"))
@@ -27,7 +28,7 @@ class Catalogue:
     def __init__(self, language: Language, stored: Catalog) -> None:
         self._stored = stored
         self._known = {texts[0]: forms_of(one) for one in stored if (texts := _texts(one.id)) and forms_of(one)}
-        self._time = TIME[language]
+        self._locale = LOCALE[language]
         self.plural = c2py(stored.plural_expr)
 
     def forms(self, message: MessageEntry) -> Sequence[str]:
@@ -45,7 +46,7 @@ class Catalogue:
 
     def chart(self, definition: Any) -> Any:
         """A chart's definition with translated texts."""
-        return chart_in(definition, self.say, self._time)
+        return chart_in(definition, self.say, self._locale)
 
     def _forms(self, english: str) -> Sequence[str]:
         """Of a whole text or template, also with another first letter or without its full stop."""
@@ -57,7 +58,7 @@ class Catalogue:
             return [change(form[:1]) + form[1:] for form in known]
         if not english.endswith(".") and (f"{english}." in self._known or f"{other_case}." in self._known):
             return [form.removesuffix(".") for form in self._forms(f"{english}.")]
-        return [english]
+        return [value_in(english, self.say)]
 
 
 def forms_of(stored: Stored) -> tuple[str, ...]:

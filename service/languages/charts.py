@@ -7,11 +7,11 @@ READ = frozenset(("title", "text", "description", "subtitle"))
 """Keys of texts in Vega-Lite."""
 
 
-def chart_in(data: Any, say: Callable[[str], str], time: Mapping[str, Any]) -> Any:
-    """A whole definition, with its time axes in the language too; ``time`` is d3's locale."""
+def chart_in(data: Any, say: Callable[[str], str], locale: Mapping[str, Any]) -> Any:
+    """A whole definition, its axes of time and numbers in the language too; ``locale`` as d3 wants it."""
     chart = _part_in(data, say)
     if isinstance(chart, dict) and "config" in chart:
-        chart["config"] = chart["config"] | {"locale": {"time": time}}
+        chart["config"] = chart["config"] | {"locale": locale}
     return chart
 
 

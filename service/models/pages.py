@@ -113,15 +113,19 @@ def _amplitudes(revision: ModelRevision) -> tuple[str, ...]:
 def _evidence(strength: float, pooled: Pooled | None) -> str:
     """``Over 34 sessions, in all of these sessions: 12.3 standard errors.``"""
     if pooled is None:
-        return say("In one session: {strength}. Each session fits its own size.", strength=standard_errors(strength))
-    start = since_in_words(pooled.form, pooled.since)
-    meaning = "each session has a say in it" if pooled.form == "varying" else "no session fits it again"
+        return say(
+            "In one session: {strength}. Its size is estimated in each session.", strength=standard_errors(strength)
+        )
+    since = since_in_words(pooled.form, pooled.since)
+    fitted = (
+        "estimated from all sessions together" if pooled.form == "varying" else "not estimated again in single sessions"
+    )
     return say(
-        "{sessions}, {date}: {strength}. The size is theirs: {amplitudes}.",
+        "{sessions}, {since}: {strength}. Size from these sessions: {fitted}.",
         sessions=over(pooled.sessions),
-        date=start,
+        since=since,
         strength=standard_errors(strength),
-        amplitudes=meaning,
+        fitted=fitted,
     )
 
 

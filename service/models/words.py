@@ -10,9 +10,9 @@ GIVEN_UP = (
     "The program failed at it, several times: its sessions keep what they had. An administrator can try again: see "
     "Failed work on the page Jobs."
 )
-AGAIN = "The last try failed: {why}. It is tried again by itself."
+AGAIN = "The last try failed: {why}. It is retried automatically."
 CANCELLED = "Cancelled before its turn: its sessions keep what they had."
-NO_CHANGE = "no parameter moved"
+NO_CHANGE = "no parameter changed"
 
 
 def progress_of(recomputations: Sequence[Recomputation]) -> str:
@@ -27,9 +27,7 @@ def progress_of(recomputations: Sequence[Recomputation]) -> str:
     )
     units = say("{done} of {units}", done=len(done), units=_counted(len(recomputations), "unit"))
     verdicts = (
-        say("the verdict of {sessions} is another", sessions=_counted(changed, "session"))
-        if changed
-        else "no verdict moved"
+        say("verdict changed: {sessions}", sessions=_counted(changed, "session")) if changed else "no verdict changed"
     )
     remaining = say(" {waiting} still to come.", waiting=_counted(waiting, "unit")) if waiting else ""
     return say(

@@ -62,18 +62,16 @@ def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, 
 NEEDED_ROLE = Role.ENGINEER
 """Whoever may judge may also sign."""
 WRONG = "The password is wrong. Nothing was signed."
-NO_ACCOUNT = "A signature is an account's: make an account and sign in with it."
+NO_ACCOUNT = "Signing requires an account: make one and sign in with it."
 NOT_ISSUED = "There is no certificate to sign yet: ask for it, read it, then sign it."
 REPLACED = "Certificate {number} is not the latest one: {latest} is. Read that one."
 CHANGED = (
-    "What certificate {number} rests on has changed since it was issued. Ask for the certificate again, read it, and "
+    "The data of certificate {number} have changed since it was issued. Request the certificate again, read it, and "
     "sign the new one."
 )
 NOT_REVIEWED = "Certificate {number} must be reviewed before it is approved."
-SAME_PERSON = (
-    "You have reviewed certificate {number}: somebody else must approve it, so that two people have looked at it."
-)
-IS_SPECIMEN = "The session is simulated: its certificate is a specimen, and nobody puts a name under it."
+SAME_PERSON = "You have reviewed certificate {number}: another person must approve it."
+IS_SPECIMEN = "The session is simulated: its certificate is a specimen and cannot be signed."
 ALREADY = "Certificate {number} is {meaning} already, by {name}."
 
 

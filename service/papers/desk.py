@@ -58,7 +58,9 @@ def statement_of(found: CertifiedSession) -> Statement:
     return Statement(session.unit, session.id, session.revision, digest, is_specimen=session.simulated)
 
 
-DAMAGED = "The approved certificate {number} is not what was kept, and is not given out: the database was changed."
+DAMAGED = (
+    "The approved certificate {number} differs from the stored one and cannot be downloaded: the database was changed."
+)
 NOT_KEPT = "There is no approved certificate {number} of this session."
 
 

@@ -55,10 +55,10 @@ STATES = {
 """Statement of a signer."""
 BOUND = "Signed in imu-health with the password asked again; holds for the content with SHA-256 {hash}."
 NO_LONGER = (
-    "What certificate {number} rests on has changed since it was {done}: it no longer states what is stored. "
-    "The next certificate will have another number, and must be signed anew."
+    "The data of certificate {number} have changed since it was {done}: it no longer states what is stored. The next "
+    "certificate has another number and must be signed again."
 )
-CHANGED_HASH = "Certificate {number} was signed under another content than is on record: the database was changed."
+CHANGED_HASH = "Certificate {number} was signed for other content than is stored: the database was changed."
 NOT_COUNTED = "The session no longer counts: certificate {number} should not be used."
 
 
@@ -81,8 +81,7 @@ EXPIRED = (
     "{until}, before the day of measurement, {day}."
 )
 NOT_ON_RECORD = (
-    "Traceability is not stated: no certificate of stand {stand} that was issued by the day of measurement, {day}, is "
-    "on record."
+    "Traceability is not stated: no certificate of stand {stand} issued by the day of measurement, {day}, is recorded."
 )
 NO_STAND = "Traceability is not stated: no stand was used, and gravity at the site carries no certificate."
 

@@ -146,7 +146,7 @@ def _block(q: PlanQuestion) -> tuple[NumberField, ...]:
     return (
         _field(q, "sensors", "Sensors on the cone"),
         _field(q, "noise", say("Noise of a reading, 1σ, {zero}", zero=zero), f"{NOISE[q.kind]:g}"),
-        _field(q, "variation", say("Variation of the zero, 1σ, {zero}", zero=zero), f"{VARIATION[q.kind]:g}"),
+        _field(q, "variation", say("Variation of the bias, 1σ, {zero}", zero=zero), f"{VARIATION[q.kind]:g}"),
     )
 
 

@@ -31,8 +31,8 @@ from service.web.render import render
 
 READY = Condition("pass", "Ready", "ready", "circle", "The measurement may begin.")
 WAIT = Condition("conditional-pass", "Not yet", "not yet", "triangle-up", "Wait, or record for longer.")
-NOT_STILL = Condition("fail", "Not still", "not still", "square", "Something moves or shakes it.")
-NOTHING = Condition("none", "Nothing to tell by", "nothing to tell by", "stroke", "The record says nothing.")
+NOT_STILL = Condition("fail", "Not still", "not still", "square", "It moves or vibrates.")
+NOTHING = Condition("none", "No usable data", "no usable data", "stroke", "The record contains no information.")
 CONDITIONS = {
     ReadinessState.READY: READY,
     ReadinessState.NOT_STILL: NOT_STILL,
@@ -186,7 +186,7 @@ def _spread(one: ExpectedSigma, sigma: float | None) -> str:
 
 T = TypeVar("T", bound=BaseModel)
 
-NO_FILE = "The file did not come with the form: choose it again."
+NO_FILE = "The file is missing from the form: choose it again."
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 

@@ -53,8 +53,8 @@ def _vector(direction: list[float]) -> str:
 
 
 VERDICTS = {
-    "enough": "enough: U leaves the tolerance the share that was asked for",
-    "usable": "usable: U stays within the tolerance, but takes more than its share",
+    "enough": "enough: U is within the requested share of the tolerance",
+    "usable": "usable: U is within the tolerance, but larger than the requested share",
     "undecidable": "undecidable: U exceeds the tolerance, or nothing is observed",
     "not judged": "no tolerance was given",
 }
@@ -159,14 +159,14 @@ def readiness_headline(found: Readiness) -> str:
         case ReadinessState.NOT_WARM if found.wait is not None:
             return say("Wait about {wait} minutes", wait=minutes(found.wait[1]))
         case ReadinessState.NOT_WARM:
-            return "Not warm: waiting alone will not do"
+            return "Not warm: waiting is not enough"
         case ReadinessState.NOT_STILL:
-            return say("Not still: {problem}", problem=_short(found))
+            return say("Not still: {found}", found=_short(found))
         case ReadinessState.TOO_EARLY if found.needed is not None:
-            return say("Too early to tell: record about {minutes} minutes more", minutes=minutes(found.needed))
+            return say("Too early to decide: record about {needed} minutes more", needed=minutes(found.needed))
         case ReadinessState.TOO_EARLY:
-            return "Not to be told: the sensors wander"
-    return "Nothing can be told from this record"
+            return "Cannot be decided: the sensors wander"
+    return "This record cannot be used"
 
 
 def reasons(found: Readiness, kind: str) -> tuple[str, ...]:
@@ -212,8 +212,8 @@ def _drift_sentences(found: Readiness, worst: DriftOutlook) -> list[str]:
     if found.state is ReadinessState.READY:
         return [
             say(
-                "No sensor will drift by more than it may in the {length} minutes of the programme: the "
-                "most is {bound} of {name}, with 95 % probability; allowed are {tolerance}, {source}.",
+                "No sensor exceeds its drift limit in the {length} minutes of the programme: the largest is {bound} "
+                "of {name}, with 95 % probability; limit {tolerance}, {source}.",
                 length=length,
                 bound=bound,
                 name=worst.name,
@@ -223,8 +223,7 @@ def _drift_sentences(found: Readiness, worst: DriftOutlook) -> list[str]:
         ]
     sentences: list[str] = [
         say(
-            "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
-            "allowed are {tolerance}, {source}.",
+            "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); limit {tolerance}, {source}.",
             name=worst.name,
             bound=bound,
             length=length,
@@ -242,21 +241,20 @@ def _drift_sentences(found: Readiness, worst: DriftOutlook) -> list[str]:
 def _waiting_advice(found: Readiness) -> list[str]:
     if found.wait is None:
         return [
-            "It drifts steadily or wanders, and does not settle within eight hours: look for the cause, such as a "
-            "draught, the sun or a loose fixture, or plan a shorter programme."
+            "It drifts or wanders and does not settle within eight hours: find the cause, such as a draught, the sun "
+            "or a loose fixture, or plan a shorter programme."
         ]
     low, middle, high = found.wait
-    latest = (
-        say("up to {minutes} minutes", minutes=minutes(high))
-        if high < float("inf")
-        else "how long at most cannot be told yet"
+    until = (
+        say("up to {high} minutes", high=minutes(high)) if high < float("inf") else "the longest time is not known yet"
     )
     return [
         say(
-            "It settles: wait about {middle} minutes more (at least {low}, {latest}), and ask again with a new record.",
+            "It is settling: wait about {middle} minutes more (at least {low}, {until}), then check again with a new "
+            "record.",
             middle=minutes(middle),
             low=minutes(low),
-            latest=latest,
+            until=until,
         )
     ]
 
@@ -265,14 +263,14 @@ def _record_advice(found: Readiness, worst: DriftOutlook) -> list[str]:
     if found.needed is not None:
         return [
             say(
-                "The record is too short to tell: leave the unit as it is and record about {minutes} minutes more.",
-                minutes=minutes(found.needed),
+                "The record is too short: leave the unit as it is and record about {needed} minutes more.",
+                needed=minutes(found.needed),
             )
         ]
     return [
         say(
-            "No length of record would tell: {name} wanders by {kind} in the time of the programme "
-            "by itself. Plan a shorter programme, or have the sensor looked at.",
+            "A longer record does not help: {name} wanders by {kind} during the programme. Plan a shorter programme, "
+            "or have the sensor checked.",
             name=worst.name,
             kind=amount(worst.kind, worst.wander),
         )
@@ -286,8 +284,8 @@ def _short(found: Readiness) -> str:
 
 SHORT: dict[DisturbanceKind, Callable[[Disturbance], str]] = {
     DisturbanceKind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
-    DisturbanceKind.BURST: lambda one: say("it shook at {start}", start=clock(one.start)),
-    DisturbanceKind.SHAKING: lambda one: "it shakes all the time",
+    DisturbanceKind.BURST: lambda one: say("it vibrated at {start}", start=clock(one.start)),
+    DisturbanceKind.SHAKING: lambda one: "it vibrates continuously",
     DisturbanceKind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
     DisturbanceKind.CREEP: lambda one: "the fixture creeps",
 }
@@ -295,9 +293,9 @@ SHORT: dict[DisturbanceKind, Callable[[Disturbance], str]] = {
 
 
 def disturbance_in_words(one: Disturbance, kind: str) -> str:
-    """What happened, when, to which sensors, and what to do."""
+    """What happened, when, to whom, and what to do."""
     sensors, size = named(one.sensors), amount(kind, one.size)
-    consequence = "; what came after it is judged alone." if one.passed else ". Leave it alone and record anew."
+    consequence = "; only the record after it is judged." if one.passed else ". Do not touch it, and record again."
     match one.kind:
         case DisturbanceKind.STEP:
             return say(
@@ -310,8 +308,8 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
             )
         case DisturbanceKind.BURST:
             return say(
-                "{sensors} shook by {size} rms from {start} to {stop}{consequence}",
-                sensors=sensors,
+                "{who} vibrated by {size} rms from {start} to {stop}{consequence}",
+                who=sensors,
                 size=size,
                 start=clock(one.start),
                 stop=clock(one.stop),
@@ -319,24 +317,23 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
             )
         case DisturbanceKind.SHAKING:
             return say(
-                "{sensors} shake by {size} rms all the time: a quadratic term within its tolerance would "
-                "turn that into more than the drift allowed. Find what vibrates, or decouple the stand "
-                "from it.",
-                sensors=sensors,
+                "{who}: continuous vibration of {size} rms. With a quadratic term within its tolerance it shifts the "
+                "bias by more than the drift limit. Find the source, or isolate the stand from it.",
+                who=sensors,
                 size=size,
             )
         case DisturbanceKind.CLIPPED:
             share = number(float(f"{100 * one.size:.2g}"))
             return say(
-                "{sensor} stands at the end of its range for {share} % of the samples: set a larger range, "
-                "or stop what vibrates.",
-                sensor=sensors,
+                "{who} is at the end of its range for {share} % of the samples: set a larger range, or stop the "
+                "vibration.",
+                who=sensors,
                 share=share,
             )
     turn = number(float(f"{one.size * ARCSEC.factor:.2g}"))
     return say(
-        "All accelerometers drift as if the block turned, by {turn} arcsec over the programme: "
-        "the fixture creeps. Tighten the mounting, let the stand's locks settle, and record anew.",
+        "All accelerometers drift as if the block turned by {turn} arcsec during the programme: the fixture creeps. "
+        "Tighten the mounting, let the stand's locks settle, and record again.",
         turn=turn,
     )
 
@@ -349,36 +346,33 @@ def fault_in_words(fault: RecordFault) -> str:
             return "The rows have no times: add time_s, or sample_rate_hz for a raw log."
         case FaultKind.CLOCK_BACK:
             return say(
-                "The clock goes back at row {amount}: it was restarted. Record anew, or cut the file there.",
+                "The clock goes back at row {amount}: it was restarted. Record again, or cut the file there.",
                 amount=f"{fault.amount:.0f}",
             )
         case FaultKind.CLOCK_STANDS:
             return "The clock stands still over most rows: check time_s."
         case FaultKind.NOT_FINITE:
-            return say(
-                "Row {amount} holds a reading that is no number: take the row out.", amount=f"{fault.amount:.0f}"
-            )
+            return say("A reading in row {amount} is not a number: remove the row.", amount=f"{fault.amount:.0f}")
         case FaultKind.FEW:
             return say(
-                "{amount} readings are too few to tell drift from noise: record at least twelve in one position.",
+                "{amount} readings are too few to separate drift from noise: record at least twelve in one position.",
                 amount=f"{fault.amount:.0f}",
             )
         case FaultKind.POSITIONS:
             return say(
-                "The rows stand in {amount} positions: leave the block in one, and read it again and again.",
+                "The rows are in {amount} positions: leave the block in one and read it repeatedly.",
                 amount=f"{fault.amount:.0f}",
             )
         case FaultKind.STUCK:
             return say(
-                "One and the same reading throughout: {sensors}. That is a dead channel and no rest; check "
-                "power and cables.",
-                sensors=sensors,
+                "Constant reading: {who}. The channel is dead; check power and cables.",
+                who=sensors,
             )
         case FaultKind.COARSE:
             return say(
-                "One step of the readings is larger than the drift allowed: {sensors}. Average more samples, "
-                "with more digits.",
-                sensors=sensors,
+                "The resolution of the readings is coarser than the drift limit: {who}. Average more samples, with "
+                "more digits.",
+                who=sensors,
             )
         case FaultKind.UNITS:
             return say(
@@ -391,10 +385,10 @@ def fault_in_words(fault: RecordFault) -> str:
                 "The block turns, or the units are wrong: {name}. Let it rest, or check nominal_scale.", name=sensors
             )
         case FaultKind.NOT_JUDGED:
-            return "No tolerance says how far these sensors may drift: give one."
+            return "No tolerance limits the drift of these sensors: give one."
         case FaultKind.GAP:
             return say(
-                "There is a gap of {amount} minutes in the record; it is judged all the same.",
+                "There is a gap of {amount} minutes in the record; it is judged nevertheless.",
                 amount=minutes(fault.amount),
             )
-    return say("{sensor} is alone: a fixture that creeps cannot be told from a drift of its own.", sensor=sensors)
+    return say("{who} is the only sensor: creep of the fixture cannot be separated from its drift.", who=sensors)

@@ -119,9 +119,9 @@ def _require_possible(store: Store, session: StoredSession) -> None:
     if stands_for_it.state in (RecordState.ACCEPTED, RecordState.QUESTIONED):
         raise ConflictError(
             say(
-                "Session {session} stands for session {other_session}: withdraw it first, or both would count.",
-                session=stands_for_it.id,
-                other_session=session.id,
+                "Session {id} replaces session {id2}: withdraw it first, or both would count.",
+                id=stands_for_it.id,
+                id2=session.id,
             )
         )
 
@@ -235,13 +235,13 @@ def record_service(
 def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:
     found = []
     if new.at > now + CLOCK_LEEWAY:
-        found.append(Problem("at", say("lies in the future ({date}); record what was done", date=f"{new.at:%Y-%m-%d}")))
+        found.append(Problem("at", say("is in the future ({at}); record what has been done", at=f"{new.at:%Y-%m-%d}")))
     sensors = UnitTypes(store).of_unit(serial).sensors
     if new.sensor and new.sensor not in sensors:
         found.append(
             Problem(
                 "sensor",
-                say("is no sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
+                say("is not a sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
             )
         )
     return tuple(found)

@@ -98,10 +98,9 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
         raise _refused(
             "cause",
             say(
-                "{cause} is a matter of this one record or of what changed since earlier sessions, not "
-                "a property that a model can hold; correct the record and upload it again, or act on the "
-                "unit",
-                cause=repr(wanted),
+                "{wanted} concerns this record or a change since earlier sessions and cannot be part of a model; "
+                "correct the record and upload it again, or service the unit",
+                wanted=repr(wanted),
             ),
         )
     return (*named, *equal)[0]
@@ -163,7 +162,7 @@ def _refused(field: str, message: str) -> RefusedError:
 
 MOST = 700.0
 """ln of the largest number that a double holds, about."""
-NOT_MADE = "What these sessions show together is being worked out with their latest records: ask for it, then accept."
+NOT_MADE = "What these sessions show together is being computed with their latest records: request it, then accept."
 
 
 def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetime) -> ModelRevision:
@@ -274,7 +273,7 @@ def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
     if len(found) == 1:
         return found[0]
     if found:
-        raise _refused("sensors", "must say which is meant: these sessions taught several terms")
+        raise _refused("sensors", "must state which term: several were learned from these sessions")
     raise _refused("cause", "no term was learned from these sessions")
 
 
@@ -291,9 +290,7 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
         places = joined(" or ", (", ".join(f.sensors) or "none" for f in found))
         raise _refused(
             "sensors",
-            say(
-                "must say which is meant: these sessions show {cause} on {places}", cause=repr(new.cause), places=places
-            ),
+            say("must state which one: these sessions show {cause} on {places}", cause=repr(new.cause), places=places),
         )
     names = joined(", ", (cause_on(f.cause, f.sensors) for f in shown.findings)) or "none"
     raise _refused(

@@ -86,14 +86,14 @@ def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) 
     known = Sessions(store).get(replaced.session)
     if known.id == by.id:
         raise ConflictError(
-            say("Session {id} cannot stand for itself: the file holds what is stored already.", id=known.id)
+            say("Session {id} cannot replace itself: the file contains what is already stored.", id=known.id)
         )
     if known.state not in REPLACEABLE:
         raise ConflictError(
-            say("Session {id} is {state} already, so nothing stands for it.", id=known.id, state=known.state)
+            say("Session {id} is already {state}: nothing replaces it.", id=known.id, state=known.state)
         )
     if by.state not in REPLACEABLE:
-        raise ConflictError(say("Session {id} is {state} itself, so it stands for none.", id=by.id, state=by.state))
+        raise ConflictError(say("Session {id} is itself {state}: it replaces no other.", id=by.id, state=by.state))
     change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=by.id)
     return known
 
@@ -106,8 +106,8 @@ def successor_of(storage: Storage, id: str) -> str:
     if len(found) != 1:
         raise ConflictError(
             say(
-                "Which session stands for {id} cannot be told: name it in `superseded_by`. Uploaded "
-                "later of the same unit and date: {number}.",
+                "It is not clear which session replaces {id}: name it in `superseded_by`. Uploaded later with the "
+                "same unit and date: {number}.",
                 id=id,
                 number=len(found),
             )

@@ -98,7 +98,7 @@ class Files:
             self._report_fault("missing", digest)
             raise NotFoundError(
                 say(
-                    "The uploaded file {digest} is missing from {folder}. Uploading the same file puts it back.",
+                    "The uploaded file {digest} is missing from {folder}. Upload the same file to restore it.",
                     digest=digest,
                     folder=self.folder,
                 )
@@ -118,8 +118,8 @@ class Files:
             self._report_fault("damaged", digest)
             raise DamagedError(
                 say(
-                    "The stored file {digest} is not what was uploaded: its content was changed, so it is "
-                    "not given out. Uploading the same file, or the one in a backup, puts it back.",
+                    "The stored file {digest} is not what was uploaded: its content was changed, so it cannot be "
+                    "downloaded. Upload the same file, or the one in a backup, to restore it.",
                     digest=digest,
                 )
             )

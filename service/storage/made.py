@@ -30,7 +30,7 @@ def read_made(files: Files, id: int, digest: str) -> bytes:
     except OSError:
         content = b""
     if content_hash(content) != digest:
-        raise NotFoundError(say("The file of job {id} is gone. Ask for it again.", id=id))
+        raise NotFoundError(say("The file of job {id} was deleted. Request it again.", id=id))
     return content
 
 

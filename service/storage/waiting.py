@@ -15,10 +15,7 @@ FOLDER = "waiting"
 """Next to the folders of the uploads, whose names are two hexadecimal digits."""
 JOB_DELAY = timedelta(hours=1)
 """How long a file may exist before its job is stored: a commit takes a moment."""
-MISSING = (
-    "The file that was sent is gone from the disk of the service, or was changed there. Nothing was stored: upload it "
-    "again."
-)
+MISSING = "The received file was deleted or changed on the disk of the service. Nothing was stored: upload it again."
 
 
 def put_waiting(files: Files, place: str, content: Content) -> None:

@@ -118,7 +118,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/uploads")
 def show_uploads(request: Request, store: Reading, asked: Annotated[ArrivalsQuery, Query()]) -> HTMLResponse:
-    """Every file that came in, newest first, and what became of it."""
+    """All received files, newest first, with their result."""
     query = arrivals_query(asked)
     jobs = () if asked.after or query.refused else Jobs(store).open_uploads(query.text)
     return render(request, "arrivals.html", arrivals_page(Arrivals(store).page(query), asked, jobs))

@@ -30,7 +30,7 @@ from service.storage.files import LOST
 from service.units.store import Units
 from service.uploads.receive import deriving, receipt_of, receive
 
-UNKNOWN = "Nothing is known that would put session {id} right: upload a corrected file that names it, or accept it."
+UNKNOWN = "No correction is known for session {id}: upload a corrected file that names it, or accept it."
 
 
 def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Receipt:

@@ -24,7 +24,7 @@ from service.types.store import UnitTypes
 from service.units.store import Units
 from service.uploads.store import Layouts
 
-KNOWN = "It says itself that it is a session: upload it as it is, without a mapping."
+KNOWN = "This is a session file: upload it as it is, without a mapping."
 FIRST_ROWS = 6
 """Rows of the preview."""
 OF_A_LOG = ("unit", "started_at", "notes", "sample_rate_hz")

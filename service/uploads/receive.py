@@ -322,7 +322,7 @@ def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
     )
 
 
-NO_TABLE = "is given with a file that says itself what it is; send that without a mapping"
+NO_TABLE = "is given with a session file, which needs none; send it without a mapping"
 
 
 def receive_mapped(reception: Reception, file: SentFile, mapping: Mapping[str, Any], now: datetime) -> Receipt:

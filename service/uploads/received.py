@@ -168,7 +168,7 @@ def _fault(name: str, text: str) -> str:
     """Why a field of the form cannot be stored; empty where it can."""
     if len(text) > LONGEST[name]:
         return say("is longer than {longest} characters", longest=LONGEST[name])
-    return "holds a character that cannot be stored" if "\x00" in text else ""
+    return "contains a character that cannot be stored" if "\x00" in text else ""
 
 
 SentOf = Annotated[SentAttachment, Depends(_sent_attachment)]
@@ -177,8 +177,8 @@ SentOf = Annotated[SentAttachment, Depends(_sent_attachment)]
 NEEDED = "is missing; a session is replaced by somebody and for a reason"
 LONGEST_REASON = 2000
 """Characters, as for every reason."""
-REPLACES = "A session is replaced by an engineer: upload the file as it is, and tell one."
-NO_FILE = "The form holds no file. Send the session as the body, or as the form's part `file`."
+REPLACES = "Only an engineer replaces a session: upload the file as it is, and ask one."
+NO_FILE = "The form contains no file. Send the session as the body, or as the form's part `file`."
 
 
 Supersedes = Annotated[
@@ -263,7 +263,7 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
             )
         )
     if faults:
-        raise RefusedError("A corrected file says who replaces a session and why.", tuple(faults))
+        raise RefusedError("A corrected file states who replaces a session and why.", tuple(faults))
     return Replaced(session, by, why)
 
 

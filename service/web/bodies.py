@@ -136,7 +136,7 @@ def _too_large(limit: int) -> Unfinished:
 
 def _slow(patience: float) -> str:
     return say(
-        "The request did not arrive: it was waited for {patience} s longer than a slow line takes.",
+        "The request did not arrive within {patience} s more than a slow line needs.",
         patience=f"{patience:g}",
     )
 

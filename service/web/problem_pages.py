@@ -18,7 +18,10 @@ PROBLEM = b"application/problem+json"
 UNAUTHORIZED, SEE_OTHER = 401, 303
 ADVICE = {
     401: "Sign in, then go back and send it once more.",
-    403: "If it was a form, open its page again and send it once more. If it is not yours to do, ask who may.",
+    403: (
+        "If it was a form, open its page again and send it once more. If your role does not permit it, ask someone "
+        "whose role does."
+    ),
     404: "The address may be mistyped, or the link is older than the data.",
     408: "The connection may be slow or was interrupted: send it again.",
     409: "Look at the record again: it may have changed since the page was loaded.",
@@ -26,9 +29,9 @@ ADVICE = {
     421: "Open the service by the address that its operator gives.",
     422: "Correct what is listed and try again.",
     503: "Nothing was lost. The page works again as soon as the database answers: try again in a few seconds.",
-    507: "Nothing was lost. Ask whoever runs this service to make room.",
+    507: "Nothing was lost. Ask the operator of this service to free disk space.",
 }
-DEFAULT_ADVICE = "Nothing was lost. Try again; if it happens again, tell whoever runs this service."
+DEFAULT_ADVICE = "Nothing was lost. Try again; if it happens again, tell the operator of this service."
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from service.web.faults import fault_in_words
 
 MEDIA_TYPE = "application/problem+json"
 """RFC 9457."""
-UNEXPECTED = "Something went wrong that should not have. It was logged; nothing was stored half."
+UNEXPECTED = "Unexpected error. It was logged; nothing was stored in part."
 """Does not state the cause, which may be confidential; the log has it."""
 CUT_OFF = "The request ended before it was complete. Nothing was stored."
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")

@@ -80,7 +80,7 @@ FAULTS = [
     (STAND, ["stand", "alpha_deg"], ..., "stand.alpha_deg", None, "missing"),
     (STAND, ["stand", "alpha_rad"], 0.7, "stand.alpha_rad", None, "alpha_deg"),
     (GYRO, ["stand", "chi_deg"], ..., "stand.chi_deg", None, "missing"),
-    (GYRO, ["count_time_s"], ..., "count_time_s", None, "add the time"),
+    (GYRO, ["count_time_s"], ..., "count_time_s", None, "add the count time"),
     (GYRO, ["count_time_s"], 0, "count_time_s", None, "above 0"),
     (STAND, ["count_time_s"], 100.0, "count_time_s", None, "gyroscopes"),
     (STAND, ["stand", "sigma_arcsec", "beta"], -1, "stand.sigma_arcsec.beta", None, "from 0"),
@@ -244,7 +244,7 @@ def test_faulty_rows_beyond_five_are_counted(faulty, told):
     document["table"]["A1"][20 : 20 + faulty] = ["x"] * faulty
     found = problems_of(document)
     assert [problem.row for problem in found] == [21, 22, 23, 24, 25, None]
-    assert f"{told} such a fault, up to row {20 + faulty}" in found[-1].message
+    assert f"{told} this fault, up to row {20 + faulty}" in found[-1].message
 
 
 def test_a_column_of_one_value_is_told_as_one():

@@ -66,9 +66,9 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
                 Problem(
                     "table",
                     say(
-                        "all {rows} rows show the same orientation: by nominal_scale the readings vary by {swing} "
-                        "g; {advice}",
-                        rows=R,
+                        "all {r} rows have the same orientation: with nominal_scale the readings vary by {swing} g; "
+                        "{advice}",
+                        r=R,
                         swing=f"{swing.max():.1g}",
                         advice=advice(0),
                     ),
@@ -85,11 +85,11 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
 def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
     """Why the accelerometers cannot measure a vector."""
     silent = [s.name for s, dead in zip(session.sensors, ~live & ~gyro, strict=True) if dead]
-    reason = say(" ({names} did not answer to the turns)", names=joined(", ", silent)) if silent else ""
+    reason = say(" ({silent} did not respond to the rotation)", silent=joined(", ", silent)) if silent else ""
     return say(
-        "{count} accelerometers whose nominal axes do not span space{reason}; arbitrary "
-        "orientations need three or more axes that do not lie in one plane",
-        count=int(live.sum()),
+        "the nominal axes of {live} accelerometers do not span space{reason}; arbitrary orientations need three or "
+        "more axes that are not in one plane",
+        live=int(live.sum()),
         reason=reason,
     )
 

@@ -70,7 +70,7 @@ def unwrapped(content: bytes, filename: str) -> tuple[Json, bytes]:
             if len(parts) != PARTS or any(part.compress_type != ZIP_STORED for part in parts):
                 raise refusal(
                     filename,
-                    say("must hold two parts that are not compressed: {mapping} and the table", mapping=MAPPING),
+                    say("must contain two uncompressed parts: {mapping} and the table", mapping=MAPPING),
                 )
             text, table = (archive.read(part) for part in parts)
     except UNREADABLE as error:

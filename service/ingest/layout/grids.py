@@ -241,7 +241,7 @@ def _headed(
     header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
     if not 0 <= first < len(rows):
         raise refusal(
-            filename, "has no row of numbers below its headings; say in which row the readings begin", "table"
+            filename, "has no row of numbers below its headings; state the row where the readings begin", "table"
         )
     headings = _headings(rows[header - 1 : first] if header else [], width)
     columns = tuple([row[k] for row in rows[first:]] for k in range(width))

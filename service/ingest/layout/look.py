@@ -63,7 +63,7 @@ def look(content: bytes, filename: str) -> object:
     grid = grid_of(table, filename, stated)
     if len(grid.headings) > MOST_COLUMNS:
         text = say(
-            "has {headings} columns; a mapping takes at most {most_columns}; take out what is not needed",
+            "has {headings} columns; a mapping takes at most {most_columns}; remove those not needed",
             headings=len(grid.headings),
             most_columns=MOST_COLUMNS,
         )

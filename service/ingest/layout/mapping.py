@@ -128,7 +128,7 @@ def _wrong_columns(columns: Any) -> list[Problem]:
             problems.append(
                 Problem(
                     f"{place}.as",
-                    say("{meaning} is what another column is read as; leave one out", meaning=shown(meaning)),
+                    say("another column is also read as {meaning}; remove one", meaning=shown(meaning)),
                 )
             )
         seen.add(meaning if isinstance(meaning, str) and meaning else None)

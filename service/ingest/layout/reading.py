@@ -59,9 +59,7 @@ def _other_columns(grid: Grid, layout: Layout) -> list[Problem]:
     missing = [heading for heading in expected if heading not in grid.headings]
     detail = say("; {names} is not among them", names=joined(", ", map(shown, missing[:5]))) if missing else ""
     return [
-        Problem(
-            "columns", say("are not those of the file{detail}; make the mapping anew from its preview", detail=detail)
-        )
+        Problem("columns", say("are not those of the file{detail}; make a new mapping from its preview", detail=detail))
     ]
 
 
@@ -71,7 +69,7 @@ def _unit_problems(layout: Layout) -> list[Problem]:
         Problem(
             column.meaning or "",
             say(
-                "is in {unit}, which cannot be turned into {target_unit}; choose the unit of column {heading}",
+                "is in {unit}, which cannot be converted to {target_unit}; choose the unit of column {heading}",
                 unit=shown(column.unit),
                 target_unit=wanted,
                 heading=shown(column.heading),

@@ -22,7 +22,7 @@ DAMAGED = (
     OverflowError,
 )
 """Raised by the libraries for truncated or overwritten files."""
-UNREADABLE = "is damaged or breaks off before its end; record or copy it again, or mend it with `mcap recover`"
+UNREADABLE = "is damaged or truncated; record or copy it again, or repair it with `mcap recover`"
 
 
 def read(content: bytes, filename: str) -> Contents:

@@ -32,8 +32,8 @@ Message = tuple[str, int, bytes]
 """Topic, time of the log in ns, content."""
 DAMAGED = (SerdeError, ValueError, IndexError, TypeError, OverflowError)
 """Raised by the library for malformed content."""
-WRONG = "holds a message of {topic} that is no {kind}; record it again"
-NONE = "holds no topic of {kind}; record the raw IMUs"
+WRONG = "contains a message of {topic} that is not {kind}; record it again"
+NONE = "contains no topic of {kind}; record the raw IMU data"
 
 
 def contents(messages: Iterable[Message], filename: str) -> Contents:

@@ -79,7 +79,7 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     if not any(stream.kind == ACCELEROMETER for stream in ordered):
         raise refusal(
             filename,
-            say("holds no accelerometer with {fewest} samples or more; log the raw IMUs", fewest=FEWEST),
+            say("contains no accelerometer with at least {fewest} samples; log the raw IMU data", fewest=FEWEST),
             "table",
         )
     start = max(float(stream.time[0]) for stream in ordered)
@@ -116,8 +116,8 @@ def _left_out(streams: Sequence[Stream], cleaned: Sequence[Stream]) -> Iterator[
         if len(clean.time) < len(stream.time):
             lost = len(stream.time) - len(clean.time)
             yield say_count(
-                "{label}: {n} sample left out for want of a number.",
-                "{label}: {n} samples left out for want of a number.",
+                "{label}: {n} sample without a number left out.",
+                "{label}: {n} samples without a number left out.",
                 lost,
                 label=stream.label,
             )
@@ -129,7 +129,7 @@ def _left_out(streams: Sequence[Stream], cleaned: Sequence[Stream]) -> Iterator[
 
 def _torn(row_count: int, rows: int) -> Iterator[str]:
     if row_count < rows:
-        yield say("{number} of {rows} rows left out: some IMU says nothing there.", number=rows - row_count, rows=rows)
+        yield say("{number} of {rows} rows left out: an IMU has no data there.", number=rows - row_count, rows=rows)
 
 
 def _rate(stream: Stream) -> float:

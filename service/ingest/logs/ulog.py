@@ -29,8 +29,8 @@ LONGEST = 10_000
 """Bytes of an unknown message that is still accepted, as by the library."""
 DAMAGED = (ULogException, struct.error, ValueError, LookupError, TypeError, AttributeError, OverflowError)
 """Raised by the library for truncated or overwritten files."""
-BROKEN = "is damaged within: some of its messages cannot be read; copy it from the card again"
-CUT = "The log breaks off within a message, as where the power went: what came before it is read."
+BROKEN = "is damaged: some of its messages cannot be read; copy it from the card again"
+CUT = "The log ends within a message, as after a loss of power; everything before that was read."
 UNREADABLE = "is damaged or not a readable ULog file; copy it from the card again"
 
 

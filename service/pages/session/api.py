@@ -136,7 +136,7 @@ def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
     found = Noises(store).get(id)
     if found is None:
         raise NotFoundError(
-            say("Session {id} tells nothing of noise: it holds no rests, or was not looked at yet.", id=id)
+            say("Session {id} has no noise results: it contains no rest periods, or is not evaluated yet.", id=id)
         )
     return NoiseDocument.model_validate(found.to_dict())
 

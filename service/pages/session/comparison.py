@@ -135,19 +135,19 @@ def _axis_repeatability(calibration: Calibration, sensor: SensorCalibration) -> 
 
 DIRECT = "They are compared directly, so the reference that both are judged against plays no part in the difference."
 ONE_STAND = (
-    "Both were measured on stand {stand}: unless it was set anew between them, its constant errors act on both alike "
-    "and cancel in the difference. “On one stand” leaves them out; ± U counts them in full for each, as the decision "
-    "rule does, and is the larger of the two."
+    "Both were measured on stand {stand}: unless it was realigned between them, its constant errors cancel in the "
+    "difference. “On one stand” excludes them; ± U includes them in full for each, as the decision rule does, and is "
+    "the larger of the two."
 )
 TWO_STANDS = (
     "They were measured on different stands, {first} and {second}: the constant errors of each count in full, and what "
     "differs between the stands is part of the difference."
 )
-NO_STAND = "They were not both measured on a stand: the errors of each count in full."
-SERVICED = "Between them the unit was serviced ({days}): a change may be what was done to it."
+NO_STAND = "Not both were measured on a stand: the errors of each count in full."
+SERVICED = "The unit was serviced between them ({days}): a change may come from the service."
 OTHER_MODEL = (
-    "They were calibrated with different causes in the model, revisions {first} and {second}: a part of the difference "
-    "may be the model's."
+    "They were calibrated with different causes in the model, revisions {first} and {second}: part of the difference "
+    "may come from the model."
 )
 OTHER_METHOD = "They were measured in different ways, {first} and {second}."
 
@@ -171,7 +171,7 @@ def _stand(first: str | None, second: str | None) -> str:
     return say(ONE_STAND, stand=first) if first == second else say(TWO_STANDS, first=first, second=second)
 
 
-NOT_COMPARED = "not told by both"
+NOT_COMPARED = "not determined by both"
 
 
 @dataclass(frozen=True)

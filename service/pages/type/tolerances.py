@@ -153,7 +153,7 @@ def _read(kind: str, name: str, given: Tolerances, form: Mapping[str, str], faul
     if current is not None and isclose(tolerance, current, rel_tol=SAME):
         return float(current)
     if not LEAST <= tolerance <= MOST:
-        faults.append(Problem(key, "must be larger than nothing, and no larger than can be measured"))
+        faults.append(Problem(key, "must be greater than zero and within the measurable range"))
     return tolerance
 
 
@@ -175,11 +175,19 @@ def headline_of(found: TolerancePreview) -> str:
     if not found.judged:
         return "No unit of this type has a session that tolerances decide"
     if not changed:
-        return "With these, no unit changes"
+        return "With these tolerances, no verdict changes"
     return (
-        say("With these, {changed} of {judged} units changes", changed=changed, judged=found.judged)
+        say(
+            "With these tolerances, the verdict of {changed} of {judged} units changes",
+            changed=changed,
+            judged=found.judged,
+        )
         if changed == 1
-        else say("With these, {changed} of {judged} units change", changed=changed, judged=found.judged)
+        else say(
+            "With these tolerances, the verdicts of {changed} of {judged} units change",
+            changed=changed,
+            judged=found.judged,
+        )
     )
 
 
@@ -187,17 +195,17 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
     """What was not looked at, and why."""
     if found.references:
         yield say(
-            "{references} not counted: the latest session is a reference, judged by nothing.",
+            "{references} not counted: the latest session is a reference, which is not judged.",
             references=counted(found.references, "unit"),
         )
     if found.recordings:
         units = counted(found.recordings, "unit")
         yield say(
-            "{units} not counted: the latest session is a recording in service without a calibration beside it.",
+            "{units} not counted: the latest session is a recording in service without a calibration.",
             units=units,
         )
     if found.beyond:
-        yield say("{beyond} not looked at: only the worst ones are.", beyond=counted(found.beyond, "unit"))
+        yield say("{beyond} not checked: only the worst are.", beyond=counted(found.beyond, "unit"))
 
 
 CARRIED_APART = ("by", "why", "csrf")
@@ -278,7 +286,7 @@ def set_tolerances(
         if seen is not None and seen != current.revision:
             raise ConflictError(
                 say(
-                    "Somebody set other tolerances meanwhile, revision {revision}: look at them, then set yours.",
+                    "Other tolerances were set meanwhile, revision {revision}: check them, then set yours.",
                     revision=current.revision,
                 )
             )

@@ -131,11 +131,11 @@ def _row(points: Sequence[HistoryPoint], sensors: Sequence[str]) -> NoiseRow:
 
 
 PARAMETER_MEANINGS = {
-    "scale": "Change of the scale factor from the reference of its time.",
-    "bias": "Change of the zero offset from the reference of its time.",
-    "quadratic": "Change of the quadratic nonlinearity from the reference of its time.",
-    "axis": "Angle between the input axis and its direction in the reference of its time.",
-    "misalignment": "Change of the input axis' turn toward a turntable's axis from the reference of its time.",
+    "scale": "Change of the scale factor since the reference of its epoch.",
+    "bias": "Change of the bias since the reference of its epoch.",
+    "quadratic": "Change of the quadratic term since the reference of its epoch.",
+    "axis": "Angle between the input axis and its direction in the reference of its epoch.",
+    "misalignment": "Change of the input axis's misalignment to the turn axis since the reference of its epoch.",
 }
 """What the charts of a parameter show."""
 TOGETHER = {"axis": "turn", "scale": "change"}

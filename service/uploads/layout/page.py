@@ -184,7 +184,7 @@ def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Seq
 
 def _dated(problems: tuple[Problem, ...], day: str) -> tuple[Problem, ...]:
     """A history needs the day, which a session file may omit."""
-    return problems if day else (*problems, Problem("started_at", "missing; say on which day it was measured"))
+    return problems if day else (*problems, Problem("started_at", "missing; state the day of measurement"))
 
 
 def _choices(values: Sequence[str], chosen: str) -> tuple[Choice, ...]:

@@ -22,7 +22,7 @@ from service.uploads.receive import receive_mapped
 from service.web.dependencies import Now
 from service.web.render import render
 
-NO_FILE = "The table did not come with the form, or is kept no longer: upload it again."
+NO_FILE = "The table is missing from the form or no longer stored: upload it again."
 STORE = "store"
 """The button of the form that stores the session; others carry the name of a mark that it gets too."""
 

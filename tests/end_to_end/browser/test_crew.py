@@ -87,7 +87,7 @@ def test_readings_in_mv_are_put_right_by_one_button(crew: str, page: Page) -> No
     uploaded(page, crew, slipped(times(1000.0), unit="MILLI-1"))
     assert "Questioned" in head(page)
     assert "the readings are not in the unit that the file states, such as mV instead of V" in head(page)
-    send(page, "Put the file right")
+    send(page, "Correct the file")
     assert "Reference set" in head(page)
 
 
@@ -158,7 +158,7 @@ def test_a_unit_mounted_otherwise_by_two_degrees_is_fit(crew: str, page: Page) -
 
 def test_a_stand_seated_badly_for_a_month_is_named_with_its_dates(crew: str, page: Page) -> None:
     page.goto(f"{crew}/")
-    said = page.locator("p.line", has_text="Stand S1 was shifted for a time").inner_text()
+    said = page.locator("p.line", has_text="Stand S1 was shifted temporarily").inner_text()
     assert "from 1 Jun 2026 until before 1 Aug 2026" in said
     assert "The units are judged without this effect" in said
     page.goto(f"{crew}/units/MO-1")

@@ -98,12 +98,12 @@ def test_what_is_not_told_has_no_value() -> None:
 
 
 def test_a_single_position_is_too_few() -> None:
-    with pytest.raises(ScheduleError, match=r"the table stands only at 0°; stop .* at two angles or more"):
+    with pytest.raises(ScheduleError, match=r"the table rests only at 0°; stop .* at two or more angles"):
         align(given(TurntableProgramme(angles=(0.0,), dwell=100.0, row=0.5)))
 
 
 def test_a_whole_turn_is_no_second_position() -> None:
-    with pytest.raises(ScheduleError, match="two angles or more"):
+    with pytest.raises(ScheduleError, match="two or more angles"):
         align(given(TurntableProgramme(angles=(0.0, 2 * np.pi), dwell=60.0, row=0.5)))
 
 
@@ -111,7 +111,7 @@ def test_a_block_that_moves_at_a_stop_is_noticed() -> None:
     measured = given()
     moved = measured.readings.copy()
     moved[100:150, 3] += np.radians(2.0)
-    with pytest.raises(ScheduleError, match=r"table stands in rows 1 to \d+, but the gyros read 2 °/s"):
+    with pytest.raises(ScheduleError, match=r"table is at rest in rows 1 to \d+, but the gyros read 2 °/s"):
         align(replace(measured, readings=moved))
 
 
@@ -178,7 +178,7 @@ def test_a_stuck_channel_is_named() -> None:
     measured = given()
     stuck = measured.readings.copy()
     stuck[:, 4] = 0.0
-    with pytest.raises(ScheduleError, match="G2: reads the same in every row"):
+    with pytest.raises(ScheduleError, match="G2: has the same reading in every row"):
         align(replace(measured, readings=stuck))
 
 

@@ -184,7 +184,7 @@ def test_of_many_stated_positions_the_wrong_one_is_named() -> None:
     wrong[2, :2] += 0.04, 0.03
     [finding] = diagnose(cone_of_six(places, wrong)).findings
     assert finding.sensors == ("A3",)
-    assert finding.sentence.startswith("A3 stands 5.")
+    assert finding.sentence.startswith("A3 is 5.")
 
 
 def test_many_turns_are_cut_into_fewer_pieces() -> None:
@@ -196,7 +196,7 @@ def test_many_turns_are_cut_into_fewer_pieces() -> None:
 
 def test_what_no_turn_shows_is_said() -> None:
     found = diagnose(turned(AWAY))
-    assert found.notes[0].startswith("A3 points along the turn axis: where it stands does not show.")
+    assert found.notes[0].startswith("A3 points along the turn axis: its position is not observable.")
     assert [limit.cause for limit in found.limits] == ["lever-arm"]
 
 

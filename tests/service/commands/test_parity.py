@@ -97,7 +97,7 @@ def test_a_missing_value_is_named_by_its_row(run: Run, tmp_path: Path, reference
     path.write_text("\n".join(lines), encoding="utf-8")
     done = run("parity", path, "--reference", reference)
     assert done.code == 2
-    assert "table, row 2301: holds a value that is not a finite number" in done.err
+    assert "table, row 2301: contains a value that is not a finite number" in done.err
 
 
 def test_text_among_numbers_is_unusable(run: Run, tmp_path: Path, reference: Path) -> None:

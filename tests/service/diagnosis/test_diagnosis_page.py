@@ -80,13 +80,13 @@ def test_a_unit_type_without_tolerances_is_diagnosed_like_any_other(holding: Hol
     client.put(f"/api/v1/unit-types/{name}", json=none).raise_for_status()
     text = page(client, send(client, warm(2, "2026-03-05T08:00:00Z")))
     assert "The bias of A2 depends on temperature." in text
-    assert "No verdict: nothing of this session was judged." in text
+    assert "No verdict: no parameter of this session was judged." in text
 
 
 def test_what_a_cause_explains_is_no_noise(holding: Holding) -> None:
     document = json.dumps(warm(2, "2026-03-05T08:00:00Z")).encode()
     client, id = holding(document), session_id(document)
-    assert "The readings scatter more than that" in client.get(f"/sessions/{id}", headers=HTML).text
+    assert "The readings scatter more:" in client.get(f"/sessions/{id}", headers=HTML).text
     text = page(client, id)
     assert "The band is ±2σ of the stated noise." in text
     assert "scatter more" not in text

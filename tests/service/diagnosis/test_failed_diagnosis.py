@@ -74,7 +74,7 @@ def test_the_page_says_that_it_is_a_fault_of_the_program_and_where_to_look(shown
     page = shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
     assert page.status_code == 200
     assert "a fault of the program, not of the session" in page.text
-    assert f"under session {ID}" in page.text
+    assert f"about session {ID}" in page.text
     assert "Error" not in page.text
 
 

@@ -119,7 +119,7 @@ def test_the_chance_of_a_sound_session_is_said(p_value: float, chance: str) -> N
 def test_equal_causes_come_with_what_would_distinguish_them() -> None:
     first, second = finding_view(JUMP).choices
     assert (first.name, first.share, first.measurement) == ("bias jump (A1, A2)", "70.0\u00a0%", "")
-    assert (second.now, second.measurement) == ("1.5\u00a0σ", "repeat the session (expected 4.5\u00a0σ apart)")
+    assert (second.now, second.measurement) == ("1.5\u00a0σ", "repeat the session (expected separation 4.5\u00a0σ)")
 
 
 def test_a_measurement_that_would_not_help_is_not_proposed() -> None:

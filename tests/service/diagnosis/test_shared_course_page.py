@@ -46,7 +46,7 @@ def test_the_page_says_it_in_one_sentence_and_draws_one_chart(holding: Holding) 
     assert "The biases of all sensors of the block settle together after switch-on." in text
     assert "time constant" in text
     assert text.count('id="spec-shared-1"') == 1
-    assert "The shared course as a table" in text
+    assert "The common course as a table" in text
 
 
 def test_the_page_says_it_in_russian(holding: Holding) -> None:

@@ -17,7 +17,7 @@ def test_what_one_sensor_does_is_told_of_that_sensor() -> None:
 
 
 def test_what_all_sensors_show_is_told_of_the_stand() -> None:
-    assert told([COURSE]) == f"{COMMON}: the applied vector is off in α, smoothly along β."
+    assert told([COURSE]) == f"{COMMON}: the applied vector deviates in α, smoothly along β."
     assert told([PATTERN]) == f"{COMMON}: harmonic 3 of β."
 
 

@@ -111,7 +111,7 @@ def test_what_does_not_fit_the_state_is_refused(flagged: Storage) -> None:
     id = flags(flagged)[0].id
     resolve_flag(flagged, id, "K. Ito", "done", NOW)
     for act in (acknowledge_flag, resolve_flag):
-        with pytest.raises(ConflictError, match="is resolved already"):
+        with pytest.raises(ConflictError, match="is already resolved"):
             act(flagged, id, "K. Ito", "again", NOW)
         with pytest.raises(NotFoundError):
             act(flagged, id + 1, "K. Ito", "why", NOW)

@@ -77,7 +77,7 @@ def test_an_engineer_accepts_it_and_sees_what_it_moved(twelve: httpx.Client) -> 
 @one_engine
 def test_until_it_is_made_the_page_says_where_to_ask(holding: Holding) -> None:
     client = holding(*GROUP[:2])
-    assert "What its 2 sessions show together is not worked out with the latest records yet" in words(client)
+    assert "What its 2 sessions show together has not been computed with the latest records" in words(client)
 
 
 @one_engine

@@ -47,7 +47,7 @@ def test_a_term_of_a_sensor_says_which() -> None:
 
 def test_what_it_is_worth_and_what_comes_near_it_are_said() -> None:
     told = term_view(TERM)
-    assert plain(told.worth).startswith("It removes 24 % of what the sessions that took no part")
+    assert plain(told.worth).startswith("It removes 24 % of the excess")
     assert told.nearest == "Nearest in the catalogue: beta scale, 12.4 standard errors from it."
 
 

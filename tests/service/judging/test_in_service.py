@@ -92,7 +92,7 @@ def test_a_saturated_channel_is_named(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
     document = recording_document()
     document["table"]["A2"] = [min(u, -0.5) for u in document["table"]["A2"]]
-    assert "A2: A2 stood at the end of the range" in refusal(storage, json.dumps(document).encode())
+    assert "A2: A2 was at the end of the range" in refusal(storage, json.dumps(document).encode())
 
 
 def test_over_http_its_page_and_answers_are_served(client: httpx.Client) -> None:

@@ -38,7 +38,7 @@ def test_the_same_is_not_advised_twice() -> None:
 
 
 def test_a_reference_is_said_with_them_too() -> None:
-    assert verdict_in_words(REFERENCE, (JUMPED,)).startswith("Reference set, but the zero of A2")
+    assert verdict_in_words(REFERENCE, (JUMPED,)).startswith("Reference set, but the bias of A2")
 
 
 def test_a_verdict_with_a_reservation_is_marked_in_words_and_keeps_its_rank() -> None:

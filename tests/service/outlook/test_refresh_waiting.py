@@ -123,7 +123,7 @@ def test_until_its_dates_are_known_it_may_not_be_used_and_says_why(settings: Set
     with http_client(create_app(worked, lambda: NOW)) as client:
         page = client.get(f"/units/{UNIT}", headers={"Accept": "text/html"}).text
         answer = usable_now(storage)
-    assert "being worked out" in page
+    assert "being computed" in page
     assert 'http-equiv="refresh"' in page
     assert (answer.usable, answer.reasons) == (False, (DATES_PENDING,))
 

@@ -1,4 +1,4 @@
-"""The page of a recording in service speaks of agreement, of what would have been seen, and of what never is."""
+"""The page of a recording in service speaks of agreement, of what would have been detected, and of what never is."""
 
 import json
 from functools import cache
@@ -30,7 +30,7 @@ def test_it_says_that_the_sensors_do_not_agree(page: str) -> None:
 
 
 def test_it_says_from_what_size_a_change_would_have_been_seen(page: str) -> None:
-    assert "What would have been seen" in page
+    assert "What would have been detected" in page
     assert '<td data-label="Share">50 %</td>' in page
 
 
@@ -40,7 +40,7 @@ def test_it_says_what_parity_never_sees(page: str) -> None:
 
 
 def test_a_recording_of_one_orientation_is_told_to_turn(holding: Holding) -> None:
-    assert "The recording turns too little" in page_of(holding, recording_bytes(still=True))
+    assert "The recording has too little rotation" in page_of(holding, recording_bytes(still=True))
 
 
 @cache
@@ -62,7 +62,7 @@ def test_a_block_that_moves_too_much_is_told_so_and_what_to_do(holding: Holding)
     page = unescape(client.get(f"/sessions/{session_id(flight)}").text)
     assert "Too much motion for a decision." in page
     assert "Too much motion for a decision: the sensors disagree, possibly because of lever arms, delays" in page
-    assert "hold the unit still for 15 s while recording, or state where its sensors sit (position_m)" in page
+    assert "hold the unit still for 15 s while recording, or state where its sensors are (position_m)" in page
 
 
 def test_nothing_is_lost_for_a_block_that_moves_too_much(holding: Holding) -> None:

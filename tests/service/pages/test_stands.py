@@ -56,7 +56,7 @@ def test_a_shift_that_was_taken_back_says_until_when() -> None:
 
 def test_a_certificate_is_recorded_on_the_stand_s_page(flagged: httpx.Client) -> None:
     assert "none recorded" in flagged.get("/stands").text
-    assert "No certificate on record" in flagged.get("/stands/ODG-1").text
+    assert "No certificate recorded" in flagged.get("/stands/ODG-1").text
     origin = str(flagged.base_url).rstrip("/")
     answer = flagged.post("/stands/ODG-1/certificates", data=STAND, headers={"Origin": origin})
     assert (answer.status_code, answer.headers["location"]) == (303, "/stands/ODG-1#certificates")

@@ -129,7 +129,7 @@ def test_withdrawn_it_goes_out_of_every_session_again(four: Storage, accepted: M
 @one_engine
 def test_it_is_accepted_for_the_sessions_of_now_alone(four: Storage) -> None:
     upload(four, cubic_session(12, cubic=LARGE), "b.json", NOW)
-    with pytest.raises(ConflictError, match="being worked out"):
+    with pytest.raises(ConflictError, match="being computed"):
         accept_lasting(four, group(four), NEW, NOW)
 
 

@@ -180,7 +180,7 @@ def test_what_does_not_fit_the_state_is_refused(storage: Storage) -> None:
     for act in (withdraw_session, choose_reference):
         with pytest.raises(ConflictError, match="superseded"):
             act(storage, own, first, step())
-    with pytest.raises(ConflictError, match="stands for session"):
+    with pytest.raises(ConflictError, match="replaces session"):
         accept_session(storage, own, first, step())
     with pytest.raises(NotFoundError):
         withdraw_service(storage, own, 99, step())

@@ -32,7 +32,7 @@ def test_a_single_sensor_is_named() -> None:
     last = points[-1]
     assert last.value is not None
     (sentence,) = grown([*points[:-1], replace(last, value=3 * last.value, u=3 * (last.u or 0.0))])
-    assert sentence.startswith("White noise N of A5 is ")
+    assert sentence.startswith("White noise N of A5 has grown ")
 
 
 def test_what_is_not_decided_is_no_number() -> None:

@@ -65,7 +65,7 @@ def test_a_channel_at_one_huge_value_did_not_answer_to_the_turns(
     case = Case(programme, ("table", "A3"), number, whole=True)
     field, _, message = problem_of(client.post("/api/v1/sessions", content=case.content("EX-1")))
     assert field == "sensors"
-    assert "A3 did not answer to the turns" in message
+    assert "A3 did not respond to the rotation" in message
 
 
 @pytest.mark.parametrize(("programme", "name"), [("two-axis-stand", "A1"), ("pulse gyroscopes", "G1")])

@@ -79,7 +79,7 @@ def test_what_was_shown_is_stored(client: httpx.Client) -> None:
 def test_what_was_changed_since_is_shown_first(client: httpx.Client) -> None:
     answer = sent(client, looked_at(client), **{"fact.stand.alpha_deg": "41", "do": "store"})
     assert answer.status_code == 200
-    assert "Something was changed" in answer.text
+    assert "The settings have changed" in answer.text
     assert client.get("/api/v1/sessions").json()["sessions"] == []
 
 
