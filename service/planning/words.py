@@ -223,8 +223,8 @@ def _drift_sentences(found: Readiness, worst: DriftOutlook) -> list[str]:
         ]
     sentences: list[str] = [
         say(
-            "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); limit {tolerance}, "
-            "{source}.",
+            "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
+            "limit {tolerance}, {source}.",
             name=worst.name,
             bound=bound,
             length=length,

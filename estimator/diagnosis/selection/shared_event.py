@@ -127,8 +127,7 @@ def searched_with_event(start: SearchState) -> SearchState | None:
 
 
 def is_plainly_shared(start: SearchState) -> bool:
-    """Whether a shared course explains so much more than each sensor's own likeliest cause that nobody need search for
-    what the sensors would have without it."""
+    """Whether a shared course explains so much more than each sensor's own likeliest cause that it is certain."""
     event = shared_event(start)
     if not event:
         return False
