@@ -34,7 +34,7 @@ def test_units_are_numbered_through_the_pages() -> None:
 def test_a_page_that_is_read_backwards_holds_the_units_next_to_where_it_was_left() -> None:
     units = [unit_summary(f"U{i}") for i in range(200)]
     forwards, backwards = (
-        fleet_page(CONDITION, units, view, NOON)
+        fleet_page(CONDITION, units, uses_of(*units), view)
         for view in (FleetView(page=2, after="X"), FleetView(page=2, before="X"))
     )
     size = len(forwards.rows)
