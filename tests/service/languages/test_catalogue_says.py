@@ -18,8 +18,9 @@ SAID = (
     (joined(" and ", ("bias", "scale factor")), "смещение нуля и масштабный коэффициент"),
     (joined("; ", ("Fit", say("{n} more", n=1))), "Годен; 1 more"),
     (
-        say("{place} changed by {moved} (U {spread}), beyond the tolerance of ±{allowed}.",
-            place=say("{sensor} {worst}", sensor="A3", worst="bias"), moved="+85 µg", spread="2.9 µg", allowed="50 µg"),
+        say("{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}.",
+            place=say("{sensor} {worst}", sensor="A3", worst="bias"),
+            change="+85 µg", spread="2.9 µg", tolerance="50 µg"),
         "A3 смещение нуля: изменение +85 µg (U 2,9 µg) больше допуска ±50 µg.",
     ),
 )  # fmt: skip
