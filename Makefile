@@ -31,6 +31,8 @@ run: setup
 browser:
 	@sh tests/install_chromium.sh
 
+# Every service that a test starts has threads of its own, and each thread would keep memory for itself.
+test: export MALLOC_ARENA_MAX ?= 2
 test: setup browser
 	$(BIN)/pytest -n $(WORKERS) --dist worksteal
 

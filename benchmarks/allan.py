@@ -7,6 +7,7 @@ are off on average; then, over all records, how often an interval was stated tha
 
 import sys
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def sensor(name: str, kind: str = ACCELEROMETER) -> Sensor:
 def records(world: World, count: int, seed: int) -> list[SensorNoise]:
     """What so many records say, one after another: each with its own rests."""
     rng = np.random.default_rng(seed)
-    found = []
+    found: list[Any] = []
     for _ in range(count):
         y = noise(round(world.seconds / INTERVAL), INTERVAL, rng, **world.sizes)[:, None]
         result = allan_terms(Rests((sensor("y"),), tuple(np.split(y, world.rests)), INTERVAL))

@@ -30,8 +30,8 @@ def page() -> str:
     for scope, heading in SCOPES.items():
         rows = [_row(cause) for cause in CATALOGUE if cause.scope == scope]
         parts.append(f"## {heading}\n\n{_line(COLUMNS)}\n{RULE}\n" + "\n".join(rows) + "\n")
-    rows = "\n".join(map(_row, ON_TURNTABLE))
-    parts.append(f"{TURNTABLE}\n\n{_line(COLUMNS)}\n{RULE}\n{rows}\n")
+    last = "\n".join(map(_row, ON_TURNTABLE))
+    parts.append(f"{TURNTABLE}\n\n{_line(COLUMNS)}\n{RULE}\n{last}\n")
     return "\n".join(parts)
 
 

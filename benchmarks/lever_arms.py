@@ -6,7 +6,7 @@ import numpy as np
 
 from estimator.alignment.align import prepared
 from estimator.alignment.lever_arms import LEVEL, lever_arms
-from estimator.alignment.simulate import Programme
+from estimator.alignment.simulate import TurntableProgramme
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.results import ARCSEC
 from tests.estimator.alignment.cases import aligned, drawn
@@ -30,7 +30,7 @@ def harm() -> None:
             away = np.zeros((6, 3))
             away[0, 0], away[1, :2] = arm, (0.3 * arm, -arm)
             truth = replace(drawn(np.random.default_rng(3)), positions=away)
-            programme = Programme(dwell=200.0, ramp=1.0, rate=np.radians(rate))
+            programme = TurntableProgramme(dwell=200.0, ramp=1.0, rate=np.radians(rate))
             for known in (False, True):
                 case = aligned(truth, programme=programme, lever_arms=known)
                 zero, mounting = np.abs(case.error[6:8]).max(), np.abs(case.error[8:10]).max()

@@ -55,7 +55,8 @@ def one_sensor(u: Array, sigma: Array, n: Array, norm: float, p: SensorParameter
         return (u - scale * (1 + x[0]) * (a + x[1] * norm + x[2] / norm * a * a)) / sigma
 
     found = least_squares(residual, [0.0, p.bias / norm, p.quadratic * norm, 0.0, 0.0], method=method)
-    return np.linalg.inv(found.jac.T @ found.jac)
+    jacobian = np.asarray(found.jac)
+    return np.linalg.inv(jacobian.T @ jacobian)
 
 
 def sensor_by_sensor(session: CalibrationSession, geometry: Geometry, start: SensorParameters, method: str) -> None:
@@ -98,7 +99,8 @@ def same_likelihood(session: CalibrationSession, geometry: Geometry, start: Sens
         return np.concatenate([left.ravel(), x[5 * m :]])
 
     found = least_squares(residual, np.zeros(5 * m + len(moved)))
-    return np.linalg.inv(found.jac.T @ found.jac)
+    jacobian = np.asarray(found.jac)
+    return np.linalg.inv(jacobian.T @ jacobian)
 
 
 def joint(session: CalibrationSession, geometry: Geometry, start: SensorParameters) -> Figure:

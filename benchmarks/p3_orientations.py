@@ -18,7 +18,7 @@ from benchmarks.orientations import case, sphere
 from estimator import calibrate
 from estimator.arrays import tangents, unit
 from estimator.calibration.free import accelerometer_rows
-from estimator.calibration.free.model import Rows, Unknowns, predicted
+from estimator.calibration.free.model import ModelRows, Unknowns, predicted
 from estimator.calibration.free.solve import held_frame
 from estimator.published.descent import descend, levenberg_marquardt
 from estimator.published.triples import Triples, triples_of
@@ -49,7 +49,7 @@ def published(problem: Triples) -> tuple[Callable[[], object], int]:
     return lambda: descend(problem, most=needed), needed
 
 
-def likelihood(rows: Rows) -> Callable[[], Array]:
+def likelihood(rows: ModelRows) -> Callable[[], Array]:
     """(4 m,) ln scale, offset and axes by `least_squares`, orientations among the unknowns; from the nominal values."""
     m, R = len(rows.nominal_axes), len(rows.y)
     directions = unit(rows.y @ np.linalg.pinv(rows.nominal_axes).T)

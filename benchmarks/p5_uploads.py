@@ -20,6 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from http.client import HTTPConnection
 from itertools import count
 from pathlib import Path
@@ -234,7 +235,7 @@ def run() -> Iterator[Figure]:
         for how_many, clients in ((1, 1), (1, 2), (1, 8), (2, 8)):
             with services(folder, how_many) as ports:
                 ours, theirs = in_turn(
-                    lambda p=ports, c=clients: rate(p, c, document), lambda c=clients: rate((peer,), c, document)
+                    partial(rate, ports, clients, document), partial(rate, (peer,), clients, document)
                 )
             name = f"{clients} client{'s' if clients > 1 else ''}{', two services' if how_many == 2 else ''}"
             yield Figure(f"P5, {name}", WORK.format(clients=name), PEER, 1 / ours, 1 / theirs, "0.2")

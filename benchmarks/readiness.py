@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import erfc
 from scipy.stats import beta as beta_distribution
 
-from estimator.readiness import Allowed, Question, State, readiness
+from estimator.readiness import Allowed, Question, ReadinessState, readiness
 from estimator.session import ACCELEROMETER, ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 from service.demo.blocks import ACCELEROMETER_SCALE, MICRO_G, sensors_of
 
@@ -100,7 +100,7 @@ COURSES: dict[str, Draw] = {
 }
 
 
-def case(draw: Draw, minutes: int, rng: np.random.Generator) -> tuple[State, bool]:
+def case(draw: Draw, minutes: int, rng: np.random.Generator) -> tuple[ReadinessState, bool]:
     """What is said, and whether the drift to come exceeds what is allowed."""
     count = int(60 * minutes / PERIOD)
     t = PERIOD * np.arange(count + int(DURATION / PERIOD) + 1) + rng.uniform(0, 3600)
@@ -145,7 +145,7 @@ def main() -> None:
     print(f"# Readiness: how often it is wrong\n\nPrinted by `{made}`; 95 % intervals (Clopper and Pearson).\n")
     print(f"| {' | '.join(headings)} |")
     print("| --- | --- | --- | --- | --- |")
-    total: Counter[tuple[State, bool]] = Counter()
+    total: Counter[tuple[ReadinessState, bool]] = Counter()
     for number, (name, draw) in enumerate(COURSES.items()):
         rng = np.random.default_rng([chosen.seed, number])
         counts = Counter(case(draw, minutes, rng) for minutes in MINUTES for _ in range(chosen.cases))
@@ -154,14 +154,14 @@ def main() -> None:
     print(_row("**all**", total))
 
 
-def _row(name: str, counts: Counter[tuple[State, bool]]) -> str:
+def _row(name: str, counts: Counter[tuple[ReadinessState, bool]]) -> str:
     late, fine = (sum(n for (_, far), n in counts.items() if far == of) for of in (True, False))
-    refused = counts[State.NOT_WARM, False] + counts[State.NOT_STILL, False]
-    early = sum(n for (state, _), n in counts.items() if state is State.TOO_EARLY)
+    refused = counts[ReadinessState.NOT_WARM, False] + counts[ReadinessState.NOT_STILL, False]
+    early = sum(n for (state, _), n in counts.items() if state is ReadinessState.TOO_EARLY)
     cells = (
-        interval(counts[State.READY, True], late),
+        interval(counts[ReadinessState.READY, True], late),
         interval(refused, fine),
-        interval(counts[State.READY, False], fine),
+        interval(counts[ReadinessState.READY, False], fine),
         interval(early, late + fine),
     )
     return f"| {name} | {' | '.join(cells)} |"

@@ -57,9 +57,9 @@ def records() -> list[tuple[str, CalibrationSession]]:
         at = (piece[:, 0] - piece[0, 0]) * 1e-6
         name = f"MPU-6050 cold start, {piece[0, 0] * 1e-6:.0f} to {piece[-1, 0] * 1e-6:.0f} s"
         found.append((name, triads("MPU-6050", piece[:, 2:8], time=at, temperature=piece[:, 1])))
-    for name, rows in (("first 45 s, at rest", slice(0, 4500)), ("first 90 s, then moved", slice(0, 9000))):
-        time = None if held.time is None else held.time[rows] - held.time[rows][0]
-        found.append((f"Xsens MTi, {name}", replace(held, readings=held.readings[rows], time=time, position=None)))
+    for name, count in (("first 45 s, at rest", 4500), ("first 90 s, then moved", 9000)):
+        time = None if held.time is None else held.time[:count] - held.time[0]
+        found.append((f"Xsens MTi, {name}", replace(held, readings=held.readings[:count], time=time, position=None)))
     return found
 
 

@@ -19,7 +19,7 @@ from sqlalchemy import Engine, event
 
 from service.ingest.checked import check
 from service.ingest.digest import content_digest
-from service.judging.calibrate import Basis, calibrate
+from service.judging.calibrate import CalibrationBasis, calibrate
 from service.judging.judge import judge
 from service.models.records import Model
 from service.opening import open_storage
@@ -34,7 +34,7 @@ from tests.service.made_sessions import session_bytes
 TIMES, UNITS = 60, 12
 START = datetime(2020, 1, 1, tzinfo=UTC)
 NOW = datetime(2026, 1, 1, tzinfo=UTC)
-BASELINE = Basis(Model(0, (), ()), None)
+BASELINE = CalibrationBasis(Model(0, (), ()), None)
 numbers = count()
 
 

@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Literal, Self, TypeVar, Union, get_args, get_o
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.json_object import Json
 from estimator.message import Message, as_document, with_messages
 from estimator.moments import in_utc
 
@@ -72,7 +73,7 @@ class Layout:
     keys: Mapping[str, str] = field(default_factory=dict)
     forms: Mapping[str, Form] = field(default_factory=dict)
     optional: tuple[str, ...] = ()
-    earlier: Callable[[dict[str, Any]], dict[str, Any]] | None = None
+    earlier: Callable[[Json], Json] | None = None
 
     def path(self, name: str) -> tuple[str, ...]:
         """Keys under which an attribute stands, from the outermost in."""
@@ -95,9 +96,9 @@ class Document:
     def __init_subclass__(cls, **stated: Any) -> None:
         cls.layout = Layout(**stated)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Json:
         """Plain JSON."""
-        written: dict[str, Any] = PLAIN.written(self)
+        written: Json = PLAIN.written(self)
         return written
 
     @classmethod
@@ -161,10 +162,10 @@ class Codec:
             return self._object(value)
         raise TypeError(f"{type(value).__name__} is not kept as JSON")
 
-    def _object(self, value: Any) -> dict[str, Any]:
+    def _object(self, value: Any) -> Json:
         kind: Any = type(value)
         stated = layout_of(kind).format
-        document: dict[str, Any] = {"format": stated} if stated else {}
+        document: Json = {"format": stated} if stated else {}
         for name, (*outer, last), form, is_optional in _attributes(kind):
             part = getattr(value, name)
             if part is None and is_optional:
@@ -333,7 +334,7 @@ def _each(value: Any, parts: tuple[Reader, ...]) -> Iterable[Any]:
 def _mapping(read: Reader) -> Reader:
     whole = _of(Mapping, "an object")
 
-    def entries(value: Any) -> dict[str, Any]:
+    def entries(value: Any) -> Json:
         mapping = {}
         for key, item in whole(value).items():
             try:

@@ -10,6 +10,8 @@ from functools import reduce
 from types import MappingProxyType
 from typing import Any
 
+from estimator.json_object import Json
+
 PLACE = re.compile(r"\{(\w+)\}")
 """Where a part stands in a template."""
 PLACES = re.compile(r"(\{\w+\})")
@@ -110,10 +112,10 @@ def filled(template: str, parts: Mapping[str, str]) -> str:
     return PLACE.sub(lambda place: parts.get(place[1], place[0]), template)
 
 
-def as_document(message: Message) -> dict[str, Any]:
+def as_document(message: Message) -> Json:
     """A message as JSON keeps it with its parts."""
     parts = {name: as_document(part) if isinstance(part, Message) else part for name, part in message.parts.items()}
-    document: dict[str, Any] = {MARK: message.template} | ({"parts": parts} if parts else {})
+    document: Json = {MARK: message.template} | ({"parts": parts} if parts else {})
     return document if message.number is None else document | {"many": message.many, "number": message.number}
 
 

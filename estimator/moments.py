@@ -1,6 +1,9 @@
 """Moments as session files state them: ISO 8601 with an offset from UTC. Everything inside is UTC."""
 
 from datetime import UTC, datetime
+from math import ceil
+
+from estimator.message import say, say_count
 
 
 def moment(stated: str) -> datetime:
@@ -23,3 +26,20 @@ def written(at: datetime) -> str:
 def in_utc(stated: str | None) -> str | None:
     """The same moment in UTC; None where nothing is stated, which earlier versions also wrote as an empty text."""
     return written(moment(stated)) if stated else None
+
+
+MINUTE, HOUR, DAY = 60.0, 3600.0, 86_400.0
+"""s."""
+
+
+def duration(seconds: float) -> str:
+    """``39 seconds``, ``35 min``, ``5 h 10 min``, ``3 days``: rounded up."""
+    minutes = ceil(seconds / MINUTE)
+    if seconds < 2 * MINUTE:
+        return say_count("{n} second", "{n} seconds", ceil(seconds))
+    if seconds < 2 * HOUR:
+        return say("{minutes} min", minutes=minutes)
+    if seconds < 2 * DAY:
+        hours, rest = divmod(minutes, 60)
+        return say("{hours} h {rest} min", hours=hours, rest=rest)
+    return say_count("{n} day", "{n} days", ceil(seconds / DAY))

@@ -10,6 +10,7 @@ import numpy as np
 
 from estimator.codec import DEGREES, RUN, Document, named
 from estimator.coverage import coverage_factor
+from estimator.json_object import Json
 from estimator.session import Array
 
 ARCSEC = np.pi / 180 / 3600
@@ -205,7 +206,7 @@ class Calibration(
     residuals: Residuals
     gauge: str
     """What holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all axes)."""
-    parity: dict[str, Any] | None = None
+    parity: Json | None = None
     """``imu-parity/1``, where the calibration is a reference moved by what a recording shows."""
 
     def sensor(self, name: str) -> SensorCalibration:

@@ -157,6 +157,9 @@ class CalibrationSession:
     unit_type: str | None = None
     started_at: str | None = None
     """ISO 8601, in UTC; None when the file does not say."""
+    switched_on: float | None = None
+    """s, by the clock of ``time``: when the unit was switched on; None when the file does not say. Where no time is
+    recorded the clock begins with the first row."""
     operator: str = ""
     notes: str = ""
     stage: str | None = None
@@ -173,6 +176,13 @@ class CalibrationSession:
     def is_simulated(self) -> bool:
         """Whether no hardware was measured."""
         return self.origin == SIMULATED
+
+    @property
+    def time_since_power_on(self) -> float | None:
+        """s, from switching on to the first row; None when the file does not say."""
+        if self.switched_on is None:
+            return None
+        return (0.0 if self.time is None else float(self.time[0])) - self.switched_on
 
     @property
     def subjects(self) -> tuple[str, str | None, str]:

@@ -144,7 +144,7 @@ def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
     rows = joined(
         ", ",
         (
-            say("{a} to {b}", a=a + 1, b=b)
+            say("{first} to {last}", first=a + 1, last=b)
             for a, b in zip(intervals.start[moves][:3], intervals.stop[moves][:3], strict=True)
         ),
     )
@@ -153,9 +153,8 @@ def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
             Problem(
                 "table",
                 say(
-                    "the block moves in {moves} of {intervals} positions (samples {rows}, …): it turns by "
-                    "more than {motion} rad while it should rest; label still samples only, or check "
-                    "sample_rate_hz",
+                    "the block moves in {moves} of {intervals} positions (samples {rows}, …): it turns by more than "
+                    "{motion} rad where it should be at rest; label still samples only, or check sample_rate_hz",
                     moves=np.count_nonzero(moves),
                     intervals=len(intervals),
                     rows=rows,
@@ -301,9 +300,8 @@ def watched_for_rest(session: CalibrationSession) -> NDArray[np.bool_]:
 def no_rests_message(samples: int) -> str:
     """What to tell the person whose log never stands still."""
     return say(
-        "found fewer than {fewest} stretches in {samples} samples in which the block stands "
-        "still for {window} s; rest longer in each orientation, check sample_rate_hz, or label "
-        "the still samples in a position column",
+        "in {samples} samples the block is still for {window} s fewer than {fewest} times; rest longer in each "
+        "orientation, check sample_rate_hz, or label the still samples in a position column",
         fewest=FEWEST,
         samples=samples,
         window=f"{WINDOW + SHORTEST:g}",

@@ -1,18 +1,20 @@
 """CalibrationSession → imu-session/1, the inverse of `estimator.read_session`. Angles in degrees and arcsec."""
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
+from estimator.json_object import Json
 from estimator.reading.keys import FORMAT, SIGMA
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Stand, StandErrors
 
+TIME_DECIMALS = 6
+"""The time since power-on is written to a microsecond."""
 ANGLE_DECIMALS = 10
 """Degrees and arcsec are written to 1e-10: 30.0, not 29.999999999999996."""
 
 
-def session_document(session: CalibrationSession) -> dict[str, Any]:
+def session_document(session: CalibrationSession) -> Json:
     """The session as imu-session/1; what it does not state is left out.
 
     Reading the document back gives the same session, angles to 1e-12 rad.
@@ -25,6 +27,7 @@ def session_document(session: CalibrationSession) -> dict[str, Any]:
             "block": session.block,
             "programme": session.programme,
             "started_at": session.started_at,
+            "time_since_power_on_s": _rounded(session.time_since_power_on, TIME_DECIMALS),
             "operator": session.operator or None,
             "notes": session.notes or None,
             "stage": session.stage,
@@ -48,15 +51,19 @@ def session_document(session: CalibrationSession) -> dict[str, Any]:
     )
 
 
-def _stated(fields: dict[str, Any]) -> dict[str, Any]:
+def _stated(fields: Json) -> Json:
     return {name: value for name, value in fields.items() if value is not None}
 
 
 def _degrees(angle: float | None) -> float | None:
-    return None if angle is None else round(float(np.degrees(angle)), ANGLE_DECIMALS)
+    return None if angle is None else _rounded(float(np.degrees(angle)), ANGLE_DECIMALS)
 
 
-def _stand(stand: Stand) -> dict[str, Any]:
+def _rounded(value: float | None, decimals: int) -> float | None:
+    return None if value is None else round(value, decimals)
+
+
+def _stand(stand: Stand) -> Json:
     return _stated(
         {
             "id": stand.id,
@@ -75,7 +82,7 @@ def _sigma(sigma: StandErrors) -> dict[str, float]:
     return {name: value for name, value in values.items() if value}
 
 
-def _sensor(sensor: Sensor, session: CalibrationSession) -> dict[str, Any]:
+def _sensor(sensor: Sensor, session: CalibrationSession) -> Json:
     suffix = "m_s2" if sensor.kind == ACCELEROMETER else "rad_s"
     return _stated(
         {
@@ -91,8 +98,8 @@ def _sensor(sensor: Sensor, session: CalibrationSession) -> dict[str, Any]:
     )
 
 
-def _table(session: CalibrationSession) -> dict[str, Any]:
-    table: dict[str, Any] = {}
+def _table(session: CalibrationSession) -> Json:
+    table: Json = {}
     if session.flipped is not None:
         table["run"] = ["flipped" if flipped else "direct" for flipped in session.flipped]
     if session.beta is not None:

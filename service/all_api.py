@@ -1,11 +1,11 @@
 """The description of the API: problems are described as problem+json."""
 
 from functools import cache
-from typing import Any
 
 from fastapi import APIRouter, FastAPI
 from fastapi.openapi.utils import get_openapi
 
+from estimator.json_object import Json
 from service.diagnosis import api as diagnoses
 from service.flags import api as flags
 from service.flags import webhooks_api as webhooks
@@ -32,7 +32,7 @@ from service.records import api as records
 from service.records import events_api as events
 from service.uploads import api as uploads
 from service.web.headers import API
-from service.web.held import Held
+from service.web.held import EntityTags
 from service.web.problems import MEDIA_TYPE, add_problem_handlers
 from service.work import api as work
 
@@ -40,7 +40,7 @@ from service.work import api as work
 def describe(app: FastAPI) -> None:
     """Makes `/openapi.json` say of every error what the service really answers."""
 
-    def description() -> dict[str, Any]:
+    def description() -> Json:
         if app.openapi_schema is None:
             schema = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
             is_open = app.state.application.part(Gate).may_be_open
@@ -60,7 +60,7 @@ def _as_routed(path: str) -> str:
     return next((route for _, route in NEEDED if route.replace(":path}", "}") == path), path)
 
 
-def _name_role(operation: dict[str, Any], needed: Role | None, *, is_open: bool) -> None:
+def _name_role(operation: Json, needed: Role | None, *, is_open: bool) -> None:
     """Who may call it, and what others are told."""
     if needed is None:
         return
@@ -71,7 +71,7 @@ def _name_role(operation: dict[str, Any], needed: Role | None, *, is_open: bool)
     operation["responses"].setdefault("403", {"description": "It is not theirs to do.", "content": problem})
 
 
-def _name_problems(responses: dict[str, Any]) -> None:
+def _name_problems(responses: Json) -> None:
     for status, response in responses.items():
         if status >= "400" and "application/json" in response.get("content", {}):
             response["content"][MEDIA_TYPE] = response["content"].pop("application/json")
@@ -94,7 +94,7 @@ def mount(app: FastAPI) -> None:
     app.router.routes.extend(_every().routes)
     add_problem_handlers(app)
     describe(app)
-    app.add_middleware(Held, prefix=PREFIX)
+    app.add_middleware(EntityTags, prefix=PREFIX)
 
 
 @cache

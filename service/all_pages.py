@@ -27,7 +27,7 @@ from service.uploads import arrivals_pages
 from service.uploads.layout import pages as layouts
 from service.web import assets
 from service.web.headers import SecurityHeaders
-from service.web.in_language import InOneLanguage
+from service.web.in_language import LanguageHeaders
 from service.web.problem_pages import ProblemPages, unexpected_pages
 from service.work import pages as work
 
@@ -43,7 +43,7 @@ def mount(app: FastAPI) -> None:
     app.router.routes.extend(_every().routes)
     unexpected_pages(app)
     app.add_middleware(ProblemPages)
-    app.add_middleware(InOneLanguage)
+    app.add_middleware(LanguageHeaders)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=6)
     app.add_middleware(SecurityHeaders)
 

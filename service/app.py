@@ -21,9 +21,9 @@ from service.settings import VERSION, Settings
 from service.web import guard
 from service.web.application import Application
 from service.web.headers import HeadAsGet
-from service.web.measured import Measured
+from service.web.measured import RequestLog
 from service.work.job_desk import JobDesk
-from service.work.loop import Worker, take_in_waiting, work_beside
+from service.work.loop import Worker, take_in_waiting, work_in_background
 from service.work.readers import GroupReader, Reader
 from service.work.watch import ask_for_missing, derive_pending, watch_fleet
 
@@ -61,7 +61,7 @@ def create_app(
     guard(app, settings)
     all_pages.mount(app)
     app.add_middleware(HeadAsGet)
-    app.add_middleware(Measured, metrics=application.metrics)
+    app.add_middleware(RequestLog, metrics=application.metrics)
     return app
 
 
@@ -82,7 +82,7 @@ def _application(settings: Settings, clock: Callable[[], datetime]) -> Applicati
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
-    """From start to stop: work is done beside the requests, and the database is closed at the end."""
+    """From start to stop: work is done in the background, and the database is closed at the end."""
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -103,11 +103,11 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
 
 
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
-    """What is done beside the requests: its name, what does it, and what that needs."""
+    """What is done in the background: its name, what does it, and what that needs."""
     storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
     metrics, k = application.metrics, application.settings.coverage_factor
     for number in range(application.settings.diagnosis_workers):
-        yield f"diagnoses {number}", work_beside, (_worker(application),)
+        yield f"diagnoses {number}", work_in_background, (_worker(application),)
     if application.settings.diagnosis_workers:
         yield "uploads", take_in_waiting, (_worker(application),)
         yield "missing diagnoses", ask_for_missing, (storage, clock, metrics, application.bell)

@@ -16,7 +16,7 @@ from typer.exceptions import TyperException
 
 from service.commands.catalogue import CATALOGUE
 from service.commands.examples import help_of
-from service.commands.speech import FAILED, choose, said, say
+from service.commands.speech import FAILED, say, set_language, translated
 from service.errors import ServiceError
 from service.languages.language import Language
 
@@ -94,7 +94,7 @@ def imu_health(
 ) -> None:
     """In-service health of redundant inertial measurement units."""
     if lang is not None:
-        choose(lang)
+        set_language(lang)
 
 
 def main() -> None:
@@ -106,7 +106,7 @@ def main() -> None:
         sys.exit(FAILED)
     except (ServiceError, OSError) as fault:
         cause = getattr(fault.__cause__, "orig", None)
-        say(f"imu-health: {said(str(fault))}" + (f" ({cause})" if cause else ""))
+        say(f"imu-health: {translated(str(fault))}" + (f" ({cause})" if cause else ""))
         sys.exit(FAILED)
     sys.exit(code if isinstance(code, int) else 0)
 

@@ -6,7 +6,7 @@ from service.fleet.tallies_store import Tallies
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.database import Database
-from service.storage.files import Files, ignore
+from service.storage.files import Files, no_op
 from service.storage.queries import Store
 from service.storage.waits import Waits, waits_of
 
@@ -21,6 +21,6 @@ def open_database(url: str, waits: Waits | None = None) -> Database:
     return Database(url, settle, waits)
 
 
-def open_storage(settings: Settings, count: Callable[[str], None] = ignore) -> Storage:
+def open_storage(settings: Settings, count: Callable[[str], None] = no_op) -> Storage:
     """The stores that the settings name; ``count`` is told of faults of files."""
     return Storage(open_database(settings.database, waits_of(settings.database_seconds)), Files(settings.files, count))

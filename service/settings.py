@@ -69,7 +69,7 @@ class Settings(BaseSettings):
 
     data_folder: Path = Field(
         default_factory=default_data_folder,
-        description="Where uploaded files are kept, and the SQLite database unless database_url says otherwise.",
+        description="Folder of uploaded files, and of the SQLite database unless database_url is set.",
     )
     database_url: str | None = Field(
         default=None,
@@ -157,7 +157,7 @@ class Settings(BaseSettings):
         default="", max_length=2000, description="Where it measures, if that is not at its address."
     )
     four_eyes: bool = Field(
-        default=True, description="Whether a certificate must be approved by somebody else than who reviewed it."
+        default=True, description="Whether a certificate must be approved by another person than its reviewer."
     )
     seal_key_file: Path | None = Field(
         default=None,

@@ -21,7 +21,7 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
 group_diagnoses                                what the sessions of a unit, a unit type or a stand show together
 saved_views                                    lists as people asked for them, under a name
-work                                           what is still to be done beside the requests, and who is at it
+work                                           what is still to be done in the background, and who is at it
 jobs                                           long work that somebody asked for, and how far it has come
 accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
 """

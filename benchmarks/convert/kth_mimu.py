@@ -34,6 +34,11 @@ CLOCK_HZ = 64e6
 """Ticks of the board's clock in a second."""
 RATE_HZ = 62.5
 """Packets a second, as the data set states."""
+NUMBERS = 65536
+"""Packet numbers before they begin anew, every 17.5 minutes."""
+TURNS = {"exp_1": 0, "exp_2": 0, "exp_3": 1, "exp_4": 2, "exp_6": 0, "exp_9": 1}
+"""How often they had begun anew before the published sessions, as those before tell. Numbers run on from session to
+session, so the first one is the time that the board has streamed since it was switched on; pauses are not counted."""
 COUNTS = 2048 / STANDARD_GRAVITY
 """Counts per m/s²: 2048 per g."""
 GYRO_COUNTS = 16.4 * PER_DEGREE
@@ -63,8 +68,14 @@ def packets(path: Path) -> NDArray[np.void]:
 
 def lost(numbers: NDArray[np.uint16]) -> int:
     """Packets missing between the first and the last."""
-    steps = np.remainder(np.diff(numbers.astype(np.int64)), 65536)
+    steps = np.remainder(np.diff(numbers.astype(np.int64)), NUMBERS)
     return int((steps - 1).sum())
+
+
+def since_power_on(path: Path, first: int) -> float | None:
+    """s, before the packet numbered ``first``; None of a stream that is none of the published ones."""
+    turns = TURNS.get(path.name.split(".")[0])
+    return None if turns is None else (turns * NUMBERS + first) / RATE_HZ
 
 
 def sensors() -> list[Document]:
@@ -94,6 +105,7 @@ def convert_one(path: Path) -> tuple[str, Document]:
         gravity=STANDARD_GRAVITY,
         notes=notes,
         sample_rate_hz=RATE_HZ,
+        time_since_power_on_s=since_power_on(path, int(found["number"][0])),
     )
     return f"kth-mimu-{path.name.split('.')[0]}.json", document
 

@@ -20,7 +20,7 @@ UNITS = {True: ("mg", 1e3 / 9.80665), False: ("°/h", np.degrees(3600.0))}
 def chosen(session: CalibrationSession, diagnosis: Diagnosis) -> list[int]:
     """The sensors drawn: those named first, then those that miss most."""
     names = [s.name for s in session.sensors]
-    spoken = [n for part in (*diagnosis.findings, *diagnosis.structures) for n in part.sensors]
+    spoken = [n for named in (diagnosis.findings, diagnosis.structures) for part in named for n in part.sensors]
     ratio = np.nan_to_num(diagnosis.baseline.residuals.value / diagnosis.baseline.residuals.sigma)
     worst = [names[i] for i in np.argsort(-(ratio**2).sum(axis=0))]
     return [names.index(n) for n in dict.fromkeys([*spoken, *worst])][:MOST]

@@ -12,9 +12,9 @@ from service.ingest import LONG
 from service.ingest.apart import PACE
 from service.jobs.records import KEPT as KEPT_MADE
 from service.kit.limits import LARGE, SMALL
-from service.storage.aside import KEPT, MOST, MOST_BYTES
+from service.storage.aside import MOST, MOST_BYTES, RETENTION
 from service.storage.landing import IN_MEMORY
-from service.storage.waiting import UNASKED
+from service.storage.waiting import JOB_DELAY
 from service.uploads.layout.form import MOST_CARRIED
 
 RETRY = "503 with `Retry-After`"
@@ -128,13 +128,13 @@ All of them lie on one disk, in the folder `files` of the data folder:
 under a random name | until the job ends: then stored under its hash, or gone | yes, under its hash, so that after a \
 restore the job goes on |
 | `aside` | tables of a layout of their own of more than {MOST_CARRIED // MEBIBYTE} MiB, while their sender says on a \
-page how they are read; under a hash of the account and one of the bytes | until stored, at most {KEPT // hour} hours \
-after that page was last shown; {MOST} of an account and {MOST_BYTES // MEBIBYTE // 1024} GiB of all, the oldest give \
-way | no: send it again |
+page how they are read; under a hash of the account and one of the bytes | until stored, at most {RETENTION // hour} \
+hours after that page was last shown; {MOST} of an account and {MOST_BYTES // MEBIBYTE // 1024} GiB of all, the oldest \
+give way | no: send it again |
 | `made` | reports that jobs made, under the job's number | {KEPT_MADE.days} days | no: ask for it again |
 
 Only the account that set a table aside continues with it. Hourly, what a killed service left is removed: partial files,
-expired tables, and of `waiting` what no open job names, {UNASKED // hour} hour after it came.
+expired tables, and of `waiting` what no open job names, {JOB_DELAY // hour} hour after it came.
 """
 
 

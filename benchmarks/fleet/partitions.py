@@ -98,8 +98,8 @@ def lines(connection: Connection, tables: dict[str, str]) -> Iterator[str]:
     def insert(table: str, k: int) -> None:
         connection.execute(INSERT.format(table), (f"new-{k}", sessions[k]))
 
-    def read(query: str, keys: list[object]) -> Callable[[str, int], None]:
-        return lambda table, k: connection.execute(query.format(table), (keys[k],)).fetchall() and None
+    def read(query: str, keys: list[object]) -> Callable[[str, int], object]:
+        return lambda table, k: connection.execute(query.format(table), (keys[k],)).fetchall()
 
     yield f"| {rows[0]:,} rows, ms | {' | '.join(tables)} |"
     yield f"| --- |{' --- |' * len(tables)}"

@@ -93,7 +93,7 @@ def _reads(storage: Storage, question: Callable[[Store], object]) -> Iterator[st
     event.remove(engine, "before_cursor_execute", note)
     with engine.connect() as connection:
         for statement, parameters in asked:
-            rows = connection.exec_driver_sql(f"EXPLAIN {statement}", parameters)  # type: ignore[arg-type]
+            rows = connection.exec_driver_sql(f"EXPLAIN {statement}", parameters)
             yield from (_read(match) for (line,) in rows for match in NODE.finditer(line))
         connection.execute(text("ROLLBACK"))
 

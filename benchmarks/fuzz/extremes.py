@@ -50,7 +50,7 @@ class Case:
         document: Document = json.loads(json.dumps(programmes()[self.programme])) | {"unit": unit, "unit_type": unit}
         if "stand" in document:
             document["stand"]["id"] = unit
-        parent = document
+        parent: Any = document
         for key in self.way[:-1]:
             parent = parent[key]
         known = parent[self.way[-1]]

@@ -111,7 +111,7 @@ class Tally:
             self.find(f"{name}: {answer.status_code}")
         return answer
 
-    def ask_again(self) -> None:
+    def enqueue_again(self) -> None:
         """What was late, alone."""
         for name, ask in self.late:
             began = time.monotonic()
@@ -151,7 +151,7 @@ def main() -> None:
         left = _waited(running, options.wait * 60)
         for id in taken[:: options.read]:
             _read(running, tally, id)
-        tally.ask_again()
+        tally.enqueue_again()
         failed = running.client.get(f"{running.address}/api/v1/jobs/failed").json()["failed"]
         for one in failed:
             tally.find(f"{one['kind']} of {one['of']}: {one['why']}")

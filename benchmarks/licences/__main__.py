@@ -29,8 +29,8 @@ def licence(name: str) -> str:
     except PackageNotFoundError:
         return NOT_HERE
     classifiers = [c.split(" :: ")[-1] for c in found.get_all("Classifier") or () if c.startswith("License ::")]
-    text = (found.get("License") or "").strip().split("\n")[0]
-    stated = found.get("License-Expression") or ", ".join(classifiers) or text or "not stated"
+    text = (found.get("License") or "").strip().split("\n")[0]  # type: ignore[attr-defined]
+    stated = found.get("License-Expression") or ", ".join(classifiers) or text or "not stated"  # type: ignore[attr-defined]
     return " ".join(str(stated).split())
 
 

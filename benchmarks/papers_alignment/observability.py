@@ -26,16 +26,16 @@ from estimator.alignment.filtering import (
     PRIOR,
     REST_SIGMA,
     USEFUL,
+    FilterSetting,
     Measured,
-    Setting,
     drawn_anew,
     relative,
     run,
     table_measurement,
     velocity_measurement,
 )
-from estimator.alignment.simulate import Programme, Truth, table_angle, true_attitude, true_motion
-from estimator.alignment.sins import ALL, NABLA, PHI, STATES, STOP, Model, Path, dynamics, transition
+from estimator.alignment.simulate import Truth, TurntableProgramme, table_angle, true_attitude, true_motion
+from estimator.alignment.sins import ALL, NABLA, PHI, STATES, STOP, InertialModel, Path, dynamics, transition
 from estimator.alignment.strapdown import strapdown
 from estimator.session import Array
 
@@ -61,7 +61,7 @@ class Expected:
         return float(self.sigmas[self.names.index(name)])
 
 
-def planned_path(programme: Programme, latitude: float, g: float, heading: float = 0.0) -> Path:
+def planned_path(programme: TurntableProgramme, latitude: float, g: float, heading: float = 0.0) -> Path:
     """The path of a level table run by a programme; g in m/s², angles in rad."""
     stops = np.zeros((len(programme.angles), 2))
     attitude = true_attitude(programme, Truth(heading=heading), stops)
@@ -72,7 +72,7 @@ def planned_path(programme: Programme, latitude: float, g: float, heading: float
     return strapdown(attitude[0], motion, latitude, stop_of_row, per_step).path
 
 
-def expected(path: Path, setting: Setting, model: Model) -> Expected:
+def expected(path: Path, setting: FilterSetting, model: InertialModel) -> Expected:
     """Covariance analysis: the filter's sigmas do not depend on what is read."""
     nothing = Measured(np.zeros((len(path.mean), 2)), np.zeros((len(path.mean), 3)))
     last = run(path, setting, nothing, model).last
@@ -87,7 +87,7 @@ def expected(path: Path, setting: Setting, model: Model) -> Expected:
     )
 
 
-def gramian(path: Path, setting: Setting, model: Model) -> Array:
+def gramian(path: Path, setting: FilterSetting, model: InertialModel) -> Array:
     """(n, n) of the states but ς at the start, dimensionless, in units of `USEFUL`; no prior and no gyro noise.
 
     Every step's velocity counts with the scatter that white accelerometer noise gives it.
@@ -99,7 +99,7 @@ def gramian(path: Path, setting: Setting, model: Model) -> Array:
     R = R + path.step * setting.noise.accelerometer[:2, :2]
     H_table, _ = table_measurement()
     R_table = np.diag([setting.wobble, setting.wobble, setting.table]) ** 2 + REST_SIGMA**2 * np.eye(3)
-    shown = (path.begins | path.ends) & (model is Model.TURNTABLE)
+    shown = (path.begins | path.ends) & (model is InertialModel.TURNTABLE)
     so_far, total = np.eye(ALL), np.zeros((ALL, ALL))
     for k in range(len(Phi)):
         so_far = Phi[k] @ so_far

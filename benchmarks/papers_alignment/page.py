@@ -3,7 +3,7 @@
 from benchmarks.papers_alignment.figures import draw
 from benchmarks.papers_alignment.runs import errors
 from benchmarks.papers_alignment.tables import end_values, plans, prediction, rate_tables
-from estimator.alignment import Model
+from estimator.alignment import InertialModel
 
 HEAD = """# Multi-position alignment: the paper beside ours
 
@@ -14,6 +14,6 @@ on a turntable](methods/alignment.md)."""
 
 def page() -> str:
     """All sections; the figures are written beside."""
-    ten, turntable = errors(Model.TEN), errors(Model.TURNTABLE)
+    ten, turntable = errors(InertialModel.TEN), errors(InertialModel.TURNTABLE)
     draw(ten, turntable)
     return "\n\n".join((HEAD, end_values(ten, turntable), prediction(), plans(), rate_tables())) + "\n"

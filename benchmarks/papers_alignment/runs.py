@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from estimator.alignment import Model, align
-from estimator.alignment.simulate import Imperfections, Programme, Truth, simulate_alignment, triads
+from estimator.alignment import InertialModel, align
+from estimator.alignment.simulate import Imperfections, Truth, TurntableProgramme, simulate_alignment, triads
 from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Array, Site
@@ -22,7 +22,7 @@ TRUTH = Truth(
     mounting=MOUNTING,
 )
 """A laser-gyro system: 0.01 °/h, 5e-5 g, and the paper's E_xz = 4″, E_yz = 8″; x starts east."""
-PROGRAMME = Programme(dwell=300.0)
+PROGRAMME = TurntableProgramme(dwell=300.0)
 QUIET = Imperfections(accelerometer=1e-7, gyro=1e-10)
 
 
@@ -43,11 +43,11 @@ class Errors:
 
 
 def errors(
-    model: Model,
+    model: InertialModel,
     truth: Truth = TRUTH,
     *,
     site: Site = SITE,
-    programme: Programme = PROGRAMME,
+    programme: TurntableProgramme = PROGRAMME,
     noise: Imperfections | None = None,
     seed: int = 1,
 ) -> Errors:

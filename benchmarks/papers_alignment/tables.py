@@ -6,20 +6,20 @@ from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers_alignment.observability import expected, gramian, mounting_effect, planned_path
 from benchmarks.papers_alignment.runs import MOUNTING, QUIET, SITE, TRUTH, Errors, G, errors
-from estimator.alignment import Model, rate_table
-from estimator.alignment.filtering import Setting
-from estimator.alignment.noise import Noise
-from estimator.alignment.simulate import Imperfections, Programme, Truth, simulate_rate_table, triads
+from estimator.alignment import InertialModel, rate_table
+from estimator.alignment.filtering import FilterSetting
+from estimator.alignment.noise import FilterNoise
+from estimator.alignment.simulate import Imperfections, Truth, TurntableProgramme, simulate_rate_table, triads
 from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Site
 
 MICRO_G = 1e-6 * G
-NOISE = Noise((5e-6 * G) ** 2 * np.eye(3), (0.06 * ARCSEC) ** 2 * np.eye(3), 0.0, stated=True)
+NOISE = FilterNoise((5e-6 * G) ** 2 * np.eye(3), (0.06 * ARCSEC) ** 2 * np.eye(3), 0.0, stated=True)
 """5 µg/√Hz and 0.001 °/√h."""
 DEGREE_PER_HOUR = np.pi / 180 / 3600
 LATITUDE = SITE.latitude or 0.0
-SETTING = Setting(LATITUDE, G, NOISE, wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
+SETTING = FilterSetting(LATITUDE, G, NOISE, wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
 EXPECTED = (
     "One sigma at the end by covariance analysis, turntable 0.5″; *told* counts the directions of φ, ε, ∇, E, κ "
     "that are known well enough to be of use (60″, 1 °/h, 0.3 mg). The eigenvalue is the least of the "
@@ -37,7 +37,7 @@ TURNS = {
 def end_values(ten: Errors, turntable: Errors) -> str:
     """Print, prediction and both models."""
     left = mounting_effect(*MOUNTING, G)
-    quiet = errors(Model.TEN, noise=QUIET)
+    quiet = errors(InertialModel.TEN, noise=QUIET)
     rows = []
     for name, unit, one, place, printed in (
         ("phi_E", "φ_E, ″", ARCSEC, 0, "−8"),
@@ -79,8 +79,8 @@ def prediction(trials: int = 40) -> str:
         E_xz, E_yz = rng.uniform(-60, 60, 2) * ARCSEC
         heading, site = rng.uniform(0, 2 * np.pi), Site(latitude=rng.uniform(-1.2, 1.2))
         truth = Truth(mounting=(E_xz, E_yz), heading=heading)
-        programme = Programme(dwell=120.0, row=0.5)
-        found = errors(Model.TEN, truth, site=site, programme=programme, noise=QUIET)
+        programme = TurntableProgramme(dwell=120.0, row=0.5)
+        found = errors(InertialModel.TEN, truth, site=site, programme=programme, noise=QUIET)
         left = mounting_effect(E_xz, E_yz, gravity(site))
         turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
         tilt = np.abs(found.phi[-1, :2] - turn @ [left["phi_E"], left["phi_N"]]).max() / ARCSEC
@@ -98,15 +98,15 @@ def plans() -> str:
     """Expected sigmas of every programme under every model, 15 minutes in all."""
     rows = []
     for name, angles in TURNS.items():
-        path = planned_path(Programme(angles, 900 / len(angles), row=1.0), LATITUDE, G)
-        for model in Model:
+        path = planned_path(TurntableProgramme(angles, 900 / len(angles), row=1.0), LATITUDE, G)
+        for model in InertialModel:
             found = expected(path, SETTING, model)
             rows.append(
                 (
                     name,
                     model.value,
                     f"{found.rank} of {len(found.names)}",
-                    found.sigma("E_xz") / ARCSEC if model is not Model.TEN else "taken for 0",
+                    found.sigma("E_xz") / ARCSEC if model is not InertialModel.TEN else "taken for 0",
                     found.sigma("nabla_x") / MICRO_G,
                     found.sigma("eps_x") / DEGREE_PER_HOUR,
                     found.sigma("eps_z") / DEGREE_PER_HOUR,

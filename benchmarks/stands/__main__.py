@@ -109,7 +109,7 @@ def told(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
 
 def rows(fleets: int, seed: int) -> list[tuple[str, Rate, str]]:
     """What is asked, how often it is so, and how often it should be."""
-    two = [Fleet(12, 8, 2, lambda _, s, bad=bad: bad if s else 5.0, steady) for bad in (15.0, 30.0)]
+    two = [Fleet(12, 8, 2, lambda _, s, bad=bad: bad if s else 5.0, steady) for bad in (15.0, 30.0)]  # type: ignore[misc]
     beside = Fleet(10, 10, 2, lambda _, s: 30.0 if s else 5.0, turned)
     among = Fleet(20, 10, 2, lambda u, _: 30.0 if u < 10 else 5.0, turned)
     month = Fleet(40, 12, 2, lambda _, __: 5.0, excursion)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from estimator.health.stands import Motion
+from estimator.health.stands import StandMotion
 
 ARCSEC = np.pi / 180 / 3600
 SIGMA = 0.8 * ARCSEC
@@ -39,7 +39,7 @@ class Fleet:
     turned: Turn
 
 
-def motions_of(fleet: Fleet, rng: np.random.Generator) -> list[Motion]:
+def motions_of(fleet: Fleet, rng: np.random.Generator) -> list[StandMotion]:
     """One fleet's common motions."""
     found = []
     for unit in range(fleet.units):
@@ -49,7 +49,7 @@ def motions_of(fleet: Fleet, rng: np.random.Generator) -> list[Motion]:
         for i, (place, date) in enumerate(zip(places, dates, strict=True)):
             value = (poses[i] * poses[0].inv()).as_rotvec()
             covariance = np.eye(3) * (2 * SIGMA**2 if i else 0.0)
-            found.append(Motion(f"S{place}", f"U{unit}", float(date), value, covariance))
+            found.append(StandMotion(f"S{place}", f"U{unit}", float(date), value, covariance))
     return found
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from benchmarks.stands.fleets import ARCSEC, SIGMA, TURNED
 from estimator.health.stand_events import FEWEST_UNITS
-from estimator.health.stands import Motion
+from estimator.health.stands import StandMotion
 
 LEVEL = 0.01
 """Chance of naming a stand where nothing moved, that of the estimator."""
@@ -22,7 +22,7 @@ Vectors = NDArray[np.float64]
 Seating = Callable[[int, int], float]
 
 
-def knows_all_but_the_stand(motions: list[Motion], seating: Seating, turn: tuple[float, float]) -> bool:
+def knows_all_but_the_stand(motions: list[StandMotion], seating: Seating, turn: tuple[float, float]) -> bool:
     """Whether the first stand is named by who knows date (years), direction and size (arcsec) of the ``turn``."""
     since, size = turn
     stands, times, centred, value = _whole(motions, seating)
@@ -33,7 +33,7 @@ def knows_all_but_the_stand(motions: list[Motion], seating: Seating, turn: tuple
     return bool(gain.argmax() == 0 and gain[0] > np.log(len(gain) / LEVEL))
 
 
-def knows_the_seating(motions: list[Motion], seating: Seating, rng: np.random.Generator) -> bool:
+def knows_the_seating(motions: list[StandMotion], seating: Seating, rng: np.random.Generator) -> bool:
     """Whether the first stand is named by who knows τ alone: the largest χ² of three over all dates of all stands, at
     its own level on this schedule."""
     stands, times, centred, value = _whole(motions, seating)
@@ -49,7 +49,9 @@ def knows_the_seating(motions: list[Motion], seating: Seating, rng: np.random.Ge
     return bool(owner[tells][chi2.argmax()] == 0 and chi2.max() > np.quantile(null.max(axis=0), 1 - LEVEL))
 
 
-def knows_the_scatter(motions: list[Motion], seating: Seating, rng: np.random.Generator) -> tuple[float, float] | None:
+def knows_the_scatter(
+    motions: list[StandMotion], seating: Seating, rng: np.random.Generator
+) -> tuple[float, float] | None:
     """From when to when the first stand was turned, years, for who knows τ alone: the largest χ² of three over all
     pairs of dates of all stands that three units tell of, at its own level on this schedule; None where it is another
     stand's, or no more than that."""
@@ -76,13 +78,13 @@ def knows_the_scatter(motions: list[Motion], seating: Seating, rng: np.random.Ge
     return best[2:] if best[1] == 0 and best[0] > np.quantile(null, 1 - LEVEL) else None
 
 
-def _variance(motions: list[Motion], seating: Seating) -> Vectors:
+def _variance(motions: list[StandMotion], seating: Seating) -> Vectors:
     """(n,) rad², of every session by itself."""
     scale = np.array([seating(int(m.unit[1:]), int(m.stand[1:])) for m in motions])
     return (scale * ARCSEC) ** 2 + SIGMA**2
 
 
-def _whole(motions: list[Motion], seating: Seating) -> tuple[Vectors, Vectors, Vectors, Vectors]:
+def _whole(motions: list[StandMotion], seating: Seating) -> tuple[Vectors, Vectors, Vectors, Vectors]:
     """(n,) stands, (n,) dates, (n, n) P of all units together, (n, 3) readings."""
     units = np.array([m.unit for m in motions])
     precision = 1 / _variance(motions, seating)

@@ -77,7 +77,7 @@ def growths(sessions: list[Seen]) -> Iterator[tuple[Block, Array]]:
         if block.cause == HARMONIC or not all(block in s.columns for s in sessions):
             continue
         white = [s.residuals.whitened(s.columns[block]) for s in sessions]
-        left = np.concatenate([s.residuals.left_of(w) for s, w in zip(sessions, white, strict=True)])
+        left = np.concatenate([s.residuals.remaining_of(w) for s, w in zip(sessions, white, strict=True)])
         moved = np.concatenate([s.residuals.response @ w for s, w in zip(sessions, white, strict=True)])
         direction = np.linalg.svd(left, full_matrices=False)[2][0]
         strength = float(np.sum((left @ direction) ** 2))

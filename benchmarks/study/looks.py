@@ -15,8 +15,8 @@ from estimator.groups.evidence import (
     log_sum,
     log_varying,
 )
-from estimator.groups.layout import UNIT, Layout
-from estimator.groups.pool import Moments, Pool, pooled
+from estimator.groups.layout import UNIT, GroupLayout
+from estimator.groups.pool import Pool, PoolMoments, pooled
 from estimator.groups.scores import batch
 from estimator.groups.statistics import SessionStatistics
 from estimator.session import Array
@@ -24,7 +24,7 @@ from estimator.session import Array
 
 def e_process(statistics: Sequence[SessionStatistics], level: str = UNIT) -> Array:
     """(n,) ln of the group's e-value after each of n sessions, oldest first, nothing found before."""
-    layout = Layout.of(statistics, level)
+    layout = GroupLayout.of(statistics, level)
     pool = pooled(layout)
     scale = scales(layout, pool)
     looks = [_looks(pool, w, m, scale) for w, m in pool.moments.items()]
@@ -33,7 +33,7 @@ def e_process(statistics: Sequence[SessionStatistics], level: str = UNIT) -> Arr
     return log_sum(np.concatenate([*looks, rest], axis=1).T)
 
 
-def scales(layout: Layout, pool: Pool) -> Array:
+def scales(layout: GroupLayout, pool: Pool) -> Array:
     """(n,) at least 1: by how much the sessions so far scatter more than stated, their largest effect taken out."""
     energy = np.cumsum([p.statistics.energy.sum() for p in layout.parts])
     freedom = np.cumsum([p.statistics.freedom.sum() for p in layout.parts])
@@ -46,7 +46,7 @@ def scales(layout: Layout, pool: Pool) -> Array:
     return np.maximum(1.0, (energy - largest) / freedom)
 
 
-def _looks(pool: Pool, w: int, m: Moments, scale: Array) -> Array:
+def _looks(pool: Pool, w: int, m: PoolMoments, scale: Array) -> Array:
     """(n, 3 H) ln of what every hypothesis of a width in every form adds to the e-value after each session."""
     log_prior = pool.layout.log_prior[w]
     named = np.isfinite(log_prior)

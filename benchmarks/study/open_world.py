@@ -37,7 +37,8 @@ INTRODUCTION = (
     "are simulated by code that the estimator does not share. Intervals: 95 % (Wilson)."
 )
 
-Task, Answer = TypeVar("Task"), TypeVar("Answer")
+Task = TypeVar("Task")
+Answer = TypeVar("Answer")
 
 
 def performed(pool: Executor, work: Iterable[Task], perform: Callable[[Task], Answer]) -> list[Answer]:

@@ -11,6 +11,6 @@ simulate                                                sessions whose truth is 
 from estimator.alignment.align import align
 from estimator.alignment.rate_table import rate_table
 from estimator.alignment.results import AlignmentResult, RateTableResult
-from estimator.alignment.sins import Model
+from estimator.alignment.sins import InertialModel
 
-__all__ = ["AlignmentResult", "Model", "RateTableResult", "align", "rate_table"]
+__all__ = ["AlignmentResult", "InertialModel", "RateTableResult", "align", "rate_table"]

@@ -17,13 +17,13 @@ from estimator.alignment.filtering import (
     PRIOR,
     TABLE_SIGMA,
     Filtered,
+    FilterSetting,
     Measured,
-    Setting,
     relative,
     run,
 )
 from estimator.alignment.levers import FARTHEST, without_lever_arms
-from estimator.alignment.noise import LEAST_DENSITY, Noise, at_rest
+from estimator.alignment.noise import LEAST_DENSITY, FilterNoise, at_rest
 from estimator.alignment.positions import (
     Stop,
     interval,
@@ -33,9 +33,9 @@ from estimator.alignment.positions import (
     require_turns,
     stops,
 )
-from estimator.alignment.results import AlignmentResult, Course
-from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, Model
-from estimator.alignment.strapdown import Motion, Strapdown, strapdown
+from estimator.alignment.results import AlignmentCourse, AlignmentResult
+from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, InertialModel
+from estimator.alignment.strapdown import BlockMotion, Strapdown, strapdown
 from estimator.applied_vector import gravity
 from estimator.arrays import eigh
 from estimator.errors import Problem, ScheduleError
@@ -59,20 +59,20 @@ class Record:
     """Without what accelerometers at stated positions feel of the turns."""
     first: int
     """Row of the session at which the first stop begins."""
-    motion: Motion
+    motion: BlockMotion
     """As the sensors say, before any bias is taken off."""
     per_step: int
     """Rows of a filter step."""
     angle: Array
     """(R,) of the table, rad."""
     stops: list[Stop]
-    noise: Noise
+    noise: FilterNoise
 
 
 def align(
     session: CalibrationSession,
     *,
-    model: Model = Model.TURNTABLE,
+    model: InertialModel = InertialModel.TURNTABLE,
     mounting: tuple[float, float] = (0.0, 0.0),
     lever_arms: bool = True,
 ) -> AlignmentResult:
@@ -134,7 +134,7 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     return Record(
         session=session,
         first=begin,
-        motion=Motion(rates[begin:], accelerometers.values[begin:], row),
+        motion=BlockMotion(rates[begin:], accelerometers.values[begin:], row),
         per_step=per_step,
         angle=angle[begin:],
         stops=[Stop(stop.first - begin, stop.last - begin, stop.angle) for stop in stationary],
@@ -142,7 +142,7 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     )
 
 
-def _noise(stationary: list[Stop], gyros: Triad, accelerometers: Triad, row: float, per_step: int) -> Noise:
+def _noise(stationary: list[Stop], gyros: Triad, accelerometers: Triad, row: float, per_step: int) -> FilterNoise:
     """As the file states it for single rows, else from the readings at the stops."""
 
     def means(values: Array) -> list[Array]:
@@ -159,7 +159,7 @@ def _noise(stationary: list[Stop], gyros: Triad, accelerometers: Triad, row: flo
         accelerometer, sway = accelerometers.row_covariance * row, 0.0
     accelerometer = accelerometer + LEAST_DENSITY["accelerometer"] ** 2 * np.eye(3)
     gyro = gyro + LEAST_DENSITY["gyro"] ** 2 * np.eye(3)
-    return Noise(accelerometer, gyro, float(np.sqrt(sway)), stated)
+    return FilterNoise(accelerometer, gyro, float(np.sqrt(sway)), stated)
 
 
 def _computed(record: Record, start: Coarse) -> Strapdown:
@@ -170,15 +170,15 @@ def _computed(record: Record, start: Coarse) -> Strapdown:
     stop_of_row = np.full(len(motion.rates), -1)
     for number, stop in enumerate(record.stops):
         stop_of_row[stop.first : stop.last] = number
-    corrected = Motion(motion.rates - start.gyro_bias, motion.forces - start.accelerometer_bias, motion.row)
+    corrected = BlockMotion(motion.rates - start.gyro_bias, motion.forces - start.accelerometer_bias, motion.row)
     return strapdown(start.attitude, corrected, latitude, stop_of_row, record.per_step)
 
 
-def _setting(record: Record, *, lever_arms: bool) -> Setting:
+def _setting(record: Record, *, lever_arms: bool) -> FilterSetting:
     site, stand = record.session.site, record.session.stand
     assert site.latitude is not None
     table = None if stand is None else stand.sigma.beta
-    return Setting(
+    return FilterSetting(
         site.latitude,
         gravity(site),
         record.noise,
@@ -203,7 +203,9 @@ def _turned(record: Record, computed: Strapdown) -> Array:
     return np.asarray(-Rotation.from_matrix(table @ first.T).as_rotvec())
 
 
-def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filtered, model: Model) -> AlignmentResult:
+def _result(
+    record: Record, start: Coarse, computed: Strapdown, filtered: Filtered, model: InertialModel
+) -> AlignmentResult:
     n = model.size
     fit = _fit(record, filtered)
     estimate = filtered.last.x.copy()
@@ -212,7 +214,7 @@ def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filter
     covariance = filtered.last.P * fit.covariance_factor
     determined = np.diag(relative(filtered.last.P)) < 1
     correction = Rotation.from_rotvec(filtered.last.x[PHI]).as_matrix()
-    course = Course(
+    course = AlignmentCourse(
         time=computed.path.step * np.arange(1, len(filtered.estimates) + 1),
         estimates=_totals(filtered.estimates, start),
         sigmas=filtered.sigmas,

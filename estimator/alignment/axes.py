@@ -89,4 +89,4 @@ def require_alive(session: CalibrationSession, chosen: list[int]) -> None:
     """ScheduleError for sensors that read the same in every row."""
     stuck = [session.sensors[i].name for i in chosen if np.ptp(session.readings[:, i]) == 0]
     if stuck:
-        raise ScheduleError([Problem(name, "reads the same in every row; check the channel") for name in stuck])
+        raise ScheduleError([Problem(name, "has the same reading in every row; check the channel") for name in stuck])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.alignment.positions import Stop
-from estimator.alignment.strapdown import Motion
+from estimator.alignment.strapdown import BlockMotion
 from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
 from estimator.least_squares import least_squares
@@ -34,7 +34,7 @@ class Coarse:
     """(3,) m/s², the third 0."""
 
 
-def coarse(stationary: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
+def coarse(stationary: list[Stop], motion: BlockMotion, gyro_noise: Array) -> Coarse:
     """The start of the fine alignment.
 
     Parameters
@@ -88,7 +88,7 @@ def _require_heading(north: Array, inverse: Array, density: Array, shortest: flo
             size=f"{size * hours:.2g}",
             spread=f"{spread * hours:.2g}",
         )
-        advice = "stand longer at each angle, or use quieter gyros"
+        advice = "rest longer at each angle, or use less noisy gyros"
         raise ScheduleError(
             [Problem("table", say("{message}: too uncertain for a heading; {advice}", message=message, advice=advice))]
         )

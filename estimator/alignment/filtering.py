@@ -4,8 +4,20 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from estimator.alignment.noise import TINY, Noise
-from estimator.alignment.sins import ALL, LEVER, PHI, STOP, TAU, Model, Path, V, dynamics, process_noise, transition
+from estimator.alignment.noise import TINY, FilterNoise
+from estimator.alignment.sins import (
+    ALL,
+    LEVER,
+    PHI,
+    STOP,
+    TAU,
+    InertialModel,
+    Path,
+    V,
+    dynamics,
+    process_noise,
+    transition,
+)
 from estimator.results import ARCSEC
 from estimator.session import Array
 
@@ -76,12 +88,12 @@ end of a stop does not repeat its beginning exactly."""
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class FilterSetting:
     """What the filter knows besides the path."""
 
     latitude: float
     gravity: float
-    noise: Noise
+    noise: FilterNoise
     wobble: float
     """One sigma of the turn axis' direction from stop to stop, per axis, rad."""
     table: float
@@ -119,7 +131,7 @@ class Filtered:
     """Number of measured components."""
 
 
-def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filtered:
+def run(path: Path, setting: FilterSetting, measured: Measured, model: InertialModel) -> Filtered:
     """The filter from the first step to the last."""
     n = model.size
     F = dynamics(path, setting.latitude, setting.gravity)
@@ -131,7 +143,7 @@ def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filte
     H_table, R_table = table_measurement()
     shown = path.begins | path.ends
     state = KalmanState(np.zeros(n), prior(model, setting))
-    compared = path.rate_known | (model is not Model.TURNTABLE) | (not setting.levers.any())
+    compared = path.rate_known | (model is not InertialModel.TURNTABLE) | (not setting.levers.any())
     estimates, sigmas = np.empty((2, len(Phi), n))
     innovations, innovation_sigmas = np.empty((2, len(Phi), 2))
     chi2, count = 0.0, 0
@@ -142,21 +154,21 @@ def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filte
         state = corrected if compared[k] else ahead
         if compared[k]:
             chi2, count = chi2 + innovation.chi2, count + 2
-        if model is Model.TURNTABLE and shown[k]:
+        if model is InertialModel.TURNTABLE and shown[k]:
             state, innovation = correct(state, measured.turned[k], H_table, R_table)
             chi2, count = chi2 + innovation.chi2, count + 3
         estimates[k], sigmas[k] = state.x, np.sqrt(np.diag(state.P))
     return Filtered(estimates, sigmas, innovations, innovation_sigmas, state, chi2, count)
 
 
-def prior(model: Model, setting: Setting) -> Array:
+def prior(model: InertialModel, setting: FilterSetting) -> Array:
     """(n, n) covariance of a model's states before the session, SI."""
     P = np.diag(PRIOR**2)
     P[LEVER, LEVER] = setting.levers
     return P[: model.size, : model.size]
 
 
-def velocity_measurement(n: int, setting: Setting) -> tuple[Array, Array]:
+def velocity_measurement(n: int, setting: FilterSetting) -> tuple[Array, Array]:
     """H (2, n), dimensionless, and R (2, 2), (m/s)², of the computed horizontal velocity."""
     H = np.zeros((2, n))
     H[:, V] = np.eye(2)
@@ -170,7 +182,7 @@ def table_measurement() -> tuple[Array, Array]:
     return H, REST_SIGMA**2 * np.eye(3)
 
 
-def drawn_anew(path: Path, Phi: Array, Q: Array, setting: Setting) -> tuple[Array, Array]:
+def drawn_anew(path: Path, Phi: Array, Q: Array, setting: FilterSetting) -> tuple[Array, Array]:
     """Φ and Q (K, 23, 23), SI, under which ς (rad) is drawn anew where a stop begins."""
     Phi, Q = Phi.copy(), Q.copy()
     Phi[path.begins, STOP, STOP] = 0.0

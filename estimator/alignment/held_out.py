@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.alignment.lever_arms import LeverArm, LeverArms
+from estimator.alignment.lever_arms import FittedLeverArm, LeverArms
 from estimator.alignment.pieces import Pieces
 from estimator.alignment.turned import whitened
 from estimator.least_squares import inverse as inverse_of
@@ -24,7 +24,7 @@ FOLDS = 10
 
 
 @dataclass(frozen=True)
-class Prediction:
+class HeldOutPrediction:
     """Of the pieces of all turns."""
 
     rms: float
@@ -33,6 +33,8 @@ class Prediction:
     """Of a piece."""
     log_score: float
     """Mean log density of a piece, in units of its own sigma."""
+    rms_by_sensor: dict[str, float]
+    """m/s², by the sensor's name."""
 
 
 def held_out(arms: LeverArms) -> str:
@@ -40,12 +42,21 @@ def held_out(arms: LeverArms) -> str:
     return "turns" if arms.pieces.turn.max() > 0 else "parts of the turn"
 
 
-def prediction(arms: LeverArms, *, named: bool) -> Prediction:
+def prediction(arms: LeverArms, *, named: bool) -> HeldOutPrediction:
     """Of all turns; ``named``: with the named lever arms in the model."""
     parts = arms.pieces
-    scores = [_scores(parts, arm, arms.lean, fold, named=named) for arm in arms.estimates for fold in _folds(parts)]
+    scores, each = [], {}
+    for arm in arms.estimates:
+        own = [_scores(parts, arm, arms.lean, fold, named=named) for fold in _folds(parts)]
+        each[arm.sensor.name] = root_mean_square(np.concatenate([errors for errors, _, _ in own]))
+        scores += own
     errors, squares, logs = (np.concatenate(column) for column in zip(*scores, strict=True))
-    return Prediction(float(np.sqrt(np.mean(errors**2))), float(squares.mean()), float(logs.mean()))
+    return HeldOutPrediction(root_mean_square(errors), float(squares.mean()), float(logs.mean()), each)
+
+
+def root_mean_square(errors: Array) -> float:
+    """Of errors (n,), m/s²."""
+    return float(np.sqrt(np.mean(errors**2)))
 
 
 def _folds(parts: Pieces) -> list[NDArray[np.bool_]]:
@@ -61,7 +72,7 @@ def _folds(parts: Pieces) -> list[NDArray[np.bool_]]:
 
 
 def _scores(
-    parts: Pieces, arm: LeverArm, lean: float, fold: NDArray[np.bool_], *, named: bool
+    parts: Pieces, arm: FittedLeverArm, lean: float, fold: NDArray[np.bool_], *, named: bool
 ) -> tuple[Array, Array, Array]:
     """Errors (n,), m/s², of held-out pieces, their whitened squares and log densities, without unit."""
     i, known = arm.response.sensor, ~fold

@@ -31,7 +31,7 @@ FEWEST = 3
 
 
 @dataclass(frozen=True, eq=False)
-class LeverArm:
+class FittedLeverArm:
     """One accelerometer and how far it stands from the turn axis, or from where the file says."""
 
     sensor: Sensor
@@ -60,7 +60,7 @@ class LeverArm:
 class LeverArms:
     """Of a session."""
 
-    estimates: tuple[LeverArm, ...]
+    estimates: tuple[FittedLeverArm, ...]
     """Every accelerometer whose lever arm shows."""
     upright: tuple[str, ...]
     """Accelerometers along the turn axis, whose lever arm does not."""
@@ -73,7 +73,7 @@ class LeverArms:
     """One sigma of what the axis' lean adds across it, m/s²."""
 
     @property
-    def named(self) -> tuple[LeverArm, ...]:
+    def named(self) -> tuple[FittedLeverArm, ...]:
         """Those that surely stand away."""
         return tuple(arm for arm in self.estimates if arm.named)
 
@@ -145,7 +145,7 @@ def _place(response: LeverResponse, sensor: Sensor) -> tuple[Array, Array]:
     return matrix @ response.lever, matrix @ response.covariance @ matrix.T
 
 
-def _judged(response: LeverResponse, sensor: Sensor, count: int, level: float) -> LeverArm:
+def _judged(response: LeverResponse, sensor: Sensor, count: int, level: float) -> FittedLeverArm:
     """Whether the lever arm is named, and what stands beside it; ``count``: of pieces."""
     worth = {rival: response.worth(rival, count) for rival in RIVALS}
     evidence, best = response.worth("lever arm", count), max(worth, key=lambda rival: worth[rival])
@@ -155,7 +155,7 @@ def _judged(response: LeverResponse, sensor: Sensor, count: int, level: float) -
     named = response.p_value("lever arm", excess) < level and not beaten
     acts = beaten and response.p_value(best) < level
     place, covariance = _place(response, sensor)
-    return LeverArm(
+    return FittedLeverArm(
         sensor=sensor,
         place=place,
         covariance=excess * covariance,

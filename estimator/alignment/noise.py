@@ -29,7 +29,7 @@ without noise do not strain its arithmetic."""
 
 
 @dataclass(frozen=True, eq=False)
-class Noise:
+class FilterNoise:
     """Densities of white noise along the block's axes, and the sway of the base."""
 
     accelerometer: Array

@@ -67,9 +67,9 @@ def interval(session: CalibrationSession) -> float:
     if usual <= 0 or len(uneven):
         row = int(uneven[0]) + 2 if len(uneven) else 2
         message = say(
-            "is {steps} s after the row before, where rows are {usual} s apart",
+            "is {steps} s after the row before, where rows are {interval} s apart",
             steps=f"{steps[row - 2]:.6g}",
-            usual=f"{usual:.6g}",
+            interval=f"{usual:.6g}",
         )
         raise ScheduleError(
             [
@@ -112,12 +112,12 @@ def require_positions(stationary: list[Stop]) -> None:
             say("only at {turn}", turn=joined(", ", (f"{turn:g}°" for turn in sorted(turns)))) if turns else "nowhere"
         )
         advice = say(
-            "stop for {shortest} s and {fewest_rows} rows or longer at two angles or more, 180° apart at best",
+            "stop for at least {shortest} s and {fewest_rows} rows at two or more angles, preferably 180° apart",
             shortest=f"{SHORTEST:g}",
             fewest_rows=FEWEST_ROWS,
         )
         raise ScheduleError(
-            [Problem("turn_angle_deg", say("the table stands {where}; {advice}", where=where, advice=advice))]
+            [Problem("turn_angle_deg", say("the table rests {where}; {advice}", where=where, advice=advice))]
         )
 
 
@@ -131,14 +131,14 @@ def require_rest(stationary: list[Stop], rates: Array, row: float) -> None:
         fastest = float(np.linalg.norm(whole, axis=1).max())
         if fastest > MOVING:
             problem = say(
-                "the table stands in {rows}, but the gyros read {fastest} °/s",
+                "the table is at rest in {rows}, but the gyros read {fastest} °/s",
                 rows=stop.rows,
                 fastest=f"{np.degrees(fastest):.3g}",
             )
             problems.append(
                 Problem(
                     "turn_angle_deg",
-                    say("{problem}: the block was moved, or the columns do not belong together", problem=problem),
+                    say("{problem}: the block was moved, or the columns are from different records", problem=problem),
                 )
             )
     if problems:
@@ -154,10 +154,10 @@ def require_turns(stationary: list[Stop], angle: Array, rate_z: Array, row: floa
         gyro = float(rate_z[first + 1 : last + 1].sum() * row)
         if abs(gyro - table) > DISAGREEMENT[0] + DISAGREEMENT[1] * abs(table):
             problem = say(
-                "the table turned {table}° between {rows} and {rows2}",
+                "the table turned {table}° between {rows_before} and {rows_after}",
                 table=f"{np.degrees(table):+.1f}",
-                rows=before.rows,
-                rows2=after.rows,
+                rows_before=before.rows,
+                rows_after=after.rows,
             )
             message = say(
                 "{problem}, the gyros {gyro}° about the block's Z axis",
@@ -179,7 +179,9 @@ def require_level(force: Array, g: float) -> None:
     size = float(np.linalg.norm(force))
     if abs(size - g) > GRAVITY_MISMATCH * g:
         message = say(
-            "at rest the accelerometers read {size} m/s² where gravity is {g}", size=f"{size:.4g}", g=f"{g:.4g}"
+            "at rest the accelerometers read {size} m/s² where gravity is {gravity}",
+            size=f"{size:.4g}",
+            gravity=f"{g:.4g}",
         )
         raise ScheduleError([Problem("sensors", f"{message}; check nominal_scale and nominal_offset")])
     tilt = float(np.arccos(np.clip(force[2] / size, -1, 1)))

@@ -45,7 +45,7 @@ UNLIKELY = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Turns:
+class WholeTurns:
     """Whole turns of the table. T turns."""
 
     rates: Array
@@ -90,7 +90,7 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
     return _result(session, turns, gyros)
 
 
-def whole_turns(session: CalibrationSession, rates: Array, row: float) -> Turns:
+def whole_turns(session: CalibrationSession, rates: Array, row: float) -> WholeTurns:
     """Every whole turn of every stretch of one table rate; rates (R, 3) rad/s, ``row`` s."""
     assert session.turn_rate is not None
     change = np.flatnonzero(np.diff(session.turn_rate)) + 1
@@ -116,7 +116,7 @@ def whole_turns(session: CalibrationSession, rates: Array, row: float) -> Turns:
         raise ScheduleError(short or [Problem("turn_rate_deg_s", "the table never turns; give its rate in every row")])
     start, stop = np.array([turn[1:] for turn in complete]).T
     total = np.vstack([np.zeros(3), np.cumsum(rates, axis=0)])
-    return Turns(
+    return WholeTurns(
         rates=np.array([turn[0] for turn in complete]),
         means=(_at(total, stop) - _at(total, start)) / (stop - start)[:, None],
         times=row * (start + stop) / 2,
@@ -130,39 +130,40 @@ def _at(total: Array, place: Array) -> Array:
     return np.stack([np.interp(place, order, column) for column in total.T], axis=1)
 
 
-def _require_both_directions(turns: Turns) -> None:
+def _require_both_directions(turns: WholeTurns) -> None:
     for sign, word in ((1, "positive"), (-1, "negative")):
         if not (sign * turns.rates > 0).any():
             message = say(
-                "no whole turn at a {word} rate; turn both ways, so that the zeros and the Earth's rotation cancel",
+                "no whole turn at a {word} rate; turn in both directions, so that biases and the Earth's rotation "
+                "cancel",
                 word=word,
             )
             raise ScheduleError([Problem("turn_rate_deg_s", message)])
     if len(turns.rates) < FEWEST_TURNS:
         held = counted(len(turns.rates), "whole turn")
         message = say(
-            "holds {held}; give {fewest_turns} or more, so that their scatter is known",
+            "contains {held}; at least {fewest_turns} are needed to know their scatter",
             held=held,
             fewest_turns=FEWEST_TURNS,
         )
         raise ScheduleError([Problem("turn_rate_deg_s", message)])
 
 
-def _require_following(turns: Turns) -> None:
+def _require_following(turns: WholeTurns) -> None:
     disagrees = np.abs(turns.means[:, 2] - turns.rates) > DISAGREEMENT * np.abs(turns.rates) + EARTH_RATE
     if disagrees.any():
         worst = int(np.argmax(disagrees))
-        problem = say("the table turns at {np} °/s", np=f"{np.degrees(turns.rates[worst]):+g}")
+        problem = say("the table turns at {rate} °/s", rate=f"{np.degrees(turns.rates[worst]):+g}")
         message = say(
-            "{problem}, the gyros at {np} °/s about the block's Z axis",
+            "{problem}, the gyros at {rate} °/s about the block's Z axis",
             problem=problem,
-            np=f"{np.degrees(turns.means[worst, 2]):+.4g}",
+            rate=f"{np.degrees(turns.means[worst, 2]):+.4g}",
         )
         advice = "check the sign and unit of turn_rate_deg_s, the gyros' scale and range, and Z, the table's axis"
         raise ScheduleError([Problem("turn_rate_deg_s", say("{message}; {advice}", message=message, advice=advice))])
 
 
-def _result(session: CalibrationSession, turns: Turns, gyros: Triad) -> RateTableResult:
+def _result(session: CalibrationSession, turns: WholeTurns, gyros: Triad) -> RateTableResult:
     weight = np.sqrt(turns.rows)
     design = np.column_stack([turns.rates, np.ones(len(turns.rates))])
     beyond = turns.means - turns.rates[:, None] * [0.0, 0.0, 1.0]

@@ -10,7 +10,7 @@ from estimator.session import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class AlignmentCourse:
     """How the estimates came about. K steps, n states."""
 
     time: Array
@@ -73,7 +73,7 @@ class AlignmentResult(
     positions: tuple[float, ...]
     """Table angle of each stop, rad."""
     fit: Fit
-    course: Course
+    course: AlignmentCourse
 
     def parameter(self, name: str) -> Estimate:
         """Value and sigma of a state; both None when it is not observable."""

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from estimator.alignment.levers import coefficients
 from estimator.alignment.sins import earth_rate
-from estimator.alignment.strapdown import Motion
+from estimator.alignment.strapdown import BlockMotion
 from estimator.applied_vector import STANDARD_GRAVITY, gravity
 from estimator.results import ARCSEC
 from estimator.session import (
@@ -25,7 +25,7 @@ from estimator.session import (
 
 
 @dataclass(frozen=True)
-class Programme:
+class TurntableProgramme:
     """How a turntable is run."""
 
     angles: tuple[float, ...] = (0.0, np.pi)
@@ -87,7 +87,7 @@ def triads(axes: Array | None = None) -> tuple[Sensor, ...]:
     return tuple(made)
 
 
-def table_angle(programme: Programme) -> tuple[Array, Array]:
+def table_angle(programme: TurntableProgramme) -> tuple[Array, Array]:
     """(R + 1,) angle of the table, rad, at the ends of rows, from time 0 on, and places (R + 1,) between the stops."""
     angle, course = [], []
     for number, target in enumerate(programme.angles):
@@ -102,7 +102,7 @@ def table_angle(programme: Programme) -> tuple[Array, Array]:
     return np.concatenate(angle), np.concatenate(course)
 
 
-def turned_part(turn: float, programme: Programme) -> Array:
+def turned_part(turn: float, programme: TurntableProgramme) -> Array:
     """(r,) part of a turn by ``turn``, rad, done at the ends of its rows but the last, dimensionless."""
     ramp = round(programme.ramp / programme.row)
     rows = max(round(turn / programme.rate / programme.row), 1) + ramp
@@ -133,7 +133,7 @@ def at_a_distance(sensors: tuple[Sensor, ...], positions: Array, rate: Array, ro
     return np.asarray(felt * [sensor.kind == ACCELEROMETER for sensor in sensors])
 
 
-def true_attitude(programme: Programme, truth: Truth, leaning: Array) -> Array:
+def true_attitude(programme: TurntableProgramme, truth: Truth, leaning: Array) -> Array:
     """(R + 1, 3, 3) C at the ends of rows, dimensionless; leaning (stops, 2) tilts the turn axis at every stop, rad."""
     angle, course = table_angle(programme)
     lean = np.stack([np.interp(course, np.arange(len(leaning)), column) for column in leaning.T], axis=1)
@@ -143,7 +143,7 @@ def true_attitude(programme: Programme, truth: Truth, leaning: Array) -> Array:
     return np.asarray((level * wobble * turn).as_matrix())
 
 
-def true_motion(attitude: Array, row: float, latitude: float, g: float) -> Motion:
+def true_motion(attitude: Array, row: float, latitude: float, g: float) -> BlockMotion:
     """What the block goes through in rows of ``row`` s.
 
     attitude : (R + 1, 3, 3) C at the ends of the rows, dimensionless; latitude in rad, g in m/s².
@@ -153,13 +153,13 @@ def true_motion(attitude: Array, row: float, latitude: float, g: float) -> Motio
     steps = (inertial[:-1].inv() * inertial[1:]).as_rotvec()
     half_earth = Rotation.from_rotvec(0.5 * row * earth_rate(latitude))
     middle = half_earth * Rotation.from_matrix(attitude[1:]) * Rotation.from_rotvec(-0.5 * steps)
-    return Motion(np.asarray(steps / row), np.asarray(middle.inv().apply([0.0, 0.0, g])), row)
+    return BlockMotion(np.asarray(steps / row), np.asarray(middle.inv().apply([0.0, 0.0, g])), row)
 
 
 def simulate_alignment(
     sensors: tuple[Sensor, ...],
     site: Site,
-    programme: Programme,
+    programme: TurntableProgramme,
     truth: Truth,
     rng: np.random.Generator,
     *,
@@ -200,13 +200,15 @@ def simulate_alignment(
     return session, attitude[1:]
 
 
-def with_errors(motion: Motion, truth: Truth) -> Motion:
+def with_errors(motion: BlockMotion, truth: Truth) -> BlockMotion:
     """What the block's axes read without noise: f + ∇, and ω + ε + (E_xz, E_yz, κ)·ω_z."""
     rates = motion.rates + truth.gyro_bias + motion.rates[:, 2:] * np.array([*truth.mounting, truth.kappa])
     return replace(motion, rates=rates, forces=motion.forces + truth.accelerometer_bias)
 
 
-def _readings(sensors: tuple[Sensor, ...], motion: Motion, noise: Imperfections, rng: np.random.Generator) -> Array:
+def _readings(
+    sensors: tuple[Sensor, ...], motion: BlockMotion, noise: Imperfections, rng: np.random.Generator
+) -> Array:
     """(R, m) what the sensors read along their axes, reading units."""
     columns = []
     for sensor in sensors:

@@ -47,7 +47,7 @@ ALL = len(STATES)
 """Places of the states, and their number."""
 
 
-class Model(StrEnum):
+class InertialModel(StrEnum):
     """Which states are estimated."""
 
     TEN = "ten-state"
@@ -60,7 +60,7 @@ class Model(StrEnum):
     @property
     def size(self) -> int:
         """Number of states; those of every model are the first of `STATES`."""
-        return {Model.TEN: 10, Model.MOUNTING: 13, Model.TURNTABLE: ALL}[self]
+        return {InertialModel.TEN: 10, InertialModel.MOUNTING: 13, InertialModel.TURNTABLE: ALL}[self]
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from estimator.session import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class BlockMotion:
     """What a block goes through, or what its sensors say of it: means over rows of one length. R rows, block axes."""
 
     rates: Array
@@ -61,7 +61,7 @@ def attitudes(start: Array, rates: Array, row: float, latitude: float, per_step:
     return np.asarray(earth.reshape(turned.shape).swapaxes(2, 3) @ turned)
 
 
-def strapdown(start: Array, motion: Motion, latitude: float, stop_of_row: Array, per_step: int) -> Strapdown:
+def strapdown(start: Array, motion: BlockMotion, latitude: float, stop_of_row: Array, per_step: int) -> Strapdown:
     """Attitude and velocity from the first row on.
 
     Parameters

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from estimator.allan.fit import Fit, fit
-from estimator.allan.model import Model, model_of
+from estimator.allan.fit import AllanFit, fit
+from estimator.allan.model import AllanModel, model_of
 from estimator.allan.rests import Rests
-from estimator.allan.results import TERMS, BlockNoise, SensorNoise, Term
+from estimator.allan.results import TERMS, AllanTerm, BlockNoise, SensorNoise
 from estimator.allan.variance import Variances, variances
 from estimator.session import Array, Sensor
 
@@ -23,7 +23,7 @@ def allan_terms(rests: Rests) -> BlockNoise | None:
     return BlockNoise(len(rests.readings), rests.longest, rests.lasted, sensors)
 
 
-def _noise(sensor: Sensor, seen: Variances, model: Model, k: int) -> SensorNoise:
+def _noise(sensor: Sensor, seen: Variances, model: AllanModel, k: int) -> SensorNoise:
     value = seen.value[:, k]
     fitted = fit(model, value) if np.all(value > 0) else None
     squares = np.array([0.0, value[0] * seen.tau[0], 0.0, 0.0]) if fitted is None else fitted.square
@@ -31,19 +31,19 @@ def _noise(sensor: Sensor, seen: Variances, model: Model, k: int) -> SensorNoise
     scatter = np.diag(model.covariance(squares))
     freedom = 2 * expected**2 / np.where(scatter > 0, scatter, np.inf)
     run = None if fitted is None else (float(seen.tau[fitted.first]), float(seen.tau[fitted.end - 1]))
-    terms = tuple(Term(name, None, None, None) for name in TERMS) if fitted is None else _terms(fitted)
+    terms = tuple(AllanTerm(name, None, None, None) for name in TERMS) if fitted is None else _terms(fitted)
     return SensorNoise(sensor.name, sensor.kind, terms, seen.tau, np.sqrt(value), freedom, run)
 
 
-def _terms(fitted: Fit) -> tuple[Term, ...]:
+def _terms(fitted: AllanFit) -> tuple[AllanTerm, ...]:
     return tuple(
         _term(name, *row)
         for name, *row in zip(TERMS, fitted.square, fitted.sigma, fitted.decided, fitted.most, strict=True)
     )
 
 
-def _term(name: str, square: Array, sigma: Array, decided: Array, most: Array) -> Term:
+def _term(name: str, square: Array, sigma: Array, decided: Array, most: Array) -> AllanTerm:
     if not decided:
-        return Term(name, None, None, float(most))
+        return AllanTerm(name, None, None, float(most))
     value = float(np.sqrt(square))
-    return Term(name, value, float(sigma) / (2 * value), None)
+    return AllanTerm(name, value, float(sigma) / (2 * value), None)

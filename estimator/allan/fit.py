@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import nnls
 from scipy.special import gammaincc
 
-from estimator.allan.model import Model
+from estimator.allan.model import AllanModel
 from estimator.least_squares import inverse
 from estimator.session import Array
 
@@ -34,7 +34,7 @@ LIMIT = 1.96
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class AllanFit:
     """Of one sensor."""
 
     square: Array
@@ -58,7 +58,7 @@ class Fit:
         return np.sqrt(self.square + LIMIT * self.sigma)
 
 
-def fit(model: Model, value: Array) -> Fit | None:
+def fit(model: AllanModel, value: Array) -> AllanFit | None:
     """Of variances (J,), units squared, each above 0; None where the terms describe no run of octaves."""
     for first, end in _runs(len(value)):
         candidate = _fitted(model, value, first, end)
@@ -73,12 +73,12 @@ def _runs(count: int) -> Iterator[tuple[int, int]]:
         yield from ((first, first + length) for first in range(count - length + 1))
 
 
-def _fitted(model: Model, value: Array, first: int, end: int) -> Fit | None:
+def _fitted(model: AllanModel, value: Array, first: int, end: int) -> AllanFit | None:
     """Of one run; None where it is not described."""
     octaves = slice(first, end)
     A, seen = model.shapes[octaves], value[octaves]
     products = model.products[:, :, octaves, octaves]
-    part = Model(A, products)
+    part = AllanModel(A, products)
     C = np.diag(seen**2 * np.diag(_relative(part)))
     theta = np.zeros(4)
     for _ in range(ROUNDS):
@@ -88,10 +88,10 @@ def _fitted(model: Model, value: Array, first: int, end: int) -> Fit | None:
         return None
     sigma = _sigmas(A, C)
     scatter = part.covariance(np.where(theta > DECIDED * sigma, theta, theta + sigma))
-    return Fit(theta, _sigmas(A, scatter), first, end)
+    return AllanFit(theta, _sigmas(A, scatter), first, end)
 
 
-def _relative(part: Model) -> Array:
+def _relative(part: AllanModel) -> Array:
     """(J, J) covariance of white noise's estimates over their values: where the weights begin."""
     white = np.array([0.0, 1.0, 0.0, 0.0])
     shape = part.shapes @ white

@@ -18,7 +18,7 @@ WORTH = 1.25
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class GrowthCourse:
     """One term of one sensor through two records or more, oldest first."""
 
     value: Array
@@ -39,7 +39,7 @@ class Growth:
     """By more than chance, and by more than `WORTH`."""
 
 
-def growth(courses: Sequence[Course], level: float) -> tuple[Growth, ...]:
+def growth(courses: Sequence[GrowthCourse], level: float) -> tuple[Growth, ...]:
     """Of each course of a term and a kind of sensor; ``level``: the chance of a false ``is_larger``, of each."""
     logs = [np.log(course.value) for course in courses]
     variances = [(course.sigma / course.value) ** 2 for course in courses]

@@ -29,7 +29,7 @@ BELOW = 30
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class AllanModel:
     """Of Allan variances at J times."""
 
     shapes: Array
@@ -43,11 +43,11 @@ class Model:
         return np.asarray(total)
 
 
-def model_of(seen: Variances) -> Model:
+def model_of(seen: Variances) -> AllanModel:
     """Of the times and lengths of a record."""
     tau = seen.tau
     shapes = np.column_stack([3 / tau**2, 1 / tau, np.full(len(tau), FLICKER), tau / 3])
-    return Model(shapes, _integrals(seen.interval, len(tau)) / seen.shared)
+    return AllanModel(shapes, _integrals(seen.interval, len(tau)) / seen.shared)
 
 
 @lru_cache(maxsize=8)

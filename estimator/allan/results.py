@@ -13,7 +13,7 @@ TERMS = ("quantisation", "white-noise", "bias-instability", "random-walk")
 
 
 @dataclass(frozen=True)
-class Term:
+class AllanTerm:
     """One of the four."""
 
     name: str
@@ -37,7 +37,7 @@ class SensorNoise(Document, keys={"tau": "tau_s", "holds": "holds_s"}):
 
     name: str
     kind: str
-    terms: tuple[Term, ...]
+    terms: tuple[AllanTerm, ...]
     """In the order of `TERMS`."""
     tau: Array
     """(J,) s."""
@@ -48,7 +48,7 @@ class SensorNoise(Document, keys={"tau": "tau_s", "holds": "holds_s"}):
     holds: tuple[float, float] | None
     """s, from the shortest to the longest τ at which the terms describe it; None where they do nowhere."""
 
-    def term(self, name: str) -> Term:
+    def term(self, name: str) -> AllanTerm:
         """One of `TERMS`."""
         return self.terms[TERMS.index(name)]
 

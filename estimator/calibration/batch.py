@@ -19,7 +19,7 @@ CHUNK_READINGS = 10_000
 """Readings solved together: few enough for the arrays to stay in the processor's cache."""
 
 
-class Calibrations(Sequence[Calibration]):
+class CalibrationBatch(Sequence[Calibration]):
     """Results in the order of the sessions; each is built when it is first read, and kept."""
 
     def __init__(self, places: Sequence[tuple[Reports | list[Calibration], int]]) -> None:
@@ -62,7 +62,7 @@ def schedule(session: CalibrationSession) -> Hashable:
     return session.site, session.stand, session.count_time, sensors, arrays
 
 
-def calibrate_many(sessions: Sequence[CalibrationSession]) -> Calibrations:
+def calibrate_many(sessions: Sequence[CalibrationSession]) -> CalibrationBatch:
     """Calibrations of sessions, one a session, in order; the same as `calibrate` of each.
 
     Two-axis-stand sessions that share a schedule are solved together, `CHUNK_READINGS` at a time, and each result is
@@ -80,4 +80,4 @@ def calibrate_many(sessions: Sequence[CalibrationSession]) -> Calibrations:
         for chunk in np.array_split(members, -(-len(members) // size)):
             reports = calibrate_stand([sessions[k] for k in chunk])
             results.update((int(k), (reports, at)) for at, k in enumerate(chunk))
-    return Calibrations([results[k] for k in range(len(sessions))])
+    return CalibrationBatch([results[k] for k in range(len(sessions))])

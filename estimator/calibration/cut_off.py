@@ -60,11 +60,10 @@ def cut_off(end: float, rows: Array, change: float) -> str:
     """What happened in ``rows`` (k,), numbers from 0, and what to do; ``end`` in reading units, ``change`` in m/s²."""
     named = joined(", ", (str(row + 1) for row in rows[:SHOWN])) + (", …" if len(rows) > SHOWN else "")
     return say(
-        "reads exactly {end} in {rows} rows ({named}) while the other sensors show its input "
-        "change by {change} m/s²: the channel is at the end of its range; widen the range, or "
-        "leave these rows out",
+        "reads exactly {end} in {rows} rows ({row_names}) although its input changes by {change} m/s² according to the "
+        "other sensors: the channel is at the end of its range; use a wider range, or remove these rows",
         end=f"{end:g}",
         rows=len(rows),
-        named=named,
+        row_names=named,
         change=f"{change:.2g}",
     )

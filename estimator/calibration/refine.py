@@ -46,7 +46,7 @@ sigma changes no figure that anyone is shown."""
 
 
 @dataclass(frozen=True, eq=False)
-class Fitted:
+class RefinedFit:
     """Solution for S sessions of one schedule."""
 
     parameters: SensorParameters
@@ -205,7 +205,7 @@ def with_open_directions_held(normal: Normal) -> Normal:
     return replace(normal, matrix=matrix)
 
 
-def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParameters, iteration: int) -> Fitted:
+def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParameters, iteration: int) -> RefinedFit:
     """One step from p (S, m), the ``iteration``-th; y and variance (S, R, m) as in `fit`.
 
     A session has converged when the step still to come, which a step of relative size δ leaves to the order of δ times
@@ -221,7 +221,7 @@ def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParamet
     length = (change**2 / np.diagonal(total, axis1=1, axis2=2)).max(axis=-1)
     to_come = length * np.minimum(1.0, 4.0 * (change**2).max(axis=-1))
     moved = p.stepped(np.clip(change.reshape(S, m, 5), -LONGEST, LONGEST), geometry.norm)
-    return Fitted(
+    return RefinedFit(
         parameters=moved,
         covariance=total,
         repeatability=repeatability,
@@ -235,7 +235,7 @@ def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParamet
     )
 
 
-def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) -> Fitted:
+def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) -> RefinedFit:
     """Maximum-likelihood parameters of S sessions of one schedule; each iterates until it has converged itself.
 
     Parameters

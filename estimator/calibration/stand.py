@@ -12,7 +12,7 @@ from estimator.applied_vector import Geometry, stand_geometry
 from estimator.calibration import noise
 from estimator.calibration.analytic import answers, closed_form, linear_start
 from estimator.calibration.observability import Spectrum, spectrum
-from estimator.calibration.refine import Fitted, fit, input_variance
+from estimator.calibration.refine import RefinedFit, fit, input_variance
 from estimator.calibration.stand_report import Reports, Solved
 from estimator.forward import measured
 from estimator.parameters import SensorParameters, nominal
@@ -95,7 +95,7 @@ def noise_variance(
     return variance, unstated
 
 
-def judged(solution: Fitted, stated: Array) -> tuple[Spectrum, Array, Array]:
+def judged(solution: RefinedFit, stated: Array) -> tuple[Spectrum, Array, Array]:
     """What is observable, the p-value (S,), and the factor (S,) by which stated row noise must grow to be believed.
 
     stated : (S,) bool, whether all noise is; the others are numbers without unit.

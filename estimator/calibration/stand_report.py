@@ -13,7 +13,7 @@ import numpy as np
 
 from estimator.applied_vector import Geometry
 from estimator.calibration.observability import Spectrum, known_bias_quadratic, known_linear
-from estimator.calibration.refine import Fitted
+from estimator.calibration.refine import RefinedFit
 from estimator.coverage import finite, positions_to_add
 from estimator.forward import projected, slope
 from estimator.parameters import ELEMENTS, names, units
@@ -31,7 +31,7 @@ class Solved:
     y: Array
     """(S, R, m) readings, offset taken off, reading units."""
     geometry: Geometry
-    fitted: Fitted
+    fitted: RefinedFit
     spectrum: Spectrum
     stated: Array
     """(S,) whether all noise was stated."""

@@ -29,6 +29,7 @@ CATALOGUE: tuple[Cause, ...] = (
     environment.AxisCreep(),
     environment.TemperatureRate(),
     lag.ThermalLag(),
+    environment.BiasTemperatureCurve(),
     vibration.VibrationRectification(),
     sensor.BiasPerPosition(),
     sensor.ReadingOutlier(),

@@ -83,6 +83,8 @@ class Setting:
     """Whether the applied vectors are known apart from the sensors, so that a common turn of all axes shows."""
     vibration: Array | None = None
     """(R, m) variance of the input within a row, (m/s²)² or (rad/s)²; None where unknown."""
+    switched_on: float | None = None
+    """s, by the clock of ``time``: when the unit was switched on; None where unknown."""
 
     @property
     def rows(self) -> int:
@@ -139,9 +141,9 @@ class Setting:
             case _:
                 raise ValueError(
                     say(
-                        "no session can provide {need}: causes may need {needs}",
-                        need=repr(need),
-                        needs=", ".join(sorted(NEEDS)),
+                        "no session can provide {unknown}: causes may need {known}",
+                        unknown=repr(need),
+                        known=", ".join(sorted(NEEDS)),
                     )
                 )
 
@@ -198,10 +200,16 @@ class Cause(ABC):
     shared_advice: ClassVar[str] = ""
     clips: ClassVar[bool] = False
     """Whether it cuts readings off at a limit, beyond which they tell nothing."""
+    since_power_on: ClassVar[bool] = False
+    """Whether its time counts from switching on, where the session says when that was."""
+    lacking: ClassVar[str] = "a sensor it acts on"
+    """What a session lacks that has all that the cause needs, and no shape of it."""
     always_modelled: ClassVar[bool] = False
     """Whether the model of its programme holds it in every session, so that nothing is left to accept."""
     shape_words: ClassVar[str] = ""
     """What its nonlinear parameter is, for people: ``time constant``, ``from`` (a row)."""
+    contains: ClassVar[frozenset[str]] = frozenset()
+    """Causes that it is where some of its amplitudes are zero: beside one that is named it says nothing else."""
     amplitude_words: ClassVar[tuple[str, ...]] = ()
     """What each of several amplitudes is, for people; empty where they are mere coefficients."""
 
@@ -264,6 +272,10 @@ class Signature(Cause):
         The parameter's own error belongs to the amplitude's sigma.
         """
         return np.zeros((*shape.columns.shape[:2], 0))
+
+    def left(self, setting: Setting, shape: Shape) -> float:
+        """Share of the amplitude that is there at the first row, dimensionless."""
+        return 1.0
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
         """Amplitude (q,) and sigma (q,) in SI as `units` names them, from those of the signature's columns."""

@@ -16,9 +16,11 @@ def elapsed(setting: Setting) -> Array:
 
 
 def since_on(setting: Setting) -> Array:
-    """(R,) t, s; where the clock reads less than 0, counted from the first moment that it reads."""
+    """(R,) t, s since switching on; where that is not known by the session's clock, or, where the clock reads less than
+    0, from the first moment that it reads."""
     assert setting.time is not None
-    return setting.time - min(float(setting.time.min()), 0.0)
+    on = min(float(setting.time.min()), 0.0) if setting.switched_on is None else setting.switched_on
+    return setting.time - on
 
 
 def warmth(setting: Setting) -> Array:
@@ -34,14 +36,41 @@ class BiasTemperature(SensorCause):
     units = ("m/s²/K",)
     needs = frozenset({"temperature"})
     alike = True
-    sentence = "The zero of {sensors} follows the temperature."
+    sentence = "The bias of {sensors} depends on temperature."
     advice = "Model the temperature coefficient of the bias, or hold the temperature during the session."
-    shared_sentence = "The zeros of {sensors} follow the temperature together."
+    shared_sentence = "The biases of {sensors} depend on temperature in common."
     shared_advice = "Model the temperature coefficients of these biases, or hold the temperature during the session."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 1) T − T̄, °C."""
         return column(warmth(setting))
+
+
+class BiasTemperatureCurve(SensorCause):
+    """A line, which is simpler, is named where the bend does not show."""
+
+    identifier = "bias-temperature-curve"
+    scope = "environment"
+    equation = "k1·(T − T̄) + k2·(T − T̄)²"
+    units = ("m/s²/K", "m/s²/K²")
+    needs = frozenset({"temperature"})
+    contains = frozenset({"bias-temperature"})
+    alike = True
+    sentence = "The bias of {sensors} depends on temperature along a curve."
+    advice = "Model the bias as a parabola over temperature, or hold the temperature during the session."
+    fewest = 4
+    """Different temperatures: a parabola goes through any three."""
+
+    def available(self, setting: Setting) -> bool:
+        return (
+            super().available(setting)
+            and setting.temperature is not None
+            and len(np.unique(setting.temperature)) >= self.fewest
+        )
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 2) T − T̄, °C, and its square, °C²."""
+        return column(warmth(setting), warmth(setting) ** 2)
 
 
 class ScaleTemperature(SensorCause):
@@ -50,7 +79,7 @@ class ScaleTemperature(SensorCause):
     equation = "k·(T − T̄)·a"
     units = ("1/K",)
     needs = frozenset({"temperature"})
-    sentence = "The scale factor of {sensors} follows the temperature."
+    sentence = "The scale factor of {sensors} depends on temperature."
     advice = "Model the temperature coefficient of the scale factor, or hold the temperature during the session."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -65,10 +94,10 @@ class TemperatureRate(SensorCause):
     units = ("m/s²/(K/s)",)
     needs = frozenset({"temperature", "time"})
     alike = True
-    sentence = "The zero of {sensors} follows how fast the temperature changes."
-    advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
-    shared_sentence = "The zeros of {sensors} follow together how fast the temperature changes."
-    shared_advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
+    sentence = "The bias of {sensors} depends on the rate of temperature change."
+    advice = "Let the unit soak until its temperature is stable before measuring; shield it from draughts."
+    shared_sentence = "The biases of {sensors} depend in common on the rate of temperature change."
+    shared_advice = "Let the unit soak until its temperature is stable before measuring; shield it from draughts."
 
     def available(self, setting: Setting) -> bool:
         return super().available(setting) and setting.time is not None and bool(np.all(np.diff(setting.time) > 0))
@@ -87,9 +116,9 @@ class BiasRamp(SensorCause):
     units = ("m/s²/s",)
     needs = frozenset({"time"})
     alike = True
-    sentence = "The zero of {sensors} drifts steadily through the session."
+    sentence = "The bias of {sensors} drifts steadily during the session."
     advice = "Repeat the first position at the end; let the unit warm up longer; watch this sensor."
-    shared_sentence = "The zeros of {sensors} drift together, steadily through the session."
+    shared_sentence = "The biases of {sensors} drift together and steadily during the session."
     shared_advice = "Repeat the first position at the end; let the unit warm up longer, or record its temperature."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -103,7 +132,7 @@ class ScaleRamp(SensorCause):
     equation = "k·(t − t̄)·a"
     units = ("1/s",)
     needs = frozenset({"time"})
-    sentence = "The scale factor of {sensors} drifts steadily through the session."
+    sentence = "The scale factor of {sensors} drifts steadily during the session."
     advice = "Let the unit warm up longer; check the voltage reference and the loop current of this sensor."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -118,7 +147,7 @@ class AxisCreep(SensorCause):
     units = ("rad/s", "rad/s")
     needs = frozenset({"time"})
     grows_an_angle = True
-    sentence = "The input axis of {sensors} turns slowly through the session."
+    sentence = "The input axis of {sensors} turns slowly during the session."
     advice = "Check the sensor's fastening and adhesive; repeat after a thermal soak."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -127,8 +156,18 @@ class AxisCreep(SensorCause):
         return column(p * elapsed(setting), o * elapsed(setting))
 
 
+SETTLED = 7.0
+"""Time constants after which a warm-up is over: a thousandth of it is left, of a whole mg 1 µg."""
+
+
+def settled(setting: Setting) -> float:
+    """s: time constants up to this one are over before the first row; 0 where nobody knows when it was switched on."""
+    assert setting.time is not None
+    return 0.0 if setting.switched_on is None else float(setting.time[0] - setting.switched_on) / SETTLED
+
+
 class WarmUp(GridCause):
-    """The nonlinear parameter is τ, s."""
+    """The nonlinear parameter is τ, s. The amplitude is that at switching on, where the session says when that was."""
 
     identifier = "warm-up"
     scope = "environment"
@@ -138,23 +177,32 @@ class WarmUp(GridCause):
     nonlinear_units = ("s",)
     shape_words = "time constant"
     alike = True
-    sentence = "The zero of {sensors} settles after switching on."
+    sentence = "The bias of {sensors} settles after switch-on."
     advice = "Switch the unit on earlier and wait for several time constants before the first position."
-    shared_sentence = "The zeros of {sensors} settle together after switching on."
+    shared_sentence = "The biases of {sensors} settle together after switch-on."
     shared_advice = "Switch the unit on earlier and wait for three time constants, or record its temperature."
+    since_power_on = True
+    lacking = "the time soon after switching on"
     steps = 10
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        """From the rows' spacing to the span; no τ that is over before the first row."""
         assert setting.time is not None
         span = float(np.ptp(setting.time))
-        if span <= 0:
+        shortest = max(span / max(setting.rows, 2), settled(setting))
+        if not 0 < shortest <= span:
             return
-        for tau in np.geomspace(span / max(setting.rows, 2), span, self.steps):
+        for tau in np.geomspace(shortest, span, self.steps):
             yield (float(tau),)
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
-        """(S, R, 1) exp(−t/τ), dimensionless."""
-        return column(np.exp(-since_on(setting) / np.array(grid)))
+        """(S, R, 1) exp(−t/τ), dimensionless; 0 of a τ that is over long before the first row."""
+        tau = np.array(grid)
+        return column(np.where(tau < settled(setting) / 2, 0.0, np.exp(-since_on(setting) / tau)))
+
+    def left(self, setting: Setting, shape: Shape) -> float:
+        """exp(−t/τ) at the first row after switching on, dimensionless; 1 where nobody knows when that was."""
+        return float(np.exp(-SETTLED * settled(setting) / shape.nonlinear[0]))
 
     def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         (tau,) = shape.nonlinear
@@ -181,10 +229,12 @@ class BiasJump(GridCause):
     nonlinear_units = ("row",)
     shape_words = "from"
     repeats = 2
-    sentence = "The zero of {sensors} jumps once and stays."
-    advice = "Look for what happened then: a shock, a supply switch, a particle in the sensor. Repeat the session."
-    shared_sentence = "The zeros of {sensors} jump together, at one moment, and stay."
-    shared_advice = "Look for what the whole block met then: a bump, a break of its supply. Repeat the session."
+    sentence = "The bias of {sensors} has one step."
+    advice = "Find out what happened then: a shock, a change of supply, a particle in the sensor. Repeat the session."
+    shared_sentence = "The biases of {sensors} have one step at the same moment."
+    shared_advice = (
+        "Find out what happened to the whole block then: a shock, an interruption of its supply. Repeat the session."
+    )
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
         for row in range(1, setting.rows):

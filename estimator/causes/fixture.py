@@ -18,7 +18,7 @@ class FlipMisalignment(CommonCause):
     units = ("rad", "rad", "rad")
     needs = frozenset({"stand", "both runs"})
     turns_flipped_run = True
-    sentence = "The block did not sit the same way after it was turned over in its fixture."
+    sentence = "The block was seated differently after it was turned over in its fixture."
     advice = "Clean the mounting faces, seat the block against its stops and repeat the flipped run."
 
     def change(self, setting: Setting) -> Array:
@@ -39,8 +39,8 @@ class RemountRotation(CommonCause):
     needs = frozenset({"stand or directions", "history"})
     between = True
     turns_block = True
-    sentence = "The whole block sits turned in its fixture compared with earlier sessions."
-    advice = "Reseat the block and repeat, or take the rotation into the mounting; no sensor needs work because of it."
+    sentence = "The whole block is rotated in its fixture relative to earlier sessions."
+    advice = "Remount the block and repeat, or enter the rotation in the mounting; no sensor needs repair."
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, 3) −dθ×n, m/s² (rad/s) per rad, since e·(n − dθ×n) = (e + dθ×e)·n.

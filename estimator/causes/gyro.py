@@ -13,8 +13,8 @@ class GSensitivity(SensorCause):
     units = ("(rad/s)/(m/s²)", "(rad/s)/(m/s²)", "(rad/s)/(m/s²)")
     needs = frozenset({"gravity"})
     kind = GYROSCOPE
-    sentence = "The drift of {sensors} follows gravity: it answers to specific force (g-sensitivity)."
-    advice = "Model the three g-sensitivity coefficients of this gyro; mass unbalance is the usual origin."
+    sentence = "The bias of {sensors} depends on specific force (g-sensitivity)."
+    advice = "Model the three g-sensitivity coefficients of this gyro; the usual origin is mass unbalance."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 3) specific force, m/s²."""
@@ -40,8 +40,11 @@ class LatitudeEntry(SeenByGyros):
     equation = "ω turned in the meridian by k: true latitude = latitude + k"
     needs = frozenset({"stand", "history"})
     between = True
-    sentence = "The latitude in the record is not the stand's: the Earth's rotation points elsewhere for all gyros."
-    advice = "Correct the latitude (and χ) in the record and upload it anew."
+    sentence = (
+        "The latitude in the record is not that of the stand: all gyros measure another direction of the Earth's "
+        "rotation."
+    )
+    advice = "Correct the latitude (and χ) in the record and upload it again."
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, 1) change of ω with its elevation, rad/s per rad."""

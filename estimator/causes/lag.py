@@ -47,12 +47,12 @@ class ThermalLag(SensorCause):
     nonlinear_units = ("s",)
     shape_words = "time constant"
     alike = True
-    sentence = "The zero of {sensors} follows the temperature late: it differs between warming and cooling."
+    sentence = "The bias of {sensors} lags the temperature: it differs between warming and cooling."
     advice = (
         "Change the temperature more slowly than the time constant, or let the unit soak; model the coefficient with "
         "its time constant until then."
     )
-    shared_sentence = "The zeros of {sensors} follow the temperature together, and late."
+    shared_sentence = "The biases of {sensors} lag the temperature together."
     shared_advice = "Change the temperature more slowly than the time constant, or let the unit soak before measuring."
     steps = 10
 

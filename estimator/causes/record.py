@@ -18,8 +18,8 @@ class AlphaEntry(Entry):
     units = ("rad",)
     needs = frozenset({"stand", "nominal or history"})
     between = True
-    sentence = "The elevation α written in the record is not the one the head was set to."
-    advice = "Read the elevation off the stand again, correct the record and upload it anew."
+    sentence = "The elevation α in the record is not the one that the head was set to."
+    advice = "Read the elevation off the stand again, correct the record and upload it again."
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, 1) m/s² (rad/s) per rad: α acts on accelerometers; a block of gyros alone has χ in its place."""
@@ -45,8 +45,8 @@ class GravityEntry(CommonCause):
     needs = frozenset({"history"})
     kind = ACCELEROMETER
     between = True
-    sentence = "All scale factors moved by one factor: latitude, height or gravity is written down wrong."
-    advice = "Check the site's latitude, height and gravity in the record; no sensor needs work because of it."
+    sentence = "All scale factors changed by one factor: latitude, height or gravity in the record is wrong."
+    advice = "Check latitude, height and gravity in the record; no sensor needs repair."
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, 1) n itself, m/s², per relative change of g."""
@@ -59,13 +59,13 @@ class SensorDrift(SensorCause):
 
     identifier = "sensor-drift"
     scope = "sensor"
-    equation = "K, bias or axis of this sensor alone moved since the history"
+    equation = "K, bias or axis of this sensor alone changed since the history"
     units = ("1", "m/s²", "rad", "rad")
     needs = frozenset({"history"})
     between = True
     moves_parameters = True
     amplitude_words = ("scale factor", "bias", "axis, first tangent", "axis, second tangent")
-    sentence = "{sensors} itself moved since the earlier sessions, beyond what stand and fixture explain."
+    sentence = "{sensors} has changed since the earlier sessions, more than stand and fixture explain."
     advice = "Watch this sensor: repeat the session to confirm, and plan its adjustment or replacement."
 
     moves = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 1), (1, 1, 1, 1))
@@ -89,7 +89,7 @@ class RunsSwapped(Correction):
     needs = frozenset({"stand", "both runs", "nominal or history"})
     between = True
     sentence = "The direct and the flipped run are exchanged in the record."
-    advice = "Exchange the run labels and upload the session anew."
+    advice = "Exchange the run labels and upload the session again."
 
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
         assert session.flipped is not None
@@ -103,8 +103,8 @@ class BetaReversed(Correction):
     units = ()
     needs = frozenset({"stand", "nominal or history"})
     between = True
-    sentence = "The head's angle was counted the wrong way round."
-    advice = "Change the sign of β and upload the session anew."
+    sentence = "The head's angle was counted in the wrong direction."
+    advice = "Change the sign of β and upload the session again."
 
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
         assert session.beta is not None
@@ -119,7 +119,7 @@ class SignReversed(Correction):
     needs = frozenset({"nominal or history"})
     between = True
     sentence = "The reading of {sensors} has the wrong sign."
-    advice = "Check the polarity of this channel's wires and upload the session anew."
+    advice = "Check the polarity of this channel's wiring and upload the session again."
 
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
         for i, sensor in enumerate(session.sensors):
@@ -136,7 +136,7 @@ class ChannelsSwapped(Correction):
     needs = frozenset({"nominal or history"})
     between = True
     sentence = "The channels of {sensors} are exchanged."
-    advice = "Check the wiring or the column headings of these two channels and upload the session anew."
+    advice = "Check the wiring or the column headings of these two channels and upload the session again."
 
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
         for i, k in combinations(range(len(session.sensors)), 2):
@@ -161,7 +161,7 @@ class PositionsSwapped(Correction):
     units = ()
     of_rows = True
     sentence = "The readings of two positions are exchanged in the record."
-    advice = "Exchange the readings of these two rows and upload the session anew."
+    advice = "Exchange the readings of these two rows and upload the session again."
 
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
         for j, k in combinations(range(len(session.readings)), 2):

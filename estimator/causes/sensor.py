@@ -19,7 +19,7 @@ class CubicNonlinearity(SensorCause):
     scope = "sensor"
     equation = "k·a³"
     units = ("(m/s²)⁻²",)
-    sentence = "{sensors} bends with the cube of the input."
+    sentence = "{sensors} has a cubic nonlinearity."
     advice = (
         "Model the cubic term for this sensor; a rise since earlier sessions points to its suspension or electronics."
     )
@@ -34,8 +34,8 @@ class OddQuadratic(SensorCause):
     scope = "sensor"
     equation = "k·a·|a|"
     units = ("(m/s²)⁻¹",)
-    sentence = "{sensors} bends with the square of the input, oppositely for the two signs (K_oq)."
-    advice = "Model the odd quadratic term for this sensor; inputs beyond 1 g tell it from a cubic term."
+    sentence = "{sensors} has a sign-dependent quadratic nonlinearity (K_oq)."
+    advice = "Model the odd quadratic term of this sensor; inputs above 1 g separate it from a cubic term."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 1) a·|a|, (m/s²)²."""
@@ -61,7 +61,7 @@ class BiasAsymmetry(SensorCause):
     scope = "sensor"
     equation = "k·sign(a)"
     units = ("m/s²",)
-    sentence = "{sensors} has a different zero for positive and negative input (K_0′, a dead zone)."
+    sentence = "{sensors} has a different bias for positive and negative input (K_0′, a dead zone)."
     advice = "Check for friction, a dead zone or crossover distortion in the sensor's output stage."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -74,8 +74,11 @@ class CrossCoupling(SensorCause):
     scope = "sensor"
     equation = "a·(k1·(p·n) + k2·(o·n))"
     units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
-    sentence = "{sensors} mixes its input with the acceleration across its axis (K_ip, K_io)."
-    advice = "Model the cross-coupling of this sensor; a pendulum hung off its plane is the usual origin."
+    sentence = (
+        "{sensors} has cross-coupling: its output depends on the input times the acceleration across its axis (K_ip, "
+        "K_io)."
+    )
+    advice = "Model the cross-coupling of this sensor; the usual origin is a pendulum mounted out of its plane."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 2) a·(p·n) and a·(o·n), (m/s²)²."""
@@ -89,7 +92,7 @@ class CrossAxisQuadratic(SensorCause):
     scope = "sensor"
     equation = "k1·(p·n)² + k2·(p·n)(o·n)"
     units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
-    sentence = "{sensors} answers to the square of the acceleration across its axis (K_pp, K_po)."
+    sentence = "{sensors} responds to the square of the acceleration across its axis (K_pp, K_po)."
     advice = "Model the cross-axis quadratic terms of this sensor; check its mounting for stress."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -103,7 +106,7 @@ class Hysteresis(SensorCause):
     scope = "sensor"
     equation = "k·sign(a_j − a_{j−1}), 0 at the first position of a run"
     units = ("m/s²",)
-    sentence = "{sensors} reads differently when the input was rising than when it was falling."
+    sentence = "{sensors} reads differently for rising and falling input."
     advice = "Approach each position from both sides and average; check the suspension for friction."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -121,7 +124,7 @@ class BiasPerPosition(SensorCause):
     units = ("m/s²", "m/s²")
     needs = frozenset({"stand", "both runs"})
     alike = True
-    sentence = "{sensors} shifts with the head's angle, not with gravity: cable, supply or a magnetic field."
+    sentence = "The bias of {sensors} depends on the head's angle, not on gravity: cable, supply or a magnetic field."
     advice = "Secure the cables, look for magnets and ferrous parts near the head, check the slip rings' supply."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
@@ -190,7 +193,7 @@ class ReadingOutlier(GridCause):
     shape_words = "at"
     repeats = 3
     passing = True
-    sentence = "{sensors} has one reading that does not belong to the rest."
+    sentence = "{sensors} has one outlying reading."
     advice = "Repeat that position; leave the reading out of the calibration."
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:

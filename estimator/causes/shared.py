@@ -27,10 +27,10 @@ class SharedCourse(SensorCause):
     units = ("m/s²",)
     passing = True
     alike = True
-    sentence = "The zero of {sensors} follows a course that nothing recorded explains."
+    sentence = "The bias of {sensors} follows a course that no recorded quantity explains."
     advice = "Record the temperature and the supply of the block, and repeat the session."
-    shared_sentence = "The zeros of {sensors} follow one course together, which nothing recorded explains."
-    shared_advice = "Something acts on all of them: record the temperature and the supply of the block, and repeat."
+    shared_sentence = "The biases of {sensors} follow one common course that no recorded quantity explains."
+    shared_advice = "They have a common cause: record the temperature and the supply of the block, and repeat."
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
         yield from ()

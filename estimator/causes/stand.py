@@ -42,7 +42,7 @@ class BetaEccentricity(BetaPattern):
     identifier = "beta-eccentricity"
     equation = "δβ = k1·sin β + k2·cos β"
     units = ("rad", "rad")
-    sentence = "The head's angle scale is off centre: its error goes round once a turn."
+    sentence = "The head's angle scale is off centre: its error has one period per turn."
     advice = "Read the scale at two opposite places and average, or enter the head's correction table."
 
     def pattern(self, setting: Setting) -> Array:
@@ -54,7 +54,7 @@ class BetaSecondHarmonic(BetaPattern):
     identifier = "beta-second-harmonic"
     equation = "δβ = k1·sin 2β + k2·cos 2β"
     units = ("rad", "rad")
-    sentence = "The head's angle scale is oval: its error goes round twice a turn."
+    sentence = "The head's angle scale is oval: its error has two periods per turn."
     advice = "Enter the head's correction table; have the angle scale checked."
 
     def pattern(self, setting: Setting) -> Array:
@@ -66,7 +66,7 @@ class BetaScale(BetaPattern):
     identifier = "beta-scale"
     equation = "δβ = k·(β − β̄)"
     units = ("1",)
-    sentence = "The head's steps do not close: every step is a little too long or too short."
+    sentence = "The head's steps do not add up to a full turn: each is slightly too long or too short."
     advice = "Check the angle steps over a full turn; look for slip or a wrong divider setting."
 
     def pattern(self, setting: Setting) -> Array:
@@ -112,7 +112,7 @@ class AlphaShift(AlphaPattern):
     equation = "α of the flipped run differs by k"
     units = ("rad",)
     needs = frozenset({"stand", "both runs"})
-    sentence = "The head's axis stood at another elevation in the flipped run."
+    sentence = "The head's axis had another elevation in the flipped run."
     advice = "Lock the elevation before turning the block and check it after; repeat the flipped run."
 
     def pattern(self, setting: Setting) -> Array:

@@ -18,30 +18,28 @@ class LeverArm(Cause):
     amplitude_words = ("x =", "y =")
     kind = "accelerometer"
     always_modelled = True
-    sentence = "{sensors} stands away from the turn axis and feels the turns."
+    sentence = "{sensors} is off the turn axis and measures the rotation."
     advice = (
-        "Nothing is wrong with the sensor, and the alignment has taken the effect off. State where the sensors sit "
-        "(position_m); the file is then held to it."
+        "The sensor is in order, and the alignment has corrected the effect. State the positions of the sensors "
+        "(position_m); they are then checked."
     )
-    correct = (
-        "Measure where the sensors sit and correct position_m; look whether any is another than the file takes it for."
-    )
+    correct = "Measure the positions of the sensors and correct position_m; check that no two sensors are exchanged."
     """What to do where the turns contradict a stated position."""
 
     def lever_sentence(self, sensor: str, distance: str) -> str:
         """The sentence with the size: ``A2 stands 4.1 ± 0.4 cm from the turn axis and feels the turns.``"""
         return say(
-            "{sensor} stands {distance} from the turn axis and feels the turns.", sensor=sensor, distance=distance
+            "{sensor} is {distance} from the turn axis and measures the rotation.", sensor=sensor, distance=distance
         )
 
     def contradiction_sentence(self, sensor: str, distance: str) -> str:
         """The same where the file states positions, and the turns contradict that of this sensor."""
-        return say("{sensor} stands {distance} from where the file says.", sensor=sensor, distance=distance)
+        return say("{sensor} is {distance} from its stated position.", sensor=sensor, distance=distance)
 
     def separation_sentence(self, sensors: Sequence[str], distance: str) -> str:
         """The same where the turns cannot tell which of two sensors sits elsewhere."""
         return say(
-            "{sensors} do not stand to one another as the file says: one of them is {distance} off.",
+            "{sensors} are not at their stated positions relative to one another: one of them is {distance} away.",
             sensors=joined(" and ", sensors),
             distance=distance,
         )

@@ -17,8 +17,8 @@ class VibrationRectification(SensorCause):
     units = ("(m/s²)⁻¹",)
     needs = frozenset({"vibration"})
     kind = ACCELEROMETER
-    sentence = "The zero of {sensors} moves with the vibration at the position."
-    advice = "Measure while nothing near the stand runs, or damp it; model the coefficient for use in vibration."
+    sentence = "The bias of {sensors} depends on the vibration at the position."
+    advice = "Measure while no machinery near the stand runs, or damp it; model the coefficient for use in vibration."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 1) σ² − mean σ², (m/s²)²."""

@@ -4,7 +4,7 @@ record → residuals → signatures → selection → explanation
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes.catalogue import CATALOGUE
@@ -85,9 +85,19 @@ def put_right(
     rows = averaged(session)
     refuse_silent(rows)
     clips, whole = unclipped(rows, catalogue)
-    earlier = tuple(earlier_baseline(h, tuple(catalogue)) for h in history)
+    earlier = tuple(earlier_baseline(switched_on_like(h, session), tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
     return PutRight(rows, tuple(clips), tuple(errors), right, earlier)
+
+
+def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -> CalibrationSession:
+    """An earlier session whose amplitudes count from the same moment as this one's: where it does not say when the unit
+    was switched on, as long before as in this one; where this one does not, from its clock."""
+    since = session.time_since_power_on
+    if (since is None) == (earlier.switched_on is None):
+        return earlier
+    first = 0.0 if earlier.time is None else float(earlier.time[0])
+    return replace(earlier, switched_on=None if since is None else first - since)
 
 
 def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:

@@ -1,9 +1,9 @@
 """Result types of the diagnosis; no algorithms. The JSON form is ``imu-diagnosis/1``."""
 
 from dataclasses import dataclass, field
-from typing import Any
 
 from estimator.codec import MOMENT, Document
+from estimator.json_object import Json
 from estimator.results import Calibration, Residuals
 
 
@@ -106,7 +106,7 @@ class Shared(
     """(R,) one standard error of what they read."""
 
 
-def _with_all_shapes(document: dict[str, Any]) -> dict[str, Any]:
+def _with_all_shapes(document: Json) -> Json:
     """Earlier versions stated the shape of the first sensor alone."""
     return document | {"nonlinear_each": document.get("nonlinear_each") or [document["nonlinear"]]}
 
@@ -117,9 +117,9 @@ class Finding(
     order=(
         "cause", "sensors", "amplitude", "sigma", "units", "nonlinear", "nonlinear_each", "p_value", "strength",
         "alternatives", "separations", "ranking", "sentence", "advice", "parity", "new", "over_sessions",
-        "shared",
+        "shared", "since_power_on",
     ),
-    optional=("shared",),
+    optional=("shared", "since_power_on"),
     earlier=_with_all_shapes,
 ):  # fmt: skip
     """One named cause with its evidence."""
@@ -149,6 +149,9 @@ class Finding(
     """Of what only several sessions show together: the amplitudes are theirs; None of what this session shows."""
     shared: Shared | None = None
     """Where all its sensors follow one course; None where each is a matter of its own."""
+    since_power_on: float | None = None
+    """s, from switching on, where the amplitudes are counted from, to the first row; None where that is not known, and
+    of causes that have no such time."""
 
     @property
     def nonlinear(self) -> dict[str, float]:
@@ -197,7 +200,7 @@ class Structure(Document):
 
 
 @dataclass(frozen=True)
-class Score:
+class Score(Document, optional=("rms_by_sensor",)):
     """How well a model predicts readings it has not seen."""
 
     rms: float
@@ -207,6 +210,8 @@ class Score:
     """Mean log predictive density of a reading, in units of its own sigma."""
     rms_by_kind: dict[str, float] = field(default_factory=dict)
     """The same of every kind of sensor, each in its own unit."""
+    rms_by_sensor: dict[str, dict[str, float]] | None = None
+    """The same of every sensor by name, by kind; None where it is not stated."""
 
 
 @dataclass(frozen=True)
@@ -237,7 +242,8 @@ class Limit(Document, order=("cause", "amplitude", "units", "visible", "reason")
 
     cause: str
     amplitude: tuple[float, ...] | None
-    """Per amplitude element, alone, at the sensor where it is seen worst; None when the session cannot see it."""
+    """Per amplitude element, alone, at the sensor where it is seen worst, of what settles as it is at the first row;
+    None when the session cannot see it."""
     units: tuple[str, ...]
     reason: str
     """Why not visible; empty when visible."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from estimator.alignment.align import align, prepared
 from estimator.alignment.as_calibration import alignment_calibration, settled
-from estimator.alignment.held_out import Prediction, held_out, prediction
-from estimator.alignment.lever_arms import DECISIVE, FEWEST, LEVEL, LeverArm, LeverArms, lever_arms
+from estimator.alignment.held_out import HeldOutPrediction, held_out, prediction
+from estimator.alignment.lever_arms import DECISIVE, FEWEST, LEVEL, FittedLeverArm, LeverArms, lever_arms
 from estimator.alignment.results import AlignmentResult
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes.catalogue import UNEXPLAINED
@@ -26,23 +26,25 @@ CAUSE = Cause()
 CALLED = {"vibration": "vibration-rectification", "wobble": "axis-wobble", "delay or rate": UNEXPLAINED}
 """The catalogue's names of rivals; it has none of a delay."""
 SEPARATING = {
-    "vibration": "measure with a rule where the sensor stands, or mount it so that it stands across its axis",
-    "wobble": "turn both ways, and to stops a quarter turn apart",
-    "delay or rate": "turn the other way round as well",
+    "vibration": (
+        "measure the position of the sensor with a ruler, or mount it so that its lever arm is across its input axis"
+    ),
+    "wobble": "turn in both directions, with stops a quarter turn apart",
+    "delay or rate": "turn in the other direction as well",
 }
 """What would tell a rival from a lever arm."""
 WHERE = {
-    "vibration": "a shift while the table turns, as of a bearing that shakes",
-    "wobble": "a lean of the turn axis while the table turns",
+    "vibration": "a shift while the table turns, as from a vibrating bearing",
+    "wobble": "a tilt of the turn axis while the table turns",
     "delay or rate": "readings that lag while the table turns, or follow its rate",
 }
 """What is there where a rival fits far better than a lever arm."""
 COARSE = 5e-4
 """m of uncertainty from which a tenth of a centimetre is fine enough."""
 ALIKE = (
-    "The part of a lever arm along the sensor's input axis acts as the square of the turn rate. What else does, as a "
-    "bearing's vibration that the sensor rectifies, counts as part of it. The part across is told by starting and "
-    "stopping alone."
+    "The part of a lever arm along the input axis acts as the square of the turn rate; anything else that does, such "
+    "as rectified bearing vibration, is included in it. The part across the input axis is determined by starts and "
+    "stops only."
 )
 BEYOND = "while the table turns, beyond any lever arm"
 
@@ -81,7 +83,7 @@ def _findings(arms: LeverArms) -> Iterator[Finding]:
     yield replace(first, sentence=sentence, sensors=sensors, amplitude=(), sigma=(), units=())
 
 
-def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
+def _finding(arm: FittedLeverArm, arms: LeverArms) -> Finding:
     name, (length, sigma) = arm.sensor.name, arm.distance
     length_text = _centimetres(length, sigma)
     sentence = (
@@ -110,16 +112,16 @@ def _centimetres(length: float, sigma: float) -> str:
     return f"{length / CENTIMETRE:.{digits}f} ± {expanded / CENTIMETRE:.{digits}f} cm"
 
 
-def _strength(arm: LeverArm, model: str) -> float:
+def _strength(arm: FittedLeverArm, model: str) -> float:
     return float(np.sqrt(max(arm.response.drop[model][0], 0.0)))
 
 
-def _separation(arm: LeverArm, rival: str) -> Separation:
+def _separation(arm: FittedLeverArm, rival: str) -> Separation:
     now = _strength(arm, say("lever arm beside {rival}", rival=rival))
     return Separation(CALLED[rival], (arm.sensor.name,), now, SEPARATING[rival], None)
 
 
-def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
+def _ranking(arm: FittedLeverArm, pieces: int) -> Iterator[Rival]:
     """Shares by BIC."""
     names = {"lever arm": CAUSE.identifier, **CALLED}
     worth = np.array([arm.response.worth(model, pieces) for model in names])
@@ -144,8 +146,14 @@ def _gain(arms: LeverArms) -> Gain:
     return Gain(before, after, held_out(arms), None)
 
 
-def _score(prediction: Prediction) -> Score:
-    return Score(prediction.rms, prediction.chi2, prediction.log_score, {ACCELEROMETER: prediction.rms})
+def _score(prediction: HeldOutPrediction) -> Score:
+    return Score(
+        rms=prediction.rms,
+        chi2_per_dof=prediction.chi2,
+        log_score=prediction.log_score,
+        rms_by_kind={ACCELEROMETER: prediction.rms},
+        rms_by_sensor={ACCELEROMETER: prediction.rms_by_sensor},
+    )
 
 
 def _limit(arms: LeverArms) -> Limit:
@@ -159,10 +167,10 @@ def _limit(arms: LeverArms) -> Limit:
 def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -> Iterator[str]:
     if arms.upright:
         yield say_count(
-            "{upright} points along the turn axis: where it stands does not show. Nor does any sensor's place along "
-            "the axis.",
-            "{upright} point along the turn axis: where they stand does not show. Nor does any sensor's place along "
-            "the axis.",
+            "{upright} points along the turn axis: its position is not observable. Nor is any sensor's position "
+            "along the axis.",
+            "{upright} point along the turn axis: their positions are not observable. Nor is any sensor's position "
+            "along the axis.",
             len(arms.upright),
             upright=joined(" and ", arms.upright),
         )
@@ -172,7 +180,7 @@ def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -
         if length > DECISIVE**0.5 * sigma:
             text = _centimetres(length, sigma)
             yield say(
-                "The origin of the stated positions lies {text} from the turn axis, and that is taken off.", text=text
+                "The origin of the stated positions lies {text} from the turn axis; this is corrected.", text=text
             )
     if arms.named:
         yield say(
@@ -188,7 +196,7 @@ def _error_without(without: AlignmentResult, result: AlignmentResult) -> str:
     zeros = max(abs(moved["nabla_x"]), abs(moved["nabla_y"])) / MICRO_G
     mounting = max(abs(moved["E_xz"]), abs(moved["E_yz"])) / ARCSEC
     return say(
-        "a zero would be off by {zeros} µg and a mounting error by {mounting}″",
+        "a bias would be wrong by {zeros} µg and a mounting error by {mounting}″",
         zeros=f"{zeros:.1f}",
         mounting=f"{mounting:.1f}",
     )

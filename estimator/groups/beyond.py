@@ -23,8 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.groups.evidence import SAME, VARYING, log_sum
-from estimator.groups.layout import Hypothesis
-from estimator.groups.place import Key, Moments, key_of
+from estimator.groups.layout import GroupHypothesis
+from estimator.groups.place import Key, PlaceMoments, key_of
 from estimator.groups.scores import batch
 from estimator.groups.selection import ENOUGH, Found
 
@@ -55,7 +55,7 @@ SPANNED = 1e-3
 
 
 @dataclass(frozen=True)
-class Judgement:
+class BeyondJudgement:
     """What the library says of the names at a place."""
 
     odds: float
@@ -71,7 +71,7 @@ class Judgement:
     """Whether the names describe what is there."""
 
     @property
-    def taken_back(self) -> tuple[Hypothesis, ...]:
+    def taken_back(self) -> tuple[GroupHypothesis, ...]:
         """Names that do not hold."""
         return tuple(f.hypothesis for f in self.named if f not in self.kept)
 
@@ -81,7 +81,7 @@ class Judgement:
         return self.odds > -DISTINCT
 
 
-def judged(moments: Moments, names: Sequence[Found]) -> Judgement:
+def judged(moments: PlaceMoments, names: Sequence[Found]) -> BeyondJudgement:
     """The names of a place held against the library."""
     beyond = beyond_the_catalogue(moments)
     prior = -float(np.log(max(len(moments.terms), 1)))
@@ -98,7 +98,7 @@ def judged(moments: Moments, names: Sequence[Found]) -> Judgement:
     small = max((statistic for _, statistic in left.values()), default=0.0) < nearly
     fits = (misfit < ENOUGH or small) and surely < DECISIVE + 0.5 * nearly
     kept = () if fits else held(moments, names, chain)
-    return Judgement(odds, tuple(w for k in chain for w in k), explained, tuple(names), kept, fits)
+    return BeyondJudgement(odds, tuple(w for k in chain for w in k), explained, tuple(names), kept, fits)
 
 
 def total(values: Iterable[np.ndarray]) -> float:
@@ -107,7 +107,7 @@ def total(values: Iterable[np.ndarray]) -> float:
     return float(log_sum(np.array(each))) if each else -np.inf
 
 
-def share(moments: Moments, key: Key) -> float:
+def share(moments: PlaceMoments, key: Key) -> float:
     """ln prior share of a cause at its place, of its shape included."""
     shapes: dict[str, int] = {}
     for cause, _ in moments.causes:
@@ -115,7 +115,7 @@ def share(moments: Moments, key: Key) -> float:
     return -float(np.log(len(shapes)) + np.log(shapes[key[0]]))
 
 
-def catalogue(moments: Moments, names: Sequence[Found], further: float) -> float:
+def catalogue(moments: PlaceMoments, names: Sequence[Found], further: float) -> float:
     """ln evidence of the catalogue at a place: of the names together, the last of them or whatever else it might be.
 
     ``further``: what every name beyond the first costs.
@@ -134,7 +134,7 @@ def catalogue(moments: Moments, names: Sequence[Found], further: float) -> float
     return chain - further * (len(names) - 1)
 
 
-def between_shapes(moments: Moments, name: Found, shared: Sequence[Key], free: Sequence[Key]) -> float:
+def between_shapes(moments: PlaceMoments, name: Found, shared: Sequence[Key], free: Sequence[Key]) -> float:
     """ln evidence that a second shape of a name gains: its time constant lies between two of the grid."""
     rest = [k for k in shapes_of(moments, name) if k not in (*shared, *free)]
     if not rest:
@@ -143,12 +143,12 @@ def between_shapes(moments: Moments, name: Found, shared: Sequence[Key], free: S
     return max(gained, 0.0)
 
 
-def shapes_of(moments: Moments, name: Found) -> list[Key]:
+def shapes_of(moments: PlaceMoments, name: Found) -> list[Key]:
     """A name in every shape."""
     return [k for k in moments.causes if k[0] == name.hypothesis.cause]
 
 
-def explained_by(moments: Moments, names: Sequence[Found]) -> float:
+def explained_by(moments: PlaceMoments, names: Sequence[Found]) -> float:
     """χ² beyond its degrees of freedom that names explain together, each session by itself."""
     own = np.concatenate([moments.slots[key_of(f.hypothesis)] for f in names])
     U, F = moments.U[:, own], moments.F[:, own[:, None], own]
@@ -167,7 +167,7 @@ class Chain:
     """χ² that the terms explain."""
 
 
-def chain_of(moments: Moments, beyond: Sequence[Key], start: tuple[Key, ...], prior: float) -> Chain:
+def chain_of(moments: PlaceMoments, beyond: Sequence[Key], start: tuple[Key, ...], prior: float) -> Chain:
     """The terms beyond the catalogue that explain most together, after those of a ``start`` that it has."""
     chain: tuple[Key, ...] = ()
     value, explained, whole = 0.0, 0.0, -np.inf
@@ -186,13 +186,13 @@ def chain_of(moments: Moments, beyond: Sequence[Key], start: tuple[Key, ...], pr
     return Chain(chain, whole, explained)
 
 
-def strongest_of(moments: Moments) -> tuple[Key, ...]:
+def strongest_of(moments: PlaceMoments) -> tuple[Key, ...]:
     """The term of the whole library that explains most alone: a law may have a part that the catalogue has too."""
     each = moments.given().evidence(moments.terms)
     return (max(each, key=lambda k: each[k][0][SAME]),) if each else ()
 
 
-def held(moments: Moments, names: Sequence[Found], chain: Sequence[Key]) -> tuple[Found, ...]:
+def held(moments: PlaceMoments, names: Sequence[Found], chain: Sequence[Key]) -> tuple[Found, ...]:
     """Names that are sure beside the terms, and no smaller a part of what is there than the terms are beside them."""
     kept = []
     for f in names:
@@ -207,7 +207,7 @@ def held(moments: Moments, names: Sequence[Found], chain: Sequence[Key]) -> tupl
     return tuple(kept)
 
 
-def beyond_the_catalogue(moments: Moments) -> list[Key]:
+def beyond_the_catalogue(moments: PlaceMoments) -> list[Key]:
     """The terms that no single cause of the catalogue describes as well."""
     size = np.diagonal(moments.F.sum(axis=0))
     left = [size, *(np.diagonal(moments.given(shared=[cause]).whole) for cause in moments.causes)]

@@ -12,14 +12,14 @@ from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.naming import side_by_side
 from estimator.groups.findings import LARGEST, Estimated, estimated, finding_of, structures
 from estimator.groups.gain import gain_of, names_that_predict
-from estimator.groups.lack_of_fit import Group, names_that_fit
-from estimator.groups.layout import EVERY, LEVELS, STAND, TYPE, UNIT, Layout
+from estimator.groups.lack_of_fit import LackOfFitGroup, names_that_fit
+from estimator.groups.layout import EVERY, LEVELS, STAND, TYPE, UNIT, GroupLayout
 from estimator.groups.limits import limits
 from estimator.groups.pictures import pictures
 from estimator.groups.place import Where
-from estimator.groups.pool import Model, pooled
+from estimator.groups.pool import PoolModel, pooled
 from estimator.groups.results import EmpiricalTerm, GroupDiagnosis, GroupFinding
-from estimator.groups.selection import Selection, select
+from estimator.groups.selection import GroupSelection, select
 from estimator.groups.separation import Separator
 from estimator.groups.session_statistics import statistics_of
 from estimator.groups.statistics import SessionStatistics
@@ -62,9 +62,9 @@ def diagnose_statistics(
         raise ValueError(say("a group is one of {levels}, not {level}", levels=joined(", ", LEVELS), level=level))
     if not statistics:
         raise ValueError("a group needs a session that calibrates a block")
-    layout = Layout.of(statistics, level)
+    layout = GroupLayout.of(statistics, level)
     selection = names_that_predict(select(layout))
-    group = Group(selection, tuple(sessions))
+    group = LackOfFitGroup(selection, tuple(sessions))
     selection = names_that_fit(group)
     each = [estimated(selection, f) for f in selection.found]
     separator = Separator(tuple(sessions))
@@ -81,14 +81,14 @@ def diagnose_statistics(
         findings=tuple(replace(f, picture=picture) for f, picture in zip(whole, drawn, strict=True)),
         terms=tuple(learned_terms(selection, level, group)),
         structures=structures(selection),
-        limits=limits(pooled(layout, Model(), selection.scale), level),
+        limits=limits(pooled(layout, PoolModel(), selection.scale), level),
         gain=gain_of(selection, found, sessions),
         e_value=float(np.exp(min(scale.log_e_value, LARGEST))),
         notes=tuple(notes(selection, each)),
     )
 
 
-def learned_terms(selection: Selection, level: str, group: Group) -> Iterator[EmpiricalTerm]:
+def learned_terms(selection: GroupSelection, level: str, group: LackOfFitGroup) -> Iterator[EmpiricalTerm]:
     """Empirical terms where the sessions share structure that no cause explains, place by place.
 
     What has a name is left free in every session.
@@ -136,7 +136,7 @@ def as_one(a: GroupFinding, b: GroupFinding) -> GroupFinding:
     )
 
 
-def notes(selection: Selection, each: Sequence[Estimated]) -> list[str]:
+def notes(selection: GroupSelection, each: Sequence[Estimated]) -> list[str]:
     """What a reader should know beside the findings."""
     found: list[str] = []
     for f, h in selection.misfits:
@@ -144,30 +144,28 @@ def notes(selection: Selection, each: Sequence[Estimated]) -> list[str]:
         if h.shape is None:
             found.append(
                 say(
-                    "{cause}{where} is near, but {words} fits better: it has no name",
+                    "{cause}{place} is close, but {combination} agrees better: it has no name",
                     cause=f.cause,
-                    where=where,
-                    words=joined(" + ", h.words),
+                    place=where,
+                    combination=joined(" + ", h.words),
                 )
             )
         else:
             found.append(
                 say(
-                    "{cause}{where} is near, but leaves harmonic {shape} of β: it does not fit",
+                    "{cause}{place} is close, but leaves harmonic {shape} of β: it does not agree",
                     cause=f.cause,
-                    where=where,
+                    place=where,
                     shape=f"{h.shape:g}",
                 )
             )
     alone = [selection.layout.parts[k].statistics.started_at for k in sorted({k for k, _ in selection.own})]
     if alone:
         dates = dict.fromkeys(date or "one without a date" for date in alone)
-        found.append(
-            say("taken out of single sessions, which show it by themselves: {dates}", dates=joined(", ", dates))
-        )
+        found.append(say("removed from single sessions that show it on their own: {dates}", dates=joined(", ", dates)))
     larger = {p.statistics.unit: s for p, s in zip(selection.layout.parts, selection.scale, strict=True) if s > 1.5}
     found += [
-        say("{u}: the sessions scatter {s} times as much as stated", u=u, s=f"{np.sqrt(s):.1f}")
+        say("{unit}: the sessions scatter {ratio} times as much as stated", unit=u, ratio=f"{np.sqrt(s):.1f}")
         for u, s in larger.items()
     ]
     return found

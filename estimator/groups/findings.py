@@ -9,11 +9,11 @@ from estimator.causes.catalogue import UNEXPLAINED, cause
 from estimator.diagnosis.explanation.naming import sentence
 from estimator.diagnosis.explanation.rivals import CREDIBLE, DISTINGUISHED
 from estimator.groups.evidence import SINCE, VARYING, log_sum
-from estimator.groups.layout import EVERY, TYPE, Hypothesis
-from estimator.groups.pool import Model, Place, Pool, columns_in, pooled
+from estimator.groups.layout import EVERY, TYPE, GroupHypothesis
+from estimator.groups.pool import Place, Pool, PoolModel, columns_in, pooled
 from estimator.groups.random_effects import Mean, mean_of
 from estimator.groups.results import GroupFinding, GroupStructure, Rival, SessionAmplitude
-from estimator.groups.selection import Found, Selection, concerns
+from estimator.groups.selection import Found, GroupSelection, concerns
 from estimator.groups.weighing import Scale
 from estimator.least_squares import inverse
 from estimator.message import joined, say
@@ -25,13 +25,13 @@ class Near:
     """A rival of a finding."""
 
     place: Place
-    hypothesis: Hypothesis
+    hypothesis: GroupHypothesis
     probability: float
     separation: float
 
 
 @dataclass(frozen=True, eq=False)
-class Signature:
+class GroupSignature:
     """A finding in the n sessions that have it. w amplitudes."""
 
     found: Found
@@ -42,7 +42,7 @@ class Signature:
     """With the finding alone in the joint fit: what else acts is left free in every session."""
 
     @classmethod
-    def of(cls, selection: Selection, found: Found, base: Pool) -> "Signature":
+    def of(cls, selection: GroupSelection, found: Found, base: Pool) -> "GroupSignature":
         """``base`` is the pool without the finding."""
         w, k = found.place
         U, F = base.moments[w].U[:, k], base.moments[w].F[:, k]
@@ -50,7 +50,7 @@ class Signature:
         parts = selection.layout.parts
         acts = tuple(s for s in range(found.since, len(parts)) if columns_in(parts[s], found.place) is not None)
         amplitude = [inverse(F[s]) @ U[s] for s in acts] if found.form == VARYING else [shared]
-        model = Model(absorbed=base.model.absorbed).with_shared(found.place, found.since)
+        model = PoolModel(absorbed=base.model.absorbed).with_shared(found.place, found.since)
         for other in base.model.shared:
             model = model.with_absorbed(range(other.since, len(parts)), other.place)
         return cls(found, acts, np.array(amplitude), pooled(selection.layout, model, selection.scale))
@@ -69,7 +69,7 @@ class Signature:
         return float(np.sqrt(max(square, 0.0)))
 
 
-def near(selection: Selection, found: Found, scale: Scale) -> list[Near]:
+def near(selection: GroupSelection, found: Found, scale: Scale) -> list[Near]:
     """Rivals that the pool does not tell from a finding, most likely first; ``scale`` is of the pool without it.
 
     As within one session: those that hold the bulk of the probability together with it and lie near.
@@ -77,7 +77,7 @@ def near(selection: Selection, found: Found, scale: Scale) -> list[Near]:
     ranked = list(scale.ranked())
     values = np.array([value for _, _, value in ranked])
     share = np.exp(values - log_sum(values))
-    signature = Signature.of(selection, found, scale.pool)
+    signature = GroupSignature.of(selection, found, scale.pool)
     reached, kept = 0.0, []
     for (place, hypothesis, _), p in zip(ranked, share, strict=True):
         if reached >= CREDIBLE:
@@ -113,7 +113,7 @@ class Estimated:
     rivals: tuple[Near, ...]
 
 
-def estimated(selection: Selection, found: Found) -> Estimated:
+def estimated(selection: GroupSelection, found: Found) -> Estimated:
     """What the pool tells of one finding, given the others."""
     scale = selection.weighed(without=found)
     w, k = found.place
@@ -136,7 +136,9 @@ def with_joint(mean: Mean, lost: Array, whole: Array) -> Mean:
     return replace(mean, value=grown @ mean.value, sigma=mean.sigma * sigma, covariance=grown @ mean.covariance)
 
 
-def finding_of(selection: Selection, one: Estimated, measurements: Sequence[tuple[str, int | None]]) -> GroupFinding:
+def finding_of(
+    selection: GroupSelection, one: Estimated, measurements: Sequence[tuple[str, int | None]]
+) -> GroupFinding:
     """A finding as people see it; ``measurements`` what would separate each of its rivals."""
     f, h = one.found, one.found.hypothesis
     known = cause(h.cause)
@@ -186,11 +188,11 @@ def strength_of(one: Estimated, pooled: float) -> float:
     return float(np.sqrt(pooled))
 
 
-def words_of(h: Hypothesis) -> str:
+def words_of(h: GroupHypothesis) -> str:
     """Where a hypothesis acts, for people."""
     every = {"accelerometer": "every accelerometer", "gyroscope": "every gyro"}
     where = every.get(h.kind, "every sensor") if h.sensor == EVERY else h.sensor
-    return say("{where} of type {subject}", where=where, subject=h.subject) if h.level == TYPE else where
+    return say("{place} of type {subject}", place=where, subject=h.subject) if h.level == TYPE else where
 
 
 def rival_of(near_by: Near, measurement: str, sessions: int | None) -> Rival:
@@ -200,7 +202,7 @@ def rival_of(near_by: Near, measurement: str, sessions: int | None) -> Rival:
     return Rival(h.cause, sensors, h.level, h.subject, near_by.probability, near_by.separation, measurement, sessions)
 
 
-def forest(selection: Selection, one: Estimated) -> tuple[SessionAmplitude, ...]:
+def forest(selection: GroupSelection, one: Estimated) -> tuple[SessionAmplitude, ...]:
     """The amplitude of every session that speaks of a finding."""
     lines = []
     for part, U, F in zip(selection.layout.parts, one.U, one.F, strict=True):
@@ -216,15 +218,15 @@ def forest(selection: Selection, one: Estimated) -> tuple[SessionAmplitude, ...]
     return tuple(lines)
 
 
-def structures(selection: Selection) -> tuple[GroupStructure, ...]:
+def structures(selection: GroupSelection) -> tuple[GroupStructure, ...]:
     """Structure that the sessions share and no cause explains, in words."""
     found = []
     for h, statistic in selection.structures:
         what = say("harmonic {shape} of β", shape=f"{h.shape:g}") if h.shape is not None else joined(" + ", h.words)
         where = (
-            say("{h}: {what}", h=words_of(h), what=what)
+            say("{hypothesis}: {shape}", hypothesis=words_of(h), shape=what)
             if h.sensor
-            else say("the applied vector, common to all sensors: {what}", what=what)
+            else say("the applied vector, common to all sensors: {shape}", shape=what)
         )
         found.append(GroupStructure(where, h.subject, (h.sensor,) if h.sensor else (), float(np.sqrt(statistic))))
     return tuple(found)

@@ -14,15 +14,16 @@ import numpy as np
 
 from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.prediction import by_sensor
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.evidence import VARYING
 from estimator.groups.fixed import added_by, fixed
 from estimator.groups.joint_fit import JointFit, predictive
-from estimator.groups.pool import Model, pooled
+from estimator.groups.pool import PoolModel, pooled
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding, GroupGain, Moved
-from estimator.groups.selection import Found, Selection
-from estimator.session import CalibrationSession
+from estimator.groups.selection import Found, GroupSelection
+from estimator.session import Array, CalibrationSession
 
 FIRST = 2 / 3
 """Part of the sessions that fix the amplitudes."""
@@ -32,14 +33,15 @@ SHOWN = 5
 
 
 def gain_of(
-    selection: Selection, findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]
+    selection: GroupSelection, findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]
 ) -> GroupGain | None:
     """The gain on later sessions; None without findings or without sessions to leave out."""
     n = len(selection.layout.parts)
-    model = Model(absorbed=selection.own)
-    for f in selection.found:
+    model, lasting = PoolModel(absorbed=selection.own), []
+    for f, finding in zip(selection.found, findings, strict=True):
         if f.form != VARYING:
             model = model.with_shared(f.place, f.since)
+            lasting.append(finding)
     first = max(int(np.ceil(FIRST * n)), 1 + max((s.since for s in model.shared), default=0))
     if not model.shared or first >= n:
         return None
@@ -48,6 +50,7 @@ def gain_of(
     parts = [p.statistics for p in selection.layout.parts[first:]]
     square = sum(float(p.whole.sum()) for p in parts)
     freedom = sum(float(p.whole_freedom.sum()) for p in parts)
+    before, after = latest_errors(lasting, fit.amplitude, sessions[-1]) if sessions else (None, None)
     removed = fit.reduces(later) * float(np.mean(selection.scale[first:]))
     return GroupGain(
         fitted=first,
@@ -56,7 +59,33 @@ def gain_of(
         chi2_per_dof_before=square / freedom,
         chi2_per_dof_after=(square - removed) / freedom,
         moved=moved(findings, sessions[-1]) if sessions else (),
+        before=before,
+        after=after,
     )
+
+
+def latest_errors(
+    findings: Sequence[GroupFinding], amplitude: Array, session: CalibrationSession
+) -> tuple[dict[str, dict[str, float]] | None, dict[str, dict[str, float]] | None]:
+    """Root mean square residual of every sensor in a session, by kind and name, m/s² (rad/s), without findings and with
+    them; None where it has none of them.
+
+    ``amplitude`` (a,) SI: of the findings one after another, as sessions fixed them in which this one had no part.
+    """
+    widths = [len(f.amplitude) for f in findings]
+    parts = np.split(amplitude, np.cumsum(widths)[:-1])
+    effects = [replace(fixed(f), amplitude=tuple(own.tolist())) for f, own in zip(findings, parts, strict=True)]
+    baseline = baseline_of(averaged(session))
+    added = added_by(baseline, effects, ())
+    if added is None:
+        return None, None
+    residuals, (R, m) = WhitenedResiduals.of(baseline), baseline.residual.shape
+    effect = residuals.trace((added.columns @ added.amplitude)[..., None])[:, 0]
+    before, after = (
+        by_sensor(z[: R * m].reshape(R, m) / residuals.whiten.weight, baseline)
+        for z in (residuals.z, residuals.z - effect)
+    )
+    return before, after
 
 
 def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tuple[Moved, ...]:
@@ -82,14 +111,14 @@ PARTS = 3
 """Of the sessions, every third one in each: all reach over the whole life of the group."""
 
 
-def names_that_predict(state: Selection) -> Selection:
+def names_that_predict(state: GroupSelection) -> GroupSelection:
     """The findings by which sessions left out are likelier; the others are not tried again."""
     worse = tuple(f for f in state.found if gained(state, f) <= 0)
     found = tuple(f for f in state.found if f not in worse)
     return replace(state, found=found, barred=state.barred | {f.hypothesis.group for f in worse})
 
 
-def gained(state: Selection, name: Found) -> float:
+def gained(state: GroupSelection, name: Found) -> float:
     """Log predictive density that a name gains, the other findings given."""
     w, k = name.place
     moments = state.weighed(without=name).pool.moments[w]

@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from estimator.groups.beyond import Judgement, judged
-from estimator.groups.layout import TERMS, Hypothesis
-from estimator.groups.place import Fitted, Key, Moments, Where, key_of, moments_at
+from estimator.groups.beyond import BeyondJudgement, judged
+from estimator.groups.layout import TERMS, GroupHypothesis
+from estimator.groups.place import Key, PlacedFit, PlaceMoments, Where, key_of, moments_at
 from estimator.groups.pool import Place, columns_in
-from estimator.groups.selection import Found, Selection, select
+from estimator.groups.selection import Found, GroupSelection, select
 from estimator.groups.session_statistics import as_kept
 from estimator.session import CalibrationSession
 
@@ -22,10 +22,10 @@ MOST = 4
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
+class LackOfFitGroup:
     """The sessions of a group, fitted when they are first asked for."""
 
-    selection: Selection
+    selection: GroupSelection
     sessions: tuple[CalibrationSession, ...]
     """The latest ones, as many as are at hand."""
 
@@ -35,12 +35,12 @@ class Group:
         return len(self.selection.layout.parts) - len(self.sessions)
 
     @cached_property
-    def fitted(self) -> tuple[Fitted, ...]:
+    def fitted(self) -> tuple[PlacedFit, ...]:
         """Every session at hand as its record took it."""
         parts = [p.statistics for p in self.selection.layout.parts[self.first :]]
         scales = self.selection.scale[self.first :].tolist()
         return tuple(
-            Fitted(record, as_kept(session, record), scale)
+            PlacedFit(record, as_kept(session, record), scale)
             for session, record, scale in zip(self.sessions, parts, scales, strict=True)
         )
 
@@ -49,7 +49,7 @@ class Group:
         parts = self.selection.layout.parts[self.first :]
         return any(where.concerns(p.statistics) for p in parts)
 
-    def moments(self, state: Selection, where: Where) -> Moments:
+    def moments(self, state: GroupSelection, where: Where) -> PlaceMoments:
         """Causes and terms of a place over its sessions, what was found elsewhere left free."""
         numbers = [k for k, one in enumerate(self.fitted) if where.concerns(one.record)]
         beside = [(Where.of(f.hypothesis), key_of(f.hypothesis)) for f in state.found]
@@ -60,19 +60,19 @@ class Group:
         return moments_at(where, [self.fitted[k] for k in numbers], [[x for x in o if x[0] != where] for o in own])
 
 
-def _at(state: Selection, place: Place) -> tuple[Where, Key]:
+def _at(state: GroupSelection, place: Place) -> tuple[Where, Key]:
     """A hypothesis as a candidate of its place."""
     h = state.layout.hypotheses[place[0]][place[1]]
     return Where.of(h), key_of(h)
 
 
-def names_that_fit(group: Group) -> Selection:
+def names_that_fit(group: LackOfFitGroup) -> GroupSelection:
     """The findings that the library does not describe better; what it describes as well is doubted.
 
     So is every name of a place of which no session is at hand: a record holds the catalogue's scores, and the library's
     would make it five times as large.
     """
-    state, settled = group.selection, dict[Where, tuple[Hypothesis, Judgement]]()
+    state, settled = group.selection, dict[Where, tuple[GroupHypothesis, BeyondJudgement]]()
     while True:
         each = [
             (where, names, judged(group.moments(state, where), names))
@@ -83,7 +83,7 @@ def names_that_fit(group: Group) -> Selection:
         if not wrong or len(settled) == MOST:
             break
         where, says = max(wrong, key=lambda x: x[1].statistic)
-        settled[where] = (Hypothesis(*where[:2], TERMS, *where[2:], None, 0, says.words), says)
+        settled[where] = (GroupHypothesis(*where[:2], TERMS, *where[2:], None, 0, says.words), says)
         state = searched_again(state, where, says)
     unasked = [f for f in state.found if Where.of(f.hypothesis) not in group]
     doubtful = [*unasked, *(f for _, names, says in each if says.doubtful for f in names)]
@@ -94,13 +94,13 @@ def names_that_fit(group: Group) -> Selection:
     return replace(state, structures=structures, misfits=misfits, doubted=doubted)
 
 
-def by_place(state: Selection) -> Iterator[tuple[Where, list[Found]]]:
+def by_place(state: GroupSelection) -> Iterator[tuple[Where, list[Found]]]:
     """The findings of every place."""
     for where in dict.fromkeys(Where.of(f.hypothesis) for f in state.found):
         yield where, [f for f in state.found if Where.of(f.hypothesis) == where]
 
 
-def searched_again(state: Selection, where: Where, says: Judgement) -> Selection:
+def searched_again(state: GroupSelection, where: Where, says: BeyondJudgement) -> GroupSelection:
     """The search without a place: it is left free in every session, or for the names that hold there alone."""
     table = [((w, k), h) for w, own in state.layout.hypotheses.items() for k, h in enumerate(own)]
     if says.kept:

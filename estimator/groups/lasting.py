@@ -19,8 +19,8 @@ from estimator.groups.evidence import log_sum
 from estimator.groups.findings import Estimated, estimated, finding_of
 from estimator.groups.gain import names_that_predict
 from estimator.groups.joint_fit import predictive
-from estimator.groups.lack_of_fit import Group, names_that_fit
-from estimator.groups.layout import UNIT, Layout
+from estimator.groups.lack_of_fit import LackOfFitGroup, names_that_fit
+from estimator.groups.layout import UNIT, GroupLayout
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding
 from estimator.groups.selection import select
@@ -61,11 +61,11 @@ def lasting(
     ``sessions``: of the latest records, as many as are at hand. By them every name is held against what no catalogue
     has.
     """
-    layout = Layout.of(records, UNIT)
+    layout = GroupLayout.of(records, UNIT)
     known = {cause.identifier for cause in catalogue}
     tables = layout.hypotheses.values()
     barred = frozenset(h.group for table in tables for h in table if not h.nameless and h.cause not in known)
-    selection = names_that_fit(Group(names_that_predict(select(layout, barred)), tuple(sessions)))
+    selection = names_that_fit(LackOfFitGroup(names_that_predict(select(layout, barred)), tuple(sessions)))
     found = []
     for f in selection.found:
         one = estimated(selection, f)

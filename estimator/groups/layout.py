@@ -34,7 +34,7 @@ SHARED = 0.2
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class GroupHypothesis:
     """A cause (or nameless structure) of a unit, a type or a stand, at a place, in a shape."""
 
     level: str
@@ -73,19 +73,19 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class GroupLayout:
     """The hypotheses of a group, by width, and its sessions."""
 
-    hypotheses: dict[int, tuple[Hypothesis, ...]]
+    hypotheses: dict[int, tuple[GroupHypothesis, ...]]
     log_prior: dict[int, Array]
     """Width → (H,) ln of the prior share; −∞ for nameless structure."""
     parts: tuple[Part, ...]
 
     @classmethod
-    def of(cls, sessions: Sequence[SessionStatistics], level: str) -> "Layout":
+    def of(cls, sessions: Sequence[SessionStatistics], level: str) -> "GroupLayout":
         """Of sessions, oldest first."""
         wide, known, parts = level != UNIT, {}, []
-        numbers: dict[int, dict[Hypothesis, int]] = {}
+        numbers: dict[int, dict[GroupHypothesis, int]] = {}
         alike: dict[tuple[str, str, str], Part] = {}
         for s in sessions:
             before = alike.get((s.unit, s.unit_type, s.stand))
@@ -111,17 +111,19 @@ class Layout:
         return cls(hypotheses, log_priors(hypotheses, list(known), level), tuple(parts))
 
 
-def _places(s: SessionStatistics, wide: bool) -> tuple[list[tuple[Hypothesis, Array]], tuple[tuple[int, ...], ...]]:
+def _places(
+    s: SessionStatistics, wide: bool
+) -> tuple[list[tuple[GroupHypothesis, Array]], tuple[tuple[int, ...], ...]]:
     """Every hypothesis that a session speaks of with its columns there, and the sums that further columns are."""
-    found: list[tuple[Hypothesis, Array]] = []
+    found: list[tuple[GroupHypothesis, Array]] = []
     together: dict[tuple[str, str, float | None], list[int]] = {}
     for b, start in zip(s.blocks, s.starts, strict=False):
         columns = start + np.arange(b.width)
         level, subject = (UNIT, s.unit) if b.sensor else (STAND, s.stand)
-        found.append((Hypothesis(level, subject, b.cause, b.sensor, b.kind, b.shape, b.width), columns))
+        found.append((GroupHypothesis(level, subject, b.cause, b.sensor, b.kind, b.shape, b.width), columns))
         if wide and b.sensor and b.cause != HARMONIC:
             if s.unit_type:
-                found.append((Hypothesis(TYPE, s.unit_type, b.cause, b.sensor, b.kind, b.shape, b.width), columns))
+                found.append((GroupHypothesis(TYPE, s.unit_type, b.cause, b.sensor, b.kind, b.shape, b.width), columns))
             if b.width == 1:
                 together.setdefault((b.cause, b.kind, b.shape), []).append(int(start))
     sums: list[tuple[int, ...]] = []
@@ -131,11 +133,13 @@ def _places(s: SessionStatistics, wide: bool) -> tuple[list[tuple[Hypothesis, Ar
         sums.append(tuple(members))
         for level, subject in ((TYPE, s.unit_type), (STAND, s.stand)):
             if subject:
-                found.append((Hypothesis(level, subject, cause, EVERY, kind, shape, 1), columns))
+                found.append((GroupHypothesis(level, subject, cause, EVERY, kind, shape, 1), columns))
     return found, tuple(sums)
 
 
-def log_priors(hypotheses: dict[int, tuple[Hypothesis, ...]], known: list[Hypothesis], level: str) -> dict[int, Array]:
+def log_priors(
+    hypotheses: dict[int, tuple[GroupHypothesis, ...]], known: list[GroupHypothesis], level: str
+) -> dict[int, Array]:
     """Width → (H,) ln of every hypothesis' prior share.
 
     The j-th subject of a level, in the order of arrival, has 1/(j·(j + 1)) of its share: what the next one gets is
@@ -152,7 +156,7 @@ def log_priors(hypotheses: dict[int, tuple[Hypothesis, ...]], known: list[Hypoth
         shapes[h.group] = shapes.get(h.group, 0) + 1
     causes = len(lasting_causes())
 
-    def one(h: Hypothesis) -> float:
+    def one(h: GroupHypothesis) -> float:
         if h.nameless:
             return -np.inf
         j = order[h.level, h.subject]

@@ -45,7 +45,7 @@ class Factor:
 
 
 @dataclass(frozen=True, eq=False)
-class Term:
+class LibraryTerm:
     """A candidate of the library in one session. R rows, m sensors, w amplitudes."""
 
     words: tuple[str, ...]
@@ -125,7 +125,7 @@ def high_powers(a: Array) -> Iterator[Factor]:
     yield Factor(("sign a·a⁴",), "", (np.sign(a) * a**4)[:, None])
 
 
-def library(baseline: Baseline, sensor: str) -> list[Term]:
+def library(baseline: Baseline, sensor: str) -> list[LibraryTerm]:
     """Every term of a sensor by its name, or with an empty name of the applied vector, in one session."""
     setting, names = baseline.setting, [s.name for s in baseline.session.sensors]
     if not sensor:
@@ -137,11 +137,11 @@ def library(baseline: Baseline, sensor: str) -> list[Term]:
     for f in (*products(factors), *high_powers(setting.a[:, i] / setting.norm[i])):
         columns = np.zeros((setting.rows, len(names), len(f.words)))
         columns[:, i, :] = f.values
-        terms.append(Term(f.words, f"{unit}/({f.unit})" if f.unit else unit, variable_of(f), columns))
+        terms.append(LibraryTerm(f.words, f"{unit}/({f.unit})" if f.unit else unit, variable_of(f), columns))
     return terms
 
 
-def _of_vector(setting: Setting) -> Iterator[Term]:
+def _of_vector(setting: Setting) -> Iterator[LibraryTerm]:
     """Courses of the head's angles."""
     if setting.d_alpha is None or setting.d_beta is None:
         return
@@ -149,8 +149,8 @@ def _of_vector(setting: Setting) -> Iterator[Term]:
         for f in products(list(factors_of_session(setting))):
             change = turn[..., None] * f.values[:, None, None, :]
             unit = f"rad/({f.unit})" if f.unit else "rad"
-            yield Term(
-                tuple(say("{name}: {w}", name=name, w=w) for w in f.words),
+            yield LibraryTerm(
+                tuple(say("{name}: {term}", name=name, term=w) for w in f.words),
                 unit,
                 variable_of(f),
                 setting.through(change),

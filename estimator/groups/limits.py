@@ -12,7 +12,7 @@ from estimator.causes.contract import Signature
 from estimator.diagnosis.results import Limit
 from estimator.groups.candidates import lasting_causes
 from estimator.groups.evidence import ALPHA, FORMS, SAME, STRENGTHS, first_seen
-from estimator.groups.layout import EVERY, STAND, Hypothesis
+from estimator.groups.layout import EVERY, STAND, GroupHypothesis
 from estimator.groups.pool import Pool
 from estimator.groups.results import PoolLimit
 from estimator.session import Array
@@ -45,7 +45,7 @@ def limit_of(pool: Pool, known: Signature, level: str) -> PoolLimit:
     return PoolLimit(**vars(_limit(known, worst)), one_session=_limit(known, latest).amplitude)
 
 
-def _asked(h: Hypothesis, level: str) -> bool:
+def _asked(h: GroupHypothesis, level: str) -> bool:
     """Whether a hypothesis is one that the group's level speaks of: its own sensors, or the stand's causes."""
     return h.level == STAND if not h.sensor else h.level == level and h.sensor != EVERY
 

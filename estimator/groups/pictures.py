@@ -8,7 +8,6 @@ variances v the angle is Σ(s·r/v)/Σ(s²/v) of their residuals r, its variance
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.fixed import added_by, fixed
 from estimator.groups.layout import EVERY
-from estimator.groups.results import GroupFinding
+from estimator.groups.results import GroupFinding, Picture
 from estimator.session import Array, CalibrationSession
 
 BINS = 24
@@ -44,13 +43,13 @@ class Pictured:
     """(R,) of the readings."""
 
 
-def pictures(findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]) -> list[dict[str, Any] | None]:
+def pictures(findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]) -> list[Picture | None]:
     """One a finding; None where the sessions are not at hand or show nothing of it."""
     whole = [WhitenedResiduals.of(baseline_of(averaged(s))) for s in sessions] if findings else []
     return [_picture_of(finding, whole) for finding in findings]
 
 
-def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> dict[str, Any] | None:
+def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> Picture | None:
     parts: list[Pictured] = []
     variable, what = variable_of(finding), ""
     for residuals in whole:
@@ -62,7 +61,7 @@ def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> di
         left = left_without(residuals, effect)
         what = what or (finding.sensors[0] if finding.sensors else leading_angle(baseline, effect))
         parts += list(drawn(baseline, left, what, variable))
-    return pooled_picture(parts, variable) | {"of": what} if parts else None
+    return pooled_picture(parts, variable, what) if parts else None
 
 
 def drawn(baseline: Baseline, left: Array, what: str, variable: str) -> Iterator[Pictured]:
@@ -114,7 +113,7 @@ def variable_of(finding: GroupFinding) -> str:
     return INPUT if finding.sensors else BETA
 
 
-def pooled_picture(parts: Sequence[Pictured], variable: str) -> dict[str, Any]:
+def pooled_picture(parts: Sequence[Pictured], variable: str, what: str) -> Picture:
     """Mean of each bin, before and after, with its standard uncertainty; m/s² (rad/s)."""
     place = np.concatenate([p.at for p in parts])
     weight = np.concatenate([p.variance for p in parts]) ** -1.0
@@ -126,13 +125,14 @@ def pooled_picture(parts: Sequence[Pictured], variable: str) -> dict[str, Any]:
         np.bincount(number, weights=weight * np.concatenate(v), minlength=BINS)[seen] / total[seen]
         for v in ([p.before for p in parts], [p.after for p in parts])
     ]
-    return {
-        "variable": variable,
-        "at": ((edges[1:] + edges[:-1]) / 2)[seen].tolist(),
-        "before": mean[0].tolist(),
-        "after": mean[1].tolist(),
-        "sigma": (total[seen] ** -0.5).tolist(),
-    }
+    return Picture(
+        variable=variable,
+        at=tuple(((edges[1:] + edges[:-1]) / 2)[seen].tolist()),
+        before=tuple(mean[0].tolist()),
+        after=tuple(mean[1].tolist()),
+        sigma=tuple((total[seen] ** -0.5).tolist()),
+        of=what,
+    )
 
 
 def left_without(residuals: WhitenedResiduals, effect: Array) -> Array:

@@ -16,7 +16,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.joint_fit import JointFit
-from estimator.groups.layout import EVERY, Hypothesis
+from estimator.groups.layout import EVERY, GroupHypothesis
 from estimator.groups.library import library
 from estimator.groups.scores import LEFT, batch, shrinkage
 from estimator.groups.statistics import HARMONIC, SessionStatistics
@@ -37,7 +37,7 @@ class Where(NamedTuple):
     kind: str
 
     @classmethod
-    def of(cls, h: Hypothesis) -> "Where":
+    def of(cls, h: GroupHypothesis) -> "Where":
         """Where a hypothesis acts."""
         return cls(h.level, h.subject, h.sensor, h.kind)
 
@@ -46,7 +46,7 @@ class Where(NamedTuple):
         return self.subject in (s.unit, s.unit_type, s.stand) and (self.sensor in ("", EVERY, *s.sensors))
 
 
-def key_of(h: Hypothesis) -> Key:
+def key_of(h: GroupHypothesis) -> Key:
     """A named hypothesis as a candidate of its place."""
     return h.cause, "" if h.shape is None else repr(h.shape)
 
@@ -73,7 +73,7 @@ def terms_at(baseline: Baseline, where: Where) -> dict[Key, Array]:
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class PlaceMoments:
     """Candidates of a place over n sessions. D columns, each of pooled norm one."""
 
     causes: tuple[Key, ...]
@@ -92,7 +92,7 @@ class Moments:
         """(D, D) information of the pool."""
         return np.asarray(self.F.sum(axis=0))
 
-    def given(self, shared: Sequence[Key] = (), free: Sequence[Key] = ()) -> "Given":
+    def given(self, shared: Sequence[Key] = (), free: Sequence[Key] = ()) -> "PlaceInput":
         """The same with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
         U, F = self.U, self.F
         if free:
@@ -102,17 +102,17 @@ class Moments:
             F = _cleared(F - gain @ F[:, own], F)
         whole = F.sum(axis=0) if free else self.whole
         if not shared:
-            return Given(self, U, F, whole)
+            return PlaceInput(self, U, F, whole)
         at = np.concatenate([self.slots[k] for k in shared])
         fit, cross = JointFit(U[:, at], F[:, at[:, None], at]), F[:, :, at]
-        return Given(self, U - fit.explains(cross), F, _cleared(whole - fit.absorbs(cross), self.whole))
+        return PlaceInput(self, U - fit.explains(cross), F, _cleared(whole - fit.absorbs(cross), self.whole))
 
 
 @dataclass(frozen=True, eq=False)
-class Given:
+class PlaceInput:
     """Candidates of a place given some of them."""
 
-    of: Moments
+    of: PlaceMoments
     U: Array
     F: Array
     whole: Array
@@ -144,7 +144,7 @@ def _cleared(left: Array, before: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Fitted:
+class PlacedFit:
     """A session as it is pooled."""
 
     record: SessionStatistics
@@ -172,7 +172,9 @@ class Traced:
     """(N,) standard errors."""
 
 
-def moments_at(where: Where, whole: Sequence[Fitted], elsewhere: Sequence[Sequence[tuple[Where, Key]]]) -> Moments:
+def moments_at(
+    where: Where, whole: Sequence[PlacedFit], elsewhere: Sequence[Sequence[tuple[Where, Key]]]
+) -> PlaceMoments:
     """Candidates of a place over sessions; ``elsewhere``: of each session, what else acts in it."""
     each = [_traced(where, one, own) for one, own in zip(whole, elsewhere, strict=True)]
     widths = {key: trace.shape[1] for x in each for key, trace in x.each.items()}
@@ -187,10 +189,10 @@ def moments_at(where: Where, whole: Sequence[Fitted], elsewhere: Sequence[Sequen
     causes = frozenset[Key]().union(*(x.causes for x in each))
     own, terms = [tuple(key for key in widths if (key in causes) == named) for named in (True, False)]
     estimated = np.array([_estimated(where, one) for one in whole])
-    return Moments(own, terms, slots, U * unit, F * unit[:, None] * unit, estimated)
+    return PlaceMoments(own, terms, slots, U * unit, F * unit[:, None] * unit, estimated)
 
 
-def _traced(where: Where, one: Fitted, own: Sequence[tuple[Where, Key]]) -> "Traced":
+def _traced(where: Where, one: PlacedFit, own: Sequence[tuple[Where, Key]]) -> "Traced":
     """A session at a place, what acts elsewhere left free."""
     residuals = WhitenedResiduals.of(one.baseline)
     free = [residuals.trace(columns) for columns in one.elsewhere(own)]
@@ -209,7 +211,7 @@ def _traced(where: Where, one: Fitted, own: Sequence[tuple[Where, Key]]) -> "Tra
     return Traced(each, frozenset(named), z)
 
 
-def _estimated(where: Where, one: Fitted) -> float:
+def _estimated(where: Where, one: PlacedFit) -> float:
     """Degrees of freedom from which a session's noise at a place is estimated; infinite where it is as stated."""
     record = one.record
     own = np.array([where.sensor in ("", EVERY, name) for name in record.sensors])

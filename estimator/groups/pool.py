@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.groups.joint_fit import JointFit
-from estimator.groups.layout import Layout, Part
+from estimator.groups.layout import GroupLayout, Part
 from estimator.groups.scores import LEFT
 from estimator.least_squares import given
 from estimator.session import Array
@@ -23,7 +23,7 @@ Among = Callable[[Array, Array], Array]
 
 
 @dataclass(frozen=True)
-class Shared:
+class SharedColumns:
     """A hypothesis in the joint fit, with one amplitude from some session on."""
 
     place: Place
@@ -31,22 +31,22 @@ class Shared:
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class PoolModel:
     """What was found so far."""
 
-    shared: tuple[Shared, ...] = ()
+    shared: tuple[SharedColumns, ...] = ()
     absorbed: tuple[tuple[int, Place], ...] = ()
     """Number of the session and the hypothesis that is left free there."""
 
-    def with_shared(self, place: Place, since: int = 0) -> "Model":
-        return replace(self, shared=(*self.shared, Shared(place, since)))
+    def with_shared(self, place: Place, since: int = 0) -> "PoolModel":
+        return replace(self, shared=(*self.shared, SharedColumns(place, since)))
 
-    def with_absorbed(self, sessions: Iterable[int], place: Place) -> "Model":
+    def with_absorbed(self, sessions: Iterable[int], place: Place) -> "PoolModel":
         return replace(self, absorbed=(*self.absorbed, *((k, place) for k in sessions)))
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class PoolMoments:
     """Hypotheses of width w in a pool, given a model. n sessions, H hypotheses, a amplitudes in the joint fit."""
 
     U: Array
@@ -70,11 +70,11 @@ class Moments:
 class Pool:
     """A group's sessions added up under a model."""
 
-    layout: Layout
-    model: Model
+    layout: GroupLayout
+    model: PoolModel
     scale: Array
     """(n,) by which the variance of each session is larger than it says."""
-    moments: dict[int, Moments]
+    moments: dict[int, PoolMoments]
     fit: JointFit
     """Of what the model shares."""
 
@@ -116,7 +116,7 @@ def without(U: Array, E: Array, tells: Among, columns: Sequence[int]) -> tuple[A
     return scores[:, 0], scores[:, 1], left
 
 
-def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -> Pool:
+def pooled(layout: GroupLayout, model: PoolModel = PoolModel(), scale: Array | None = None) -> Pool:
     """All sessions of a layout added up under a model; ``scale`` (n,) of their variances, by default 1."""
     n = len(layout.parts)
     scale = np.ones(n) if scale is None else scale
@@ -146,11 +146,11 @@ def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -
     moments = {}
     for w, (all_U, all_E, all_F, cross) in empty.items():
         explained = fit.explains(cross)
-        moments[w] = Moments(all_U - explained, all_E - explained, all_F, cross, fit.absorbs(cross))
+        moments[w] = PoolMoments(all_U - explained, all_E - explained, all_F, cross, fit.absorbs(cross))
     return Pool(layout, model, scale, moments, fit)
 
 
-def joint_columns(part: Part, model: Model, session: int) -> tuple[list[int], list[int]]:
+def joint_columns(part: Part, model: PoolModel, session: int) -> tuple[list[int], list[int]]:
     """Numbers of the joint fit's amplitudes that act in a session, and their columns there."""
     where: list[int] = []
     joint: list[int] = []

@@ -1,7 +1,6 @@
 """What a group's sessions show together; no algorithms. The JSON form is ``imu-fleet-diagnosis/1``."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from estimator.codec import MOMENT, Document
 from estimator.diagnosis.results import Limit
@@ -39,6 +38,25 @@ class Rival:
 
 
 @dataclass(frozen=True)
+class Picture:
+    """Mean residual of each of N bins of a variable, without an effect and with it. Of a sensor, m/s² (rad/s), or of an
+    angle of the head, rad."""
+
+    variable: str
+    """``β``, ``(T − T̄)``, ``(t − t̄)`` or ``a``."""
+    at: tuple[float, ...]
+    """(N,) rad, K, s, or the input as a part of the applied vector."""
+    before: tuple[float, ...]
+    """(N,)"""
+    after: tuple[float, ...]
+    """(N,)"""
+    sigma: tuple[float, ...]
+    """(N,) standard uncertainty of both."""
+    of: str
+    """Name of the sensor or of the angle."""
+
+
+@dataclass(frozen=True)
 class GroupFinding(Document, forms={"since": MOMENT}):
     """One lasting effect."""
 
@@ -73,7 +91,7 @@ class GroupFinding(Document, forms={"since": MOMENT}):
     sentence: str
     advice: str
     sessions: tuple[SessionAmplitude, ...]
-    picture: dict[str, Any] | None = None
+    picture: Picture | None = None
     """Pooled residual of one sensor against what the effect depends on, without and with it; None without sessions."""
 
 
@@ -107,7 +125,7 @@ class Moved:
 
 
 @dataclass(frozen=True)
-class GroupGain:
+class GroupGain(Document, optional=("before", "after")):
     """Prediction of sessions that took no part in the fit, without and with the findings."""
 
     fitted: int
@@ -119,6 +137,11 @@ class GroupGain:
     chi2_per_dof_before: float
     chi2_per_dof_after: float
     moved: tuple[Moved, ...]
+    before: dict[str, dict[str, float]] | None = None
+    """Root mean square residual, m/s² (rad/s), of every sensor in the latest session, by kind and name, without the
+    findings; None where that session was not at hand."""
+    after: dict[str, dict[str, float]] | None = None
+    """The same with them, at the amplitudes that earlier sessions fixed."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +166,7 @@ class EmpiricalTerm:
     """Catalogue cause that comes nearest."""
     separation: float
     """From it, on the pool, standard errors of a reading."""
-    picture: dict[str, Any]
+    picture: Picture
     """Pooled residual against its variable, before and after."""
     level: str = ""
     """``unit``, ``type`` or ``stand``: whose it is."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.groups.evidence import ALPHA, SAME, SINCE, VARYING
-from estimator.groups.layout import STAND, Hypothesis, Layout
-from estimator.groups.pool import Model, Place, Pool, columns_in, pooled
+from estimator.groups.layout import STAND, GroupHypothesis, GroupLayout
+from estimator.groups.pool import Place, Pool, PoolModel, columns_in, pooled
 from estimator.groups.scores import batch
 from estimator.groups.statistics import SessionStatistics
 from estimator.groups.weighing import Scale, weigh
@@ -43,7 +43,7 @@ class Found:
     """One finding: a hypothesis in a form."""
 
     place: Place
-    hypothesis: Hypothesis
+    hypothesis: GroupHypothesis
     form: int
     since: int
     log_e: float
@@ -51,16 +51,16 @@ class Found:
 
 
 @dataclass(frozen=True, eq=False)
-class Selection:
+class GroupSelection:
     """What was found in a group."""
 
-    layout: Layout
+    layout: GroupLayout
     scale: Array
     """(n,) by which each session's variance is larger than it says."""
     found: tuple[Found, ...] = ()
-    structures: tuple[tuple[Hypothesis, float], ...] = ()
+    structures: tuple[tuple[GroupHypothesis, float], ...] = ()
     """Nameless structure, with its χ² in the pool."""
-    misfits: tuple[tuple[Hypothesis, Hypothesis], ...] = ()
+    misfits: tuple[tuple[GroupHypothesis, GroupHypothesis], ...] = ()
     """Names taken back, each with the structure that it left."""
     own: tuple[tuple[int, Place], ...] = ()
     """What one session has by itself."""
@@ -72,9 +72,9 @@ class Selection:
     doubted: frozenset[tuple[str, ...]] = frozenset()
     """Names that may as well be something outside the catalogue."""
 
-    def model(self, without: Found | None = None) -> Model:
+    def model(self, without: Found | None = None) -> PoolModel:
         """Everything found, one finding left out."""
-        model = Model(absorbed=(*self.own, *self.aside))
+        model = PoolModel(absorbed=(*self.own, *self.aside))
         n = range(len(self.layout.parts))
         for place in self.nameless:
             model = model.with_shared(place)
@@ -90,10 +90,10 @@ class Selection:
 
 
 def select(
-    layout: Layout, barred: frozenset[tuple[str, ...]] = frozenset(), aside: tuple[tuple[int, Place], ...] = ()
-) -> Selection:
+    layout: GroupLayout, barred: frozenset[tuple[str, ...]] = frozenset(), aside: tuple[tuple[int, Place], ...] = ()
+) -> GroupSelection:
     """The findings of a group; ``barred`` hypotheses are not tried, those ``aside`` are left free in their session."""
-    state = Selection(layout, larger_than_stated(layout), barred=barred, aside=aside)
+    state = GroupSelection(layout, larger_than_stated(layout), barred=barred, aside=aside)
     for _ in range(ROUNDS):
         scale = state.weighed()
         step = plainly_nameless(state, scale)
@@ -107,7 +107,7 @@ def select(
     return without_lesser(reselected(state))
 
 
-def larger_than_stated(layout: Layout) -> Array:
+def larger_than_stated(layout: GroupLayout) -> Array:
     """(n,) at least 1: by how much the sessions of each unit scatter more than they say, over all of them.
 
     Those that were put right by themselves are asked apart. The largest effect of the unit is no scatter.
@@ -138,7 +138,7 @@ def believed(s: SessionStatistics) -> tuple[str, bool]:
     return s.unit, bool(np.all(s.noise_factor == 1))
 
 
-def one_more(state: Selection, scale: Scale) -> Selection | None:
+def one_more(state: GroupSelection, scale: Scale) -> GroupSelection | None:
     """The state with the strongest hypothesis, or with a session freed of it; None where nothing is enough."""
     if scale.log_e_value < ENOUGH:
         return None
@@ -154,7 +154,7 @@ def one_more(state: Selection, scale: Scale) -> Selection | None:
     return replace(state, found=(*state.found, Found(place, hypothesis, form, since, scale.log_e_value)))
 
 
-def plainly_nameless(state: Selection, scale: Scale) -> Selection | None:
+def plainly_nameless(state: GroupSelection, scale: Scale) -> GroupSelection | None:
     """The state with nameless structure that explains plainly more than any name; None where a name does as well."""
     best = next(iter(nameless_evidence(state, scale)), None)
     named = next(scale.ranked(), None)
@@ -192,7 +192,7 @@ def within_reason(pool: Pool, place: Place) -> bool:
     return True
 
 
-def nameless_evidence(state: Selection, scale: Scale) -> list[tuple[float, Place, Hypothesis]]:
+def nameless_evidence(state: GroupSelection, scale: Scale) -> list[tuple[float, Place, GroupHypothesis]]:
     """ln evidence of nameless structure, its share among all of it included, strongest first."""
     found = []
     for w, table in state.layout.hypotheses.items():
@@ -202,7 +202,7 @@ def nameless_evidence(state: Selection, scale: Scale) -> list[tuple[float, Place
     return sorted(((v - np.log(len(found)), p, h) for v, p, h in found), key=lambda x: -x[0])
 
 
-def without_misfit(state: Selection, scale: Scale) -> Selection | None:
+def without_misfit(state: GroupSelection, scale: Scale) -> GroupSelection | None:
     """The state without the weakest finding that leaves structure where it acts; None where all fit.
 
     In its place comes the structure, wherever it is, that is seen best without it.
@@ -216,7 +216,7 @@ def without_misfit(state: Selection, scale: Scale) -> Selection | None:
     return None
 
 
-def taken_back(state: Selection, found: Found, structure: Hypothesis) -> Selection:
+def taken_back(state: GroupSelection, found: Found, structure: GroupHypothesis) -> GroupSelection:
     """The state without a name that does not fit, which is not tried again."""
     return replace(
         state,
@@ -226,7 +226,7 @@ def taken_back(state: Selection, found: Found, structure: Hypothesis) -> Selecti
     )
 
 
-def without_lesser(state: Selection) -> Selection:
+def without_lesser(state: GroupSelection) -> GroupSelection:
     """The state without names beside structure on the same sensor, or common to all, that explains more than they do:
     they are parts of what has no name."""
     for f in state.found:
@@ -238,14 +238,14 @@ def without_lesser(state: Selection) -> Selection:
     return state
 
 
-def concerns(f: Hypothesis, structure: Hypothesis) -> bool:
+def concerns(f: GroupHypothesis, structure: GroupHypothesis) -> bool:
     """Whether structure lives where a finding acts: that of another stand does not."""
     if not f.sensor or not structure.sensor:
         return f.sensor == structure.sensor and f.subject == structure.subject
     return f.sensor in (structure.sensor, "*") and (f.level != "unit" or f.subject == structure.subject)
 
 
-def with_structure(state: Selection, scale: Scale) -> Selection | None:
+def with_structure(state: GroupSelection, scale: Scale) -> GroupSelection | None:
     """The state with the strongest nameless structure in the fit; None where none is sure enough."""
     value, place, h = next(iter(nameless_evidence(state, scale)), (-np.inf, (0, 0), None))
     if h is None or value < ENOUGH or shown_by_one(scale.pool, place, SAME, 0) is not None:
@@ -254,7 +254,7 @@ def with_structure(state: Selection, scale: Scale) -> Selection | None:
     return replace(state, nameless=(*state.nameless, place), structures=(*state.structures, (h, statistic)))
 
 
-def reselected(state: Selection) -> Selection:
+def reselected(state: GroupSelection) -> GroupSelection:
     """Every finding chosen again given the others; what no longer holds is dropped."""
     for _ in range(3):
         before = [f.hypothesis.group for f in state.found]

@@ -12,8 +12,8 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.candidates import columns_of
 from estimator.groups.findings import Estimated
-from estimator.groups.layout import EVERY, Hypothesis
-from estimator.groups.selection import Selection
+from estimator.groups.layout import EVERY, GroupHypothesis
+from estimator.groups.selection import GroupSelection
 from estimator.groups.statistics import Block
 from estimator.least_squares import least_squares
 from estimator.session import Array, CalibrationSession
@@ -32,7 +32,7 @@ class Separator:
 
     sessions: tuple[CalibrationSession, ...]
 
-    def measurements(self, selection: Selection, one: Estimated) -> list[tuple[str, int | None]]:
+    def measurements(self, selection: GroupSelection, one: Estimated) -> list[tuple[str, int | None]]:
         """For every rival of a finding: what to measure, in words, and how many sessions of it."""
         if not one.rivals or not self.sessions:
             return [("", None)] * len(one.rivals)
@@ -50,14 +50,14 @@ class Separator:
             answers.append((words if count else "", count))
         return answers
 
-    def session_of(self, h: Hypothesis) -> CalibrationSession:
+    def session_of(self, h: GroupHypothesis) -> CalibrationSession:
         """The latest session that a hypothesis speaks of."""
         known = [s for s in self.sessions if h.subject in s.subjects]
         return known[-1] if known else self.sessions[-1]
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class SeparationPlan:
     """A session that could be measured."""
 
     words: str
@@ -65,11 +65,11 @@ class Plan:
     columns: tuple[tuple[Block, Array], ...]
 
     @classmethod
-    def of(cls, words: str, baseline: Baseline) -> "Plan":
+    def of(cls, words: str, baseline: Baseline) -> "SeparationPlan":
         """With the columns of every candidate."""
         return cls(words, WhitenedResiduals.of(baseline), tuple(columns_of(baseline)))
 
-    def trace(self, h: Hypothesis) -> Array | None:
+    def trace(self, h: GroupHypothesis) -> Array | None:
         """(N, w) standard errors per unit amplitude that a hypothesis leaves; None where it cannot show."""
         own = [
             c
@@ -78,7 +78,7 @@ class Plan:
         ]
         return self.residuals.trace(np.sum(own, axis=0)) if own else None
 
-    def apart(self, h: Hypothesis, rival: Hypothesis, amplitude: Array) -> float:
+    def apart(self, h: GroupHypothesis, rival: GroupHypothesis, amplitude: Array) -> float:
         """Squared separation of a finding at its amplitude from its rival that one such session brings."""
         own, other = self.trace(h), self.trace(rival)
         if own is None:
@@ -89,7 +89,10 @@ class Plan:
         return float(least_squares(other, signature).chi2)
 
 
-def planned(session: CalibrationSession) -> list[Plan]:
+def planned(session: CalibrationSession) -> list[SeparationPlan]:
     """The same session again, and every proposal of another one; sessions that are many anyway are not averaged too."""
     baseline = baseline_of(averaged(session))
-    return [Plan.of(AGAIN, baseline), *(Plan.of(words, b) for words, b in other_schedules(baseline))]
+    return [
+        SeparationPlan.of(AGAIN, baseline),
+        *(SeparationPlan.of(words, b) for words, b in other_schedules(baseline)),
+    ]

@@ -23,7 +23,7 @@ from estimator.groups.evidence import ALPHA, log_bayes, log_sum
 from estimator.groups.joint_fit import JointFit
 from estimator.groups.library import library
 from estimator.groups.pictures import Pictured, drawn, left_without, pooled_picture
-from estimator.groups.results import EmpiricalTerm
+from estimator.groups.results import EmpiricalTerm, Picture
 from estimator.groups.statistics import HARMONIC
 from estimator.least_squares import given as conditional
 from estimator.least_squares import inverse, orthonormal
@@ -260,11 +260,11 @@ def nearest_cause(terms: Learned, whole: Sequence[Library]) -> tuple[str, float]
     return cause, float(np.sqrt(max(left[best], 0.0)))
 
 
-def picture(terms: Learned, whole: Sequence[Library], variable: str) -> dict[str, object]:
+def picture(terms: Learned, whole: Sequence[Library], variable: str) -> Picture:
     """Pooled residual of the place against a variable, before and after."""
     parts: list[Pictured] = []
     what = terms.sensor or terms.keys[0][0].partition(":")[0]
     for one in whole:
         left = left_without(one.residuals, terms.predicted(one))
         parts += list(drawn(one.residuals.baseline, left, what, variable))
-    return pooled_picture(parts, variable) | {"of": what}
+    return pooled_picture(parts, variable, what)

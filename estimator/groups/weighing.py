@@ -17,14 +17,14 @@ from estimator.groups.evidence import (
     log_sum,
     log_varying,
 )
-from estimator.groups.layout import Hypothesis
-from estimator.groups.pool import Moments, Place, Pool
+from estimator.groups.layout import GroupHypothesis
+from estimator.groups.pool import Place, Pool, PoolMoments
 from estimator.groups.scores import LEFT, batch
 from estimator.session import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Weighed:
+class WeighedGroup:
     """H hypotheses of one width, weighed."""
 
     statistic: Array
@@ -49,7 +49,7 @@ class Scale:
     """All hypotheses of a pool, weighed, by width."""
 
     pool: Pool
-    weighed: dict[int, Weighed]
+    weighed: dict[int, WeighedGroup]
 
     @property
     def log_e_value(self) -> float:
@@ -63,9 +63,9 @@ class Scale:
         """Share of the prior that the hypotheses of the pool have; what is left is of those that may come."""
         return float(sum(np.exp(w.log_prior).sum() for w in self.weighed.values()))
 
-    def ranked(self) -> Iterator[tuple[Place, Hypothesis, float]]:
+    def ranked(self) -> Iterator[tuple[Place, GroupHypothesis, float]]:
         """The best shape of every named hypothesis with the ln evidence of all its shapes, strongest first."""
-        groups: dict[tuple[str, ...], list[tuple[float, Place, Hypothesis]]] = {}
+        groups: dict[tuple[str, ...], list[tuple[float, Place, GroupHypothesis]]] = {}
         for w, weighed in self.weighed.items():
             for k, value in enumerate(weighed.log_evidence):
                 h = self.pool.layout.hypotheses[w][k]
@@ -86,7 +86,7 @@ def weigh(pool: Pool, barred: frozenset[tuple[str, ...]] = frozenset()) -> Scale
     return Scale(pool, {w: _weighed(pool, w, m, barred) for w, m in pool.moments.items()})
 
 
-def _weighed(pool: Pool, w: int, m: Moments, barred: frozenset[tuple[str, ...]]) -> Weighed:
+def _weighed(pool: Pool, w: int, m: PoolMoments, barred: frozenset[tuple[str, ...]]) -> WeighedGroup:
     U, F = m.pooled
     E, alone = m.evidence.sum(axis=0), m.F.sum(axis=0)
     size = np.diagonal(alone, axis1=1, axis2=2)
@@ -99,7 +99,7 @@ def _weighed(pool: Pool, w: int, m: Moments, barred: frozenset[tuple[str, ...]])
     forms[:, gone] = np.log(FORMS)[:, None]
     prior = pool.layout.log_prior[w].copy()
     prior[[h.group in barred for h in pool.layout.hypotheses[w]]] = -np.inf
-    return Weighed(statistic, freedom, forms, since, prior)
+    return WeighedGroup(statistic, freedom, forms, since, prior)
 
 
 def weighed_forms(each: Array, every: Array, U: Array, F: Array, named: Array) -> tuple[Array, Array]:

@@ -161,8 +161,8 @@ def words_of_end(one: Lasting) -> str:
     known = cause(one.finding.cause).name.capitalize()
     where = say(" on {sensors}", sensors=one.finding.sensors[0]) if one.finding.sensors else ""
     return say(
-        "{known}{where}: {sessions} earlier sessions show it together, and this one does not have it.",
+        "{known}{place}: {sessions} earlier sessions together show it; this one does not.",
         known=known,
-        where=where,
+        place=where,
         sessions=one.sessions - 1,
     )

@@ -1,5 +1,5 @@
 """Health: from parameters to decisions."""
 
-from estimator.health.decision import Judgement, judge
+from estimator.health.decision import ParameterJudgement, judge
 
-__all__ = ["Judgement", "judge"]
+__all__ = ["ParameterJudgement", "judge"]

@@ -25,7 +25,7 @@ divide by zero."""
 
 
 @dataclass(frozen=True)
-class Judgement:
+class ParameterJudgement:
     """One parameter of one sensor, judged; SI, see the package page. What is not known is None."""
 
     sensor: str
@@ -115,7 +115,7 @@ def judge(
     coverage_factor: float = COVERAGE,
     level: float = SESSION_LEVEL,
     splits: tuple[Split, ...] | None = None,
-) -> tuple[Judgement, ...]:
+) -> tuple[ParameterJudgement, ...]:
     """Judge every parameter that has a tolerance, sensor after sensor.
 
     Parameters
@@ -171,11 +171,11 @@ def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
     )
 
 
-def _judgement(case: _Case, assessed: _Assessed | None, k: float, together: tuple[int, float]) -> Judgement:
+def _judgement(case: _Case, assessed: _Assessed | None, k: float, together: tuple[int, float]) -> ParameterJudgement:
     """The case with its verdict; ``together``: how many are judged, and the level of them all."""
     value, reference = _values(case)
     if assessed is None:
-        return Judgement(
+        return ParameterJudgement(
             sensor=case.sensor.name,
             kind=case.sensor.kind,
             parameter=case.parameter,
@@ -192,7 +192,7 @@ def _judgement(case: _Case, assessed: _Assessed | None, k: float, together: tupl
         )
     (judged, level), dof, motion = together, assessed.change.dof, case.motion
     critical = critical_factors(judged, dof, level)[assessed.is_vector] * assessed.critical_scale
-    return Judgement(
+    return ParameterJudgement(
         sensor=case.sensor.name,
         kind=case.sensor.kind,
         parameter=case.parameter,

@@ -6,32 +6,28 @@ kind is the likeliest, and so is its time, a priori anywhere alike; the size is 
 noise is estimated, readings shrink to what the best t statistic would be with known noise, with the degrees of freedom
 of its own weights (Welch & Satterthwaite). A change that is found is taken into the base, and the next is looked for.
 
-Temperature is a regressor where sessions span it: b·(T − T̄). It is looked for first, at the walk that makes it and the
-readings together most likely, and taken in where its own p-value is small and it explains more than any change.
+Temperature is a regressor where sessions span it, a line or a parabola (`warmth`). It is looked for first, and taken in
+where its own p-value is small and it explains more than any change.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 from scipy.stats import t as student
 
 from estimator.health.fits import WALKS, Fits, Readings, fits
 from estimator.health.odds import Odds, mixture, odds
 from estimator.health.shapes import DRIFTS, Kind, Shapes, shapes
+from estimator.health.warmth import Warmth, warmth_of, with_temperature
 from estimator.session import Array
 
 MOST = 3
 """Changes that are looked for in one history; what changes more often walks."""
 LEVEL = 0.01
 """Chance of a change being found in a unit that has none."""
-WARMED = 1.5
-"""°C, standard deviation of the sessions' temperatures from which on a coefficient is looked for: below it the
-laboratory was kept at its set point."""
 FAINT = 1e-10
 """Part of the information of free readings below which a shape leaves no trace beside the base."""
-ENOUGH = 5
-"""Sessions with a temperature, at least: level, coefficient and two numbers that speak against it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,18 +49,6 @@ class Change:
     """(n,) its shape, per unit of size."""
     wanders: bool = False
     """Whether a walk is likelier than any one change."""
-
-
-@dataclass(frozen=True, eq=False)
-class Warmth:
-    """How a parameter follows the temperature of the session."""
-
-    coefficient: Array
-    """(k,) T per °C."""
-    sigma: Array
-    """(k,)"""
-    p_value: float
-    is_found: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,10 +136,10 @@ def _likelihood(readings: Readings, walks: Array) -> float:
 def warmed(readings: Readings, walk: float, dof: Array, temperature: Array, level: float) -> Warmed:
     """The parameters are those of `detect`."""
     likely = most_likely(readings, walk, dof)
-    warmth = _warmth(readings, temperature, likely, level)
+    warmth = warmth_of(readings, temperature, None if likely is None else likely.column, level)
     if warmth is None or not warmth.is_found:
         return Warmed(readings, warmth, likely)
-    readings = with_temperature(readings, temperature)
+    readings = with_temperature(readings, temperature, warmth)
     return Warmed(readings, warmth, most_likely(readings, walk, dof))
 
 
@@ -234,47 +218,3 @@ def _with(readings: Readings, column: Array) -> Readings:
     """With one more column that acts; the level that is forecast is the one after the last session."""
     base = np.concatenate([readings.base, column[:, None]], axis=1)
     return replace(readings, base=base, now=np.append(readings.now, column[-1]))
-
-
-def with_temperature(readings: Readings, temperature: Array) -> Readings:
-    """With the regressor; the level that is forecast is that at the mean temperature."""
-    base = np.concatenate([readings.base, centred(temperature)[:, None]], axis=1)
-    return replace(readings, base=base, now=np.append(readings.now, 0.0))
-
-
-def centred(temperature: Array) -> Array:
-    """(n,) °C about their mean; a session without one has the mean, as the likeliest."""
-    known = np.isfinite(temperature)
-    return np.where(known, temperature - temperature[known].mean(), 0.0) if known.any() else np.zeros(len(known))
-
-
-def shows_temperature(temperature: Array) -> bool:
-    """Whether sessions at so many °C (n,), NaN where it is not known, can tell of a coefficient."""
-    known = np.isfinite(temperature)
-    return bool(known.sum() >= ENOUGH and temperature[known].std() >= WARMED)
-
-
-def _warmth(readings: Readings, temperature: Array, rival: Change | None, level: float) -> Warmth | None:
-    """The coefficient of temperature, where these sessions can tell of one."""
-    if not shows_temperature(temperature):
-        return None
-    column = centred(temperature)
-    fitted = fits(readings, alone(column))
-    score, information = fitted.score[..., 0], fitted.information[..., 0]
-    best = int(np.argmax((fitted.log_likelihood + score**2 / information / 2).sum(axis=1)))
-    size, information = score[best] / information[best], information[best]
-    squared = float((size**2 * information).sum())
-    p = float(np.exp(-squared / 2)) if len(size) == 2 else 2 * float(ndtr(-np.sqrt(squared)))
-    explains = rival is None or _explained(readings, column) >= _explained(readings, rival.column)
-    return Warmth(size, information**-0.5, p, bool(p < level and explains))
-
-
-def _explained(readings: Readings, column: Array) -> float:
-    """Twice the log likelihood ratio of a column against noise alone."""
-    fitted = fits(readings, alone(column), np.zeros(1))
-    return float((fitted.score**2 / np.maximum(fitted.information, 1e-300)).sum())
-
-
-def alone(column: Array) -> Shapes:
-    """One shape, a column (n,) of any unit, for a fit of its size."""
-    return Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))

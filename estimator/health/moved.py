@@ -23,7 +23,7 @@ FEWEST_AGREEING = {1: 2, 2: 3}
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class MotionFit:
     """Generalised least squares over some sensors."""
 
     gain: Array
@@ -33,7 +33,7 @@ class Fit:
     chi2: float
 
 
-def fit(changes: Changes, inside: list[int]) -> Fit:
+def fit(changes: Changes, inside: list[int]) -> MotionFit:
     """From the sensors ``inside``; the others are free.
 
     C is widened by S = s²·A·Aᵀ, which changes neither x nor a residual, but keeps a covariance that is singular
@@ -43,11 +43,11 @@ def fit(changes: Changes, inside: list[int]) -> Fit:
     g, w = _solved(changes.design[at], changes.covariance[np.ix_(at, at)])
     gain, weight = np.zeros((g.shape[0], n)), np.zeros((n, n))
     gain[:, at], weight[np.ix_(at, at)] = g, w
-    return Fit(gain, weight, float(changes.y @ weight @ changes.y))
+    return MotionFit(gain, weight, float(changes.y @ weight @ changes.y))
 
 
 @dataclass(frozen=True, eq=False)
-class Fits:
+class MotionFits:
     """Generalised least squares over each of s sets of sensors."""
 
     gain: Array
@@ -56,7 +56,7 @@ class Fits:
     """(s,)"""
 
 
-def fits(changes: Changes, sets: Sequence[Sequence[int]]) -> Fits:
+def fits(changes: Changes, sets: Sequence[Sequence[int]]) -> MotionFits:
     """`fit` for each of several sets; those of one size are solved as one stack."""
     chi2, gain = np.zeros(len(sets)), np.zeros((len(sets), changes.design.shape[1], len(changes.y)))
     covariance = changes.covariance
@@ -67,7 +67,7 @@ def fits(changes: Changes, sets: Sequence[Sequence[int]]) -> Fits:
         y = changes.y[at]
         chi2[places] = np.einsum("sp,spq,sq->s", y, w, y)
         gain[np.array(places)[:, None], :, at] = np.swapaxes(g, -1, -2)
-    return Fits(gain, chi2)
+    return MotionFits(gain, chi2)
 
 
 def _solved(a: Array, c: Array) -> tuple[Array, Array]:
@@ -111,7 +111,7 @@ def is_majority(changes: Changes, excluded: list[int]) -> bool:
     return 2 * (m - len(excluded)) > m and m - len(excluded) >= FEWEST_AGREEING[changes.rows]
 
 
-def _evidence(changes: Changes, fitted: Fit, inside: list[int]) -> Array:
+def _evidence(changes: Changes, fitted: MotionFit, inside: list[int]) -> Array:
     """(n,) χ²: twice what the log likelihood gains when each of n sensors is left out, dimensionless."""
     at = changes.where([[i] for i in inside])
     pull = (fitted.weight @ changes.y)[at][..., None]

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import ndtr
 from scipy.stats import ncx2
 
-from estimator.health.decision import Judgement
+from estimator.health.decision import ParameterJudgement
 from estimator.health.rule import PASS, UNDECIDABLE, state
 from estimator.parity.results import SEVERAL, ParityResult, SensorParity, Sight
 from estimator.results import Calibration
@@ -29,7 +29,7 @@ def judge_parity(
     tolerances: Mapping[tuple[str, str], float],
     *,
     coverage_factor: float = 2.0,
-) -> tuple[Judgement, ...]:
+) -> tuple[ParameterJudgement, ...]:
     """Judge scale, bias and axis of every sensor that parity sees and that has a tolerance.
 
     Parameters
@@ -40,7 +40,7 @@ def judge_parity(
     coverage_factor : k.
     """
     return tuple(
-        _judged(_Case(result, sensor, parameter, tolerance), reference, coverage_factor)
+        _judged(_ParityCase(result, sensor, parameter, tolerance), reference, coverage_factor)
         for sensor in result.sensors
         for parameter in PARAMETERS
         if (tolerance := tolerances.get((result.kind, parameter))) is not None
@@ -48,7 +48,7 @@ def judge_parity(
 
 
 @dataclass(frozen=True)
-class _Case:
+class _ParityCase:
     """One parameter of one sensor that is to be judged."""
 
     result: ParityResult
@@ -68,7 +68,7 @@ class _Case:
         return any(c.sensor == self.sensor.name and c.kind in (self.parameter, SEVERAL) for c in self.result.candidates)
 
 
-def _judged(case: _Case, reference: Calibration, k: float) -> Judgement:
+def _judged(case: _ParityCase, reference: Calibration, k: float) -> ParameterJudgement:
     """The case with its verdict; the measured value is the reference's, moved by the change."""
     sight, name, parameter = case.sight, case.sensor.name, case.parameter
     origin = None if parameter == "axis" else getattr(reference.sensor(name), parameter).value
@@ -76,7 +76,7 @@ def _judged(case: _Case, reference: Calibration, k: float) -> Judgement:
     value = size
     if size is not None and origin is not None:
         value = origin + size * (abs(origin) if parameter == "scale" else 1.0)
-    return Judgement(
+    return ParameterJudgement(
         sensor=name,
         kind=case.result.kind,
         parameter=parameter,
@@ -93,7 +93,7 @@ def _judged(case: _Case, reference: Calibration, k: float) -> Judgement:
     )
 
 
-def _verdict(case: _Case, k: float) -> str:
+def _verdict(case: _ParityCase, k: float) -> str:
     """The state, as the head of this file says."""
     result, sight, tolerance = case.result, case.sight, case.tolerance
     if sight.size is None or sight.sigma is None or sight.detectable is None:

@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.health.detection import LEVEL, Change, Detected, Warmth, centred, detect, shows_temperature, warmed
+from estimator.health.detection import LEVEL, Change, Detected, detect, warmed
 from estimator.health.fits import PART_KINDS, PART_SIZES, Readings, fits
 from estimator.health.forecast import AHEAD, MEDIAN, Future, earliest, future, passed, reach, staying, together
 from estimator.health.pooled import Evidence, Prior
 from estimator.health.posterior import Draws, draw
 from estimator.health.shapes import DRIFTS, Kind, courses
 from estimator.health.tails import log_tails
+from estimator.health.warmth import Warmth, centred, shows_temperature
 from estimator.session import Array
 from estimator.significance import single_level
 
@@ -46,9 +47,9 @@ def felt(warmth: Warmth | None, temperature: Array) -> Array:
 
 def swing(warmth: Warmth | None, draws: Draws, temperature: Array) -> Array:
     """(N, 1) T that the span of temperatures (n,) °C takes off the tolerance of every draw, on either side."""
-    away = np.abs(centred(temperature)).max()
     if warmth is not None and warmth.is_found:
-        return np.full((len(draws.weight), 1), np.linalg.norm(warmth.coefficient) * away)
+        return np.full((len(draws.weight), 1), warmth.swing(temperature))
+    away = np.abs(centred(temperature)).max()
     return np.asarray(np.linalg.norm(draws.slope, axis=1, keepdims=True) * away)
 
 

@@ -47,7 +47,7 @@ NOTHING = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Units:
+class SeatedUnits:
     """Units with about equally many sessions, filled up with empty places to n each."""
 
     value: Array
@@ -75,7 +75,7 @@ class Units:
 
 
 @dataclass(frozen=True, eq=False)
-class Scatter:
+class SeatingScatter:
     """Variances per component, rad² or relative²."""
 
     cell: Array
@@ -92,7 +92,7 @@ class Scatter:
 class Weighted:
     """Units with what the variances make of them."""
 
-    units: Units
+    units: SeatedUnits
     precision: Array
     """(u, n, k, n, k) P, the inverse of a covariance."""
     column: Array
@@ -108,7 +108,7 @@ class Seating:
     """Everything at given events."""
 
     parts: tuple[Weighted, ...]
-    scatter: Scatter
+    scatter: SeatingScatter
     stand_of: Array
     """(c,) number of each cell's stand."""
     value: Array
@@ -117,7 +117,9 @@ class Seating:
     """(e, k, e, k) of δ, rad² or relative²."""
 
 
-def seated(groups: Sequence[Units], columns: Sequence[Array], stand_of: Array, start: Scatter | None = None) -> Seating:
+def seated(
+    groups: Sequence[SeatedUnits], columns: Sequence[Array], stand_of: Array, start: SeatingScatter | None = None
+) -> Seating:
     """Variances and events together.
 
     Parameters
@@ -134,7 +136,9 @@ def seated(groups: Sequence[Units], columns: Sequence[Array], stand_of: Array, s
     return _settled(groups, columns, stand_of, scatter)
 
 
-def _settled(groups: Sequence[Units], columns: Sequence[Array], stand_of: Array, scatter: Scatter) -> Seating:
+def _settled(
+    groups: Sequence[SeatedUnits], columns: Sequence[Array], stand_of: Array, scatter: SeatingScatter
+) -> Seating:
     """Steps until no variance changes any more."""
     least = NOTHING * _typical(groups)
     for _ in range(ROUNDS):
@@ -177,18 +181,18 @@ def freedoms(seating: Seating) -> Array:
     return seating.scatter.cell**2 * known
 
 
-def _flat(scatter: Scatter) -> tuple[Array, Array]:
+def _flat(scatter: SeatingScatter) -> tuple[Array, Array]:
     """(c,) and (s,): the variances that weigh."""
     return scatter.cell, scatter.fixed
 
 
-def _typical(groups: Sequence[Units]) -> float:
+def _typical(groups: Sequence[SeatedUnits]) -> float:
     """The sessions' own variance, per component."""
     diagonals = [np.diagonal(g.noise[g.there], axis1=1, axis2=2) for g in groups]
     return float(np.median(np.concatenate(diagonals)))
 
 
-def _start(groups: Sequence[Units], stand_of: Array) -> Scatter:
+def _start(groups: Sequence[SeatedUnits], stand_of: Array) -> SeatingScatter:
     """All that units scatter about their own means is seating, for a start."""
     squares, count = 0.0, 0
     for g in groups:
@@ -196,10 +200,10 @@ def _start(groups: Sequence[Units], stand_of: Array) -> Scatter:
         rest = (g.value - mean[:, None])[g.there]
         squares, count = squares + float((rest**2).sum()), count + rest.size
     level, stands = max(squares / max(count, 1), NOTHING * _typical(groups)), int(stand_of.max()) + 1
-    return Scatter(np.full(len(stand_of), level), np.full(stands, level), np.full(stands, level), MOST_ALIKE)
+    return SeatingScatter(np.full(len(stand_of), level), np.full(stands, level), np.full(stands, level), MOST_ALIKE)
 
 
-def _at(groups: Sequence[Units], columns: Sequence[Array], stand_of: Array, scatter: Scatter) -> Seating:
+def _at(groups: Sequence[SeatedUnits], columns: Sequence[Array], stand_of: Array, scatter: SeatingScatter) -> Seating:
     """Generalised least squares at given variances."""
     k, e = groups[0].value.shape[2], columns[0].shape[2]
     made, normal, pull = [], np.zeros((e, k, e, k)), np.zeros((e, k))
@@ -218,7 +222,7 @@ def _at(groups: Sequence[Units], columns: Sequence[Array], stand_of: Array, scat
     return Seating(parts, scatter, stand_of, value, covariance.reshape(e, k, e, k))
 
 
-def _precision(g: Units, scatter: Scatter) -> Array:
+def _precision(g: SeatedUnits, scatter: SeatingScatter) -> Array:
     """(u, n, k, n, k) P, the inverse of a covariance."""
     u, n, k = g.value.shape
     identity = np.eye(k)
@@ -233,14 +237,14 @@ def _precision(g: Units, scatter: Scatter) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class _Sums:
+class _SeatingSums:
     """What a step needs of every variance: A and B/θ²."""
 
     trace: Array
     square: Array
 
 
-def _step(seating: Seating, least: float) -> Scatter:
+def _step(seating: Seating, least: float) -> SeatingScatter:
     """One step of all variances."""
     cell, fixed = _sums(seating)
     old = seating.scatter
@@ -248,10 +252,10 @@ def _step(seating: Seating, least: float) -> Scatter:
     tau = _longer(old.cell, _root(old.cell, cell, old.alike, typical), least)
     pool = float(np.exp(np.mean(np.log(old.fixed))))
     omega = _longer(old.fixed, _root(old.fixed, fixed, STAND_PRIOR, np.full_like(old.fixed, pool)), least)
-    return Scatter(tau, _stands(tau, seating.stand_of, old), omega, old.alike)
+    return SeatingScatter(tau, _stands(tau, seating.stand_of, old), omega, old.alike)
 
 
-def _root(theta: Array, sums: _Sums, prior: float, typical: Array) -> Array:
+def _root(theta: Array, sums: _SeatingSums, prior: float, typical: Array) -> Array:
     """The positive root of A·θ² + ν·θ − (B + ν·σ²)."""
     a, c = np.maximum(sums.trace, 0.0), theta**2 * sums.square + prior * typical
     return 2 * c / (prior + np.sqrt(prior**2 + 4 * a * c))
@@ -262,7 +266,7 @@ def _longer(old: Array, new: Array, least: float) -> Array:
     return np.maximum(old * (new / old) ** STRIDE, least)
 
 
-def _stands(tau: Array, stand_of: Array, old: Scatter) -> Array:
+def _stands(tau: Array, stand_of: Array, old: SeatingScatter) -> Array:
     """(s,) the maximum of each stand's typical variance, given its units and the typical one of all stands."""
     pool, stands = float(np.exp(np.mean(np.log(old.stand)))), len(old.stand)
     count = old.alike * np.bincount(stand_of, minlength=stands)
@@ -271,7 +275,7 @@ def _stands(tau: Array, stand_of: Array, old: Scatter) -> Array:
     return np.asarray((half + np.sqrt(half**2 + inverse * STAND_PRIOR * pool)) / inverse)
 
 
-def _sums(seating: Seating) -> tuple[_Sums, _Sums]:
+def _sums(seating: Seating) -> tuple[_SeatingSums, _SeatingSums]:
     """A and B/θ² of every pair of unit and stand, and of every stand."""
     cells, stands = len(seating.stand_of), len(seating.scatter.fixed)
     by_cell, fixed = np.zeros((2, cells)), np.zeros((2, stands))
@@ -285,7 +289,7 @@ def _sums(seating: Seating) -> tuple[_Sums, _Sums]:
         trace, square = np.einsum("uii->ui", blocks) - taken, (part.rest**2).sum(axis=2)
         by_cell += _binned(part.units.cell[there], (trace[there], square[there]), cells)
         fixed += _binned(part.units.stand[there], (fixed_trace[there], fixed_square[there]), stands)
-    return _Sums(*by_cell), _Sums(*fixed)
+    return _SeatingSums(*by_cell), _SeatingSums(*fixed)
 
 
 def _taken(first: Array, second: Array, covariance: Array) -> Array:

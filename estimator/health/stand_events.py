@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.seating import STAND_PRIOR, Seating, Units, Weighted, freedoms
+from estimator.health.seating import STAND_PRIOR, SeatedUnits, Seating, Weighted, freedoms
 from estimator.session import Array
 from estimator.significance import critical_chi2, family_wise, p_value
 
@@ -32,7 +32,7 @@ SEEN = 1e-3
 
 
 @dataclass(frozen=True)
-class Event:
+class StandEvent:
     """A change of a stand, or of a unit, between two times."""
 
     stand: int
@@ -44,17 +44,17 @@ class Event:
     end: float
     """years; the first session that shows it no more; infinite while it lasts."""
 
-    def column(self, g: Units) -> Array:
+    def column(self, g: SeatedUnits) -> Array:
         """(u, n) 1 where it acts."""
         where = g.stand == self.stand if self.stand >= 0 else (g.unit == self.unit)[:, None] & g.there
         return (where & (g.time >= self.start) & (g.time < self.end)).astype(float)
 
 
 @dataclass(frozen=True)
-class Candidate:
+class EventCandidate:
     """An event, and how many of its class were looked at, or what so many are worth for one of its length."""
 
-    event: Event
+    event: StandEvent
     chi2: float
     looked: float
 
@@ -91,7 +91,7 @@ class EventTest:
         return float(gain - np.log(self.looked))
 
 
-def columns(groups: Sequence[Units], events: Sequence[Event]) -> list[Array]:
+def columns(groups: Sequence[SeatedUnits], events: Sequence[StandEvent]) -> list[Array]:
     """D (u, n, e) of every group."""
     nothing = [np.zeros((*g.stand.shape, 0)) for g in groups]
     return [np.stack([e.column(g) for e in events], axis=2) if events else none
@@ -107,9 +107,9 @@ def chi_squares(pull: Array, free: Array, whole: Array) -> tuple[Array, Array]:
     return np.where(seen, np.einsum("pk,pk->p", pull, np.linalg.solve(safe, pull[..., None])[..., 0]), 0.0), seen
 
 
-def of_units(seating: Seating) -> Candidate | None:
+def of_units(seating: Seating) -> EventCandidate | None:
     """The most evident move of a single unit."""
-    best: tuple[float, Event] | None = None
+    best: tuple[float, StandEvent] | None = None
     looked = 0
     for part in seating.parts:
         back = np.flip(np.flip(part.precision, (1, 3)).cumsum(axis=1).cumsum(axis=3), (1, 3))
@@ -122,8 +122,8 @@ def of_units(seating: Seating) -> Candidate | None:
         if len(u) and (best is None or chi2.max() > best[0]):
             at = int(chi2.argmax())
             unit, time = int(part.units.unit[u[at]]), float(part.units.time[u[at], i[at]])
-            best = float(chi2[at]), Event(-1, unit, time, np.inf)
-    return None if best is None else Candidate(best[1], best[0], looked)
+            best = float(chi2[at]), StandEvent(-1, unit, time, np.inf)
+    return None if best is None else EventCandidate(best[1], best[0], looked)
 
 
 def event_test(seating: Seating, e: int, looked: float) -> EventTest:

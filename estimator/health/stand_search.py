@@ -24,7 +24,7 @@ import numpy as np
 from estimator.arrays import eigh
 from estimator.health.scan import looks
 from estimator.health.seating import Seating
-from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Candidate, Event, chi_squares
+from estimator.health.stand_events import FEWEST_UNITS, LEVEL, EventCandidate, StandEvent, chi_squares
 from estimator.session import Array
 
 MOST_DATES = 120
@@ -34,7 +34,7 @@ ROW = 40
 seen whole, and one of more leaves its middle in the spread dates of stands with a thousand sessions."""
 
 
-def of_stands(seating: Seating) -> list[Candidate]:
+def of_stands(seating: Seating) -> list[EventCandidate]:
     """Each stand's most evident change, steps and excursions; of stands that three units tell of."""
     lives = [_life(seating, stand) for stand in range(len(seating.scatter.stand))]
     spread = [_tested_pairs(_from_each(seating, life, life.spread), seating) for life in lives]
@@ -75,7 +75,7 @@ class _Life:
         """(p,) how many dates lie within, from (p,) years up to and without (p,) years."""
         return np.searchsorted(self.dates, end) - np.searchsorted(self.dates, start)
 
-    def around(self, event: Event) -> Array:
+    def around(self, event: StandEvent) -> Array:
         """(c,) dates around both ends, as far as the spread ones passed over, years."""
         passed = -(-len(self.dates) // MOST_DATES)
         ends = np.searchsorted(self.dates, [event.start, event.end])
@@ -144,7 +144,7 @@ def _life(seating: Seating, stand: int) -> _Life:
     return _Life(stand, part, row, place, every[3], np.unique(every[3]))
 
 
-def _best(seating: Seating, life: _Life, spread: _Pairs, price: _Price) -> Candidate | None:
+def _best(seating: Seating, life: _Life, spread: _Pairs, price: _Price) -> EventCandidate | None:
     """The pair with the largest gain."""
     rows = (
         [_tested_pairs(sums, seating) for sums in _in_rows(seating, life)] if len(life.spread) < len(life.dates) else []
@@ -155,7 +155,9 @@ def _best(seating: Seating, life: _Life, spread: _Pairs, price: _Price) -> Candi
     return _largest(life, [_tested_pairs(_from_each(seating, life, life.around(best.event)), seating)], price, best)
 
 
-def _largest(life: _Life, looked: Sequence[_Pairs], price: _Price, than: Candidate | None = None) -> Candidate | None:
+def _largest(
+    life: _Life, looked: Sequence[_Pairs], price: _Price, than: EventCandidate | None = None
+) -> EventCandidate | None:
     """The pair with the largest gain of all that were looked at; ``than`` where none gains more."""
     best = than
     for pairs in looked:
@@ -163,8 +165,8 @@ def _largest(life: _Life, looked: Sequence[_Pairs], price: _Price, than: Candida
             continue
         prices = price.of(life, pairs)
         i = int(np.argmax(pairs.chi2 / 2 - np.log(prices)))
-        event = Event(life.stand, -1, float(pairs.start[i]), float(pairs.end[i]))
-        candidate = Candidate(event, float(pairs.chi2[i]), float(prices[i]))
+        event = StandEvent(life.stand, -1, float(pairs.start[i]), float(pairs.end[i]))
+        candidate = EventCandidate(event, float(pairs.chi2[i]), float(prices[i]))
         best = candidate if best is None or candidate.gain > best.gain else best
     return best
 

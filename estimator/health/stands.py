@@ -18,12 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.seating import Seating, Units, seated
+from estimator.health.seating import SeatedUnits, Seating, seated
 from estimator.health.stand_events import (
     FEWEST_UNITS,
     LEVEL,
-    Event,
     EventTest,
+    StandEvent,
     chi_squares,
     columns,
     event_test,
@@ -48,7 +48,7 @@ BUCKETS = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class StandMotion:
     """The common motion of one session of one unit."""
 
     stand: str
@@ -105,7 +105,7 @@ class StandState:
         return max(self.shifts, key=lambda shift: (shift.until is None, shift.chi2), default=self.suspected)
 
 
-def stand_states(motions: Sequence[Motion]) -> tuple[StandState, ...]:
+def stand_states(motions: Sequence[StandMotion]) -> tuple[StandState, ...]:
     """Every stand, by name; motions of one quantity."""
     if not motions:
         return ()
@@ -119,7 +119,7 @@ def stand_states(motions: Sequence[Motion]) -> tuple[StandState, ...]:
 class _Taken:
     """An event in the model, and how many of its class were looked at."""
 
-    event: Event
+    event: StandEvent
     looked: float
 
 
@@ -133,7 +133,7 @@ class _Explained:
     """Candidates that were not evident, each the last event of a model of its own."""
 
 
-def _explained(groups: Sequence[Units], stand_of: Array) -> _Explained:
+def _explained(groups: Sequence[SeatedUnits], stand_of: Array) -> _Explained:
     """Events one after another, while one is evident; then without those that others explain."""
     taken = list[_Taken]()
     seating = seated(groups, columns(groups, ()), stand_of)
@@ -155,12 +155,12 @@ def _candidates(seating: Seating) -> list[_Taken]:
     return [_Taken(candidate.event, candidate.looked) for candidate in (*stands, *([] if unit is None else [unit]))]
 
 
-def _with(seating: Seating, groups: Sequence[Units], taken: Sequence[_Taken]) -> Seating:
+def _with(seating: Seating, groups: Sequence[SeatedUnits], taken: Sequence[_Taken]) -> Seating:
     """The model with these events, its variances made anew."""
     return seated(groups, columns(groups, [entry.event for entry in taken]), seating.stand_of, seating.scatter)
 
 
-def _pruned(seating: Seating, groups: Sequence[Units], taken: list[_Taken]) -> tuple[Seating, tuple[_Taken, ...]]:
+def _pruned(seating: Seating, groups: Sequence[SeatedUnits], taken: list[_Taken]) -> tuple[Seating, tuple[_Taken, ...]]:
     """Without events that are no longer evident, the least evident first."""
     while taken:
         failing = [i for i, entry in enumerate(taken) if not _is_evident(seating, i, entry)]
@@ -280,14 +280,14 @@ def _shift(seating: Seating, e: int, candidate: _Taken) -> StandShift:
     )
 
 
-def _grouped(motions: Sequence[Motion], stands: Sequence[str]) -> tuple[list[Units], Array]:
+def _grouped(motions: Sequence[StandMotion], stands: Sequence[str]) -> tuple[list[SeatedUnits], Array]:
     """Units of like length together, and the stand of every pair of unit and stand."""
-    by_unit: dict[str, list[Motion]] = {}
+    by_unit: dict[str, list[StandMotion]] = {}
     for motion in sorted(motions, key=lambda m: m.time):
         by_unit.setdefault(motion.unit, []).append(motion)
     cells = {pair: i for i, pair in enumerate(sorted({(m.unit, m.stand) for m in motions}))}
     place = {stand: i for i, stand in enumerate(stands)}
-    buckets: dict[int, list[tuple[int, list[Motion]]]] = {}
+    buckets: dict[int, list[tuple[int, list[StandMotion]]]] = {}
     for number, members in enumerate(by_unit.values()):
         buckets.setdefault(int(np.ceil(np.log(len(members)) / np.log(BUCKETS))), []).append((number, members))
     groups = [_units(members, cells, place) for _, members in sorted(buckets.items())]
@@ -295,8 +295,8 @@ def _grouped(motions: Sequence[Motion], stands: Sequence[str]) -> tuple[list[Uni
 
 
 def _units(
-    members: Sequence[tuple[int, list[Motion]]], cells: Mapping[tuple[str, str], int], place: Mapping[str, int]
-) -> Units:
+    members: Sequence[tuple[int, list[StandMotion]]], cells: Mapping[tuple[str, str], int], place: Mapping[str, int]
+) -> SeatedUnits:
     """Arrays of units, filled up to the longest."""
     u, n, k = len(members), max(len(motions) for _, motions in members), len(members[0][1][0].value)
     value, noise, time = np.zeros((u, n, k)), np.tile(np.eye(k), (u, n, 1, 1)), np.zeros((u, n))
@@ -308,7 +308,7 @@ def _units(
         time[row, :m] = [motion.time for motion in motions]
         stand[row, :m] = [place[motion.stand] for motion in motions]
         cell[row, :m] = [cells[motion.unit, motion.stand] for motion in motions]
-    return Units(value, noise, time, np.array([number for number, _ in members]), stand, cell)
+    return SeatedUnits(value, noise, time, np.array([number for number, _ in members]), stand, cell)
 
 
 def _alone(covariance: Array) -> Array:

@@ -14,7 +14,7 @@ from estimator.causes.contract import Cause
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.forward import measured
-from estimator.hiding.hidden import Hidden, TooWeakError, UnhideableError, amplitude_reaching
+from estimator.hiding.hidden import HiddenCause, TooWeakError, UnhideableError, amplitude_reaching
 from estimator.session import Array, CalibrationSession
 from estimator.simulate import counts_pulses
 
@@ -77,7 +77,7 @@ class Range:
         columns[:, self.sensor, 0] = change
         return float(np.linalg.norm(self.seen.trace(columns)))
 
-    def ended(self, depth: float, cause: Cause) -> tuple[CalibrationSession, Hidden]:
+    def ended(self, depth: float, cause: Cause) -> tuple[CalibrationSession, HiddenCause]:
         """The session with the limit so far below the largest reading, m/s² (rad/s), at a whole pulse; and the clipping
         that is hidden in it."""
         baseline, i = self.seen.baseline, self.sensor
@@ -90,7 +90,7 @@ class Range:
         strength = self.strength((limited - session.readings[:, i]) / unit)
         readings = session.readings.copy()
         readings[:, i] = limited
-        hidden = Hidden(cause.identifier, (i,), (), (end / unit,), (end / unit, self.side), strength)
+        hidden = HiddenCause(cause.identifier, (i,), (), (end / unit,), (end / unit, self.side), strength)
         return replace(session, readings=readings), hidden
 
 
@@ -102,7 +102,7 @@ def clipped(
     strength: float,
     sensor: int | None,
     exact: bool,
-) -> tuple[CalibrationSession, Hidden]:
+) -> tuple[CalibrationSession, HiddenCause]:
     """The session with a sensor that reads no more than a limit, on both sides or on one.
 
     Where none can be clipped as weakly, the first that is drawn is clipped as weakly as it can be, unless the strength

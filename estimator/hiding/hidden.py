@@ -28,7 +28,7 @@ class TooWeakError(UnhideableError):
 
 
 @dataclass(frozen=True)
-class Hidden:
+class HiddenCause:
     """What was hidden."""
 
     cause: str

@@ -27,7 +27,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.hiding.clipping import clipped
-from estimator.hiding.hidden import Hidden, UnhideableError, amplitude_reaching
+from estimator.hiding.hidden import HiddenCause, UnhideableError, amplitude_reaching
 from estimator.session import Array, CalibrationSession
 from estimator.simulate import counts_pulses, whole_pulses
 
@@ -46,7 +46,7 @@ def hide(
     strength: float,
     sensor: int | None = None,
     exact: bool = True,
-) -> tuple[CalibrationSession, Hidden]:
+) -> tuple[CalibrationSession, HiddenCause]:
     """The last of a unit's sessions with a cause in its readings or its record.
 
     Parameters
@@ -82,7 +82,7 @@ def hide(
     refuse_lacking(cause, setting, alone=not earlier)
     shape, amplitude = drawn_effect([*earlier, whole] if cause.between else [whole], cause, rng, strength, sensor)
     reported, _ = cause.reported(setting, shape, amplitude, np.zeros_like(amplitude))
-    hidden = Hidden(cause.identifier, shape.sensors, (), tuple(reported.tolist()), shape.nonlinear, strength)
+    hidden = HiddenCause(cause.identifier, shape.sensors, (), tuple(reported.tolist()), shape.nonlinear, strength)
     return with_input(session, setting, shape.columns @ amplitude), hidden
 
 
@@ -93,7 +93,7 @@ def hide_any(
     strength: float,
     sensor: int | None = None,
     exact: bool = True,
-) -> tuple[CalibrationSession, Hidden]:
+) -> tuple[CalibrationSession, HiddenCause]:
     """The last of a unit's sessions with an effect of the catalogue that ``rng`` draws from those that it can hold.
 
     Errors of the record are not drawn: they have no strength. Otherwise as `hide`.
@@ -115,7 +115,7 @@ def largest_of(setting: Setting) -> Array:
 
 def with_noise(
     session: CalibrationSession, cause: Cause, rng: np.random.Generator, strength: float, sensor: int | None
-) -> tuple[CalibrationSession, Hidden]:
+) -> tuple[CalibrationSession, HiddenCause]:
     """The session, its pulses not counted yet, with more noise in every reading of a sensor than is stated."""
     seen = WhitenedResiduals.of(baseline_of(whole_pulses(session)))
     R, m = session.readings.shape
@@ -132,7 +132,9 @@ def with_noise(
     k = amplitude_reaching(reached, strength, float(min(most, RAREST / np.sqrt(grown.max()))), cause)
     added = np.zeros((R, m))
     added[:, i] = k * rng.standard_normal(R)
-    return with_input(session, seen.baseline.setting, added), Hidden(cause.identifier, (i,), (), (k,), (), strength)
+    return with_input(session, seen.baseline.setting, added), HiddenCause(
+        cause.identifier, (i,), (), (k,), (), strength
+    )
 
 
 def with_input(session: CalibrationSession, setting: Setting, added: Array) -> CalibrationSession:
@@ -191,7 +193,7 @@ def drawn_effect(
 
 def in_record(
     session: CalibrationSession, cause: Correction, rng: np.random.Generator, sensor: int | None
-) -> tuple[CalibrationSession, Hidden]:
+) -> tuple[CalibrationSession, HiddenCause]:
     """The session with an error of the record: what undoes one makes it, since done twice it is as before."""
     refuse_lacking(cause, baseline_of(session).setting, alone=False)
     chosen, count = None, 0
@@ -205,4 +207,4 @@ def in_record(
         raise UnhideableError(f"{cause.identifier} is of no such sensor; name none")
     places, wrong = chosen
     rows, sensors = (places, ()) if cause.of_rows else ((), places)
-    return wrong, Hidden(cause.identifier, sensors, rows)
+    return wrong, HiddenCause(cause.identifier, sensors, rows)

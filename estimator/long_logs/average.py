@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.errors import FormatError, Problem, ScheduleError
-from estimator.long_logs.tally import Tally, check_alike
+from estimator.long_logs.tally import RowTally, check_alike
 from estimator.message import say
 from estimator.reading.problems import Problems
 from estimator.reading.schedule import check_schedule
@@ -120,17 +120,17 @@ def _rows(log: LongLog) -> Iterator[tuple[int, CalibrationSession]]:
         at += len(part.readings)
 
 
-def _tallied(log: LongLog, choices: Sequence[Intervals]) -> list[Tally]:
+def _tallied(log: LongLog, choices: Sequence[Intervals]) -> list[RowTally]:
     """The sums over several choices of rests, in one pass."""
     head = next(log.parts())
-    tallies = [Tally(head, rests) for rests in choices]
+    tallies = [RowTally(head, rests) for rests in choices]
     for at, part in _rows(log):
         for tally in tallies:
             tally.add(part, at)
     return tallies
 
 
-def _moving(log: LongLog, tallies: Sequence[Tally]) -> list[Mask]:
+def _moving(log: LongLog, tallies: Sequence[RowTally]) -> list[Mask]:
     """Of every choice: in which rests the block moves; another pass, only where one may."""
     moves = [np.zeros(len(tally.rests), dtype=bool) for tally in tallies]
     doubtful = [k for k, tally in enumerate(tallies) if tally.may_move()]
@@ -170,11 +170,11 @@ def _chosen(log: LongLog, residual: Callable[[CalibrationSession], float]) -> Ca
     return min(tried.values(), key=lambda pair: pair[0])[1]
 
 
-def _calm(log: LongLog, choices: Sequence[Intervals]) -> list[Tally]:
+def _calm(log: LongLog, choices: Sequence[Intervals]) -> list[RowTally]:
     """The sums over the rests of every choice in which the block does not move, where they are enough."""
     usable = [rests for rests in choices if FEWEST <= len(rests) <= MOST_RESTS]
     tallies = _tallied(log, usable) if usable else []
-    calm: list[Tally | Intervals] = []
+    calm: list[RowTally | Intervals] = []
     for tally, moves in zip(tallies, _moving(log, tallies), strict=True):
         rests = tally.rests.at(~moves)
         if len(rests) >= FEWEST:
@@ -184,7 +184,7 @@ def _calm(log: LongLog, choices: Sequence[Intervals]) -> list[Tally]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Seen:
+class _SeenRows:
     """What is to be known of a log before its rests are looked for."""
 
     quiet: Quietness
@@ -193,7 +193,7 @@ class _Seen:
     samples: int
 
 
-def _quietness(log: LongLog) -> _Seen:
+def _quietness(log: LongLog) -> _SeenRows:
     head = next(log.parts())
     assert head.sample_rate is not None
     block, watched = block_length(head.sample_rate), watched_for_rest(head)
@@ -209,4 +209,4 @@ def _quietness(log: LongLog) -> _Seen:
         withins.append(within)
         remainder, before, samples = readings[len(mean) * block :], readings[-1:], at + len(part.readings)
     quiet = quietness_of(block, np.concatenate(means), np.concatenate(withins), steps)
-    return _Seen(quiet, head.sample_rate, samples)
+    return _SeenRows(quiet, head.sample_rate, samples)

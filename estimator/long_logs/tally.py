@@ -21,7 +21,7 @@ AVERAGED = ("time", "temperature")
 """What is averaged beside the readings."""
 
 
-class Tally:
+class RowTally:
     """The sums over the rests of one log, n of them, and what follows from them. m sensors, c columns.
 
     Columns come first while they are summed: (c, r) of the r rows of a part, because each then lies in one piece.
@@ -80,9 +80,9 @@ class Tally:
         for channel, side in self._reached:
             self._ends[i, channel, side] += np.count_nonzero(samples[channel] == self._range[channel, side])
 
-    def at(self, chosen: NDArray[np.bool_]) -> "Tally":
+    def at(self, chosen: NDArray[np.bool_]) -> "RowTally":
         """Of those of the rests that are ``chosen`` (n,)."""
-        other = Tally(self.head, self.rests.at(chosen))
+        other = RowTally(self.head, self.rests.at(chosen))
         for name in ("_first", "_sums", "_squares", "_ends"):
             setattr(other, name, getattr(self, name)[chosen])
         other._range = self._range
@@ -174,7 +174,7 @@ def check_alike(head: CalibrationSession, part: CalibrationSession, at: int) -> 
     """FormatError where a column is empty in some parts only."""
     for name in (*SET, *AVERAGED):
         if (getattr(head, name) is None) != (getattr(part, name) is None):
-            rows = say("rows {at} to {at2}", at=at + 1, at2=at + len(part.readings))
+            rows = say("rows {first} to {last}", first=at + 1, last=at + len(part.readings))
             raise FormatError(
                 [Problem(name, say("is stated in some parts of the log and not in {rows}, or only there", rows=rows))]
             )

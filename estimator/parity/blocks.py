@@ -21,7 +21,7 @@ from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.parity.ledger import Blocks, Ledger
-from estimator.parity.reference import Reference
+from estimator.parity.reference import ParityReference
 from estimator.session import Array
 from estimator.wording import counted, few
 
@@ -38,7 +38,7 @@ NOISY = 3.0
 """Variance of the vector within a block, in what the sensors' own noise makes of it, that still is no shaking."""
 
 
-def resting(blocks: Blocks, quiet: Mask, reference: Reference, norm: float | None, rate: float | None) -> Mask:
+def resting(blocks: Blocks, quiet: Mask, reference: ParityReference, norm: float | None, rate: float | None) -> Mask:
     """(B,) bool: whether at rest.
 
     Parameters
@@ -56,7 +56,7 @@ def resting(blocks: Blocks, quiet: Mask, reference: Reference, norm: float | Non
     return np.asarray(quiet & level & calm & (turning(blocks, reference, rate) < SLOW))
 
 
-def turning(blocks: Blocks, reference: Reference, rate: float | None) -> Array:
+def turning(blocks: Blocks, reference: ParityReference, rate: float | None) -> Array:
     """(B,) rate at which the specific force turns from block to block, rad/s; 0 for rows that are averages."""
     turns = np.zeros(len(blocks) + 1)
     if rate is not None:
@@ -95,7 +95,7 @@ FEWEST_GROUPS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Selection:
+class BlockSelection:
     """The blocks that are used. B blocks, G groups."""
 
     blocks: Blocks
@@ -118,7 +118,7 @@ class Selection:
         return int(self.group[-1]) + 1
 
 
-def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float | None = None) -> Selection:
+def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float | None = None) -> BlockSelection:
     """The usable blocks of a recording.
 
     Parameters
@@ -147,7 +147,7 @@ def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float |
         raise ScheduleError([Problem("table", never_still(int(used.sum()), total))])
     left_out = {"saturated": int((~clean).sum()), "moving": int((clean & ~used).sum())}
     chosen = blocks.at(used)
-    return Selection(chosen, grouped(chosen, still[used]), still[used], rest[used], saturated, left_out, total)
+    return BlockSelection(chosen, grouped(chosen, still[used]), still[used], rest[used], saturated, left_out, total)
 
 
 def at_rest(blocks: Blocks, clean: Mask) -> Mask:
@@ -198,8 +198,8 @@ def too_short(total: int, ledger: Ledger) -> str:
         )
     held = counted(total, "block")
     return say(
-        "the recording holds {held} of one second; parity needs {fewest_groups} or more: record longer",
-        held=held,
+        "the recording holds {groups} of one second; parity needs {fewest_groups} or more: record longer",
+        groups=held,
         fewest_groups=FEWEST_GROUPS,
     )
 
@@ -208,9 +208,8 @@ def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
     """Which channels."""
     listed = joined(", ", saturated)
     return say(
-        "{listed} stood at the end of the range in {total} of {total2} blocks; nothing can be "
-        "judged from readings that are cut off: repair the channel, or record with less motion "
-        "or a wider range",
+        "{listed} was at the end of the range in {total} of {total2} blocks; clipped readings cannot be judged: "
+        "repair the channel, or record with less motion or a wider range",
         listed=listed,
         total=total - clean,
         total2=total,
@@ -221,16 +220,16 @@ def never_still(used: int, total: int) -> str:
     """Nothing at rest."""
     return (
         say(
-            "only {used} of {total} blocks is at rest, {fewest_groups} are needed; let the block "
-            "stand still for a while, or judge it in motion if its sensors sit in one point",
+            "only {used} of {total} blocks is at rest, {fewest_groups} are needed; keep the block still for longer, "
+            "or judge it in motion if its sensors are at one point",
             used=used,
             total=total,
             fewest_groups=FEWEST_GROUPS,
         )
         if used == 1
         else say(
-            "only {used} of {total} blocks are at rest, {fewest_groups} are needed; let the block "
-            "stand still for a while, or judge it in motion if its sensors sit in one point",
+            "only {used} of {total} blocks are at rest, {fewest_groups} are needed; keep the block still for longer, "
+            "or judge it in motion if its sensors are at one point",
             used=used,
             total=total,
             fewest_groups=FEWEST_GROUPS,

@@ -7,14 +7,14 @@ import numpy as np
 from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
-from estimator.parity.blocks import ANY, AUTO, MOTIONS, Selection, select
+from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
 from estimator.parity.freed import freed
-from estimator.parity.hypotheses import Evidence
+from estimator.parity.hypotheses import ParityEvidence
 from estimator.parity.ledger import BLOCK, Ledger
 from estimator.parity.motion import gyros_of
 from estimator.parity.nuisance import nuisance_of
 from estimator.parity.reference import reference_of
-from estimator.parity.regression import Change, regress
+from estimator.parity.regression import ParityChange, regress
 from estimator.parity.results import ParityResult
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Site
@@ -70,7 +70,7 @@ class ParityAccumulator:
         bad = np.flatnonzero(~np.isfinite(readings).all(axis=1))
         if len(bad):
             row = self._samples + int(bad[0]) + 1
-            raise ScheduleError([Problem("table", "holds a value that is not a finite number; take the row out", row)])
+            raise ScheduleError([Problem("table", "contains a value that is not a finite number; remove the row", row)])
         self._samples += len(readings)
         self.ledger.add(readings / self._period)
 
@@ -91,12 +91,17 @@ class ParityAccumulator:
         allowed = nuisance_of(
             selection.blocks, selection.rest, self.reference, self._norm, self._rate, arms=motion != ANY
         )
-        still = Evidence(regress(selection, self.reference, self._norm))
+        still = ParityEvidence(regress(selection, self.reference, self._norm))
         change = freed(selection, self.reference, self._norm, allowed)
-        return self._judged(selection, change, Evidence(change), still, false_alarm)
+        return self._judged(selection, change, ParityEvidence(change), still, false_alarm)
 
     def _judged(
-        self, selection: Selection, change: Change, evidence: Evidence, still: Evidence, false_alarm: float
+        self,
+        selection: BlockSelection,
+        change: ParityChange,
+        evidence: ParityEvidence,
+        still: ParityEvidence,
+        false_alarm: float,
     ) -> ParityResult:
         """All that is said of a recording."""
         detected = evidence.detected(false_alarm)
@@ -151,7 +156,7 @@ class ParityAccumulator:
         share = (top.clipped + bottom.clipped) / max(self.ledger.samples, 1)
         return {name: float(share[self.reference.names.index(name)]) for name in names}
 
-    def _middles(self, selection: Selection) -> Array:
+    def _middles(self, selection: BlockSelection) -> Array:
         """(groups,) middle of each group, s since the start, or a number of blocks where no rate is known."""
         share = np.bincount(selection.group)
         middle = np.bincount(selection.group, weights=selection.blocks.first + 0.5) / share

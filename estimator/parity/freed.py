@@ -13,17 +13,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.parity.blocks import Selection
-from estimator.parity.nuisance import Nuisance
-from estimator.parity.reference import Reference
-from estimator.parity.regression import Change, regress
+from estimator.parity.blocks import BlockSelection
+from estimator.parity.nuisance import ParityNuisance
+from estimator.parity.reference import ParityReference
+from estimator.parity.regression import ParityChange, regress
 from estimator.session import Array
 
 ROUNDS = 3
 """Times that σ² is taken anew from what is left: after the third it changes by less than it is known."""
 
 
-def freed(selection: Selection, reference: Reference, norm: float | None, nuisance: Nuisance) -> Change:
+def freed(
+    selection: BlockSelection, reference: ParityReference, norm: float | None, nuisance: ParityNuisance
+) -> ParityChange:
     """Θ and its covariance with the unknowns fitted beside it; arguments as of `regression.regress`."""
     mean = selection.blocks.mean - nuisance.known
     u = np.zeros(len(nuisance.sensor))
@@ -34,13 +36,13 @@ def freed(selection: Selection, reference: Reference, norm: float | None, nuisan
     return replace(change, motion=covariance)
 
 
-def _with(selection: Selection, mean: Array) -> Selection:
+def _with(selection: BlockSelection, mean: Array) -> BlockSelection:
     """The selection with other means (B, m) of the inputs, m/s² (rad/s)."""
     return replace(selection, blocks=replace(selection.blocks, mean=mean))
 
 
 def _fitted(
-    selection: Selection, mean: Array, reference: Reference, nuisance: Nuisance, change: Change
+    selection: BlockSelection, mean: Array, reference: ParityReference, nuisance: ParityNuisance, change: ParityChange
 ) -> tuple[Array, Array, float]:
     """û (k,), the covariance (q, q) that it leaves in Θ, (m/s²)² ((rad/s)²), and how many unknowns the data fitted."""
     V, c, who = reference.parity, nuisance.coefficient, nuisance.sensor
@@ -62,7 +64,7 @@ def _fitted(
     return S @ right, J @ S @ J.T, float(len(who) - np.trace(S))
 
 
-def _variance(change: Change, G: Array) -> float:
+def _variance(change: ParityChange, G: Array) -> float:
     """σ² of an element of p in a block of weight one, (m/s²)² ((rad/s)²), as the noise of Θ has it."""
     s, d = change.theta.shape
     noise = change.noise.reshape(s, d, s, d)

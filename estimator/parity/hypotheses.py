@@ -18,7 +18,7 @@ from scipy.linalg import cho_solve, solve_triangular
 from scipy.stats import f, norm
 
 from estimator.parity.isolation import Rivals, log_tail, shortfall
-from estimator.parity.regression import Change
+from estimator.parity.regression import ParityChange
 from estimator.parity.results import AXIS, BIAS, KINDS, SCALE, SEVERAL, Candidate, SensorParity, Sight
 from estimator.session import Array
 from estimator.significance import critical_chi2, p_value
@@ -35,7 +35,7 @@ UNSEEN = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Hypothesis:
+class ParityHypothesis:
     """One sensor changed in one way. q numbers of parity, k of the change."""
 
     sensor: int
@@ -51,10 +51,10 @@ class Hypothesis:
     p_value: float
 
 
-class Evidence:
+class ParityEvidence:
     """A change, whitened, with all hypotheses tried."""
 
-    def __init__(self, change: Change) -> None:
+    def __init__(self, change: ParityChange) -> None:
         """``seen`` (q,) is Θ in standard errors; ``all`` every sensor × kind."""
         self.change = change
         root = np.linalg.cholesky(change.covariance)
@@ -79,14 +79,14 @@ class Evidence:
         """Of the noise; larger where the reference's error, which is known, is most of the uncertainty."""
         return self.change.dof / max(self.own_noise, 1e-3)
 
-    def _tried(self, sensor: int, kind: str, whitened: Array) -> Hypothesis:
+    def _tried(self, sensor: int, kind: str, whitened: Array) -> ParityHypothesis:
         """Its ratio, and how improbable that is by chance; whitened (q, k), standard errors per unit of the change."""
         U, sizes, _ = np.linalg.svd(whitened, full_matrices=False)
         basis = U[:, sizes > UNSEEN * max(sizes[0], np.finfo(float).tiny)]
         ratio = float(((basis.T @ self.seen) ** 2).sum())
         k = max(basis.shape[1], 1)
         p, score = tail(ratio, k, self.dof)
-        return Hypothesis(sensor, kind, whitened, basis, ratio, score, p)
+        return ParityHypothesis(sensor, kind, whitened, basis, ratio, score, p)
 
     def p_value(self, chi2: float, dof: int) -> float:
         """Probability of χ² this large over ``dof`` numbers, the noise's own uncertainty included."""
@@ -111,7 +111,7 @@ class Evidence:
         best = min(h.p_value for h in self.all) * len(self.all)
         return bool(min(self.p_value(self.chi2, len(self.seen)), best) < false_alarm / 2)
 
-    def candidates(self) -> list[Hypothesis]:
+    def candidates(self) -> list[ParityHypothesis]:
         """Hypotheses no worse than Δ below the best, best first; of a sensor ``several`` only where nothing simpler."""
         ranked = sorted(self.all, key=lambda h: -h.score)
         near = [h for h in ranked if h.score > ranked[0].score - self.margin]
@@ -124,12 +124,12 @@ class Evidence:
         rivals = max(len(self.change.reference.names) - 1, 1)
         return float(norm.isf(WRONG_SENSOR / rivals)) ** 2
 
-    def explained(self, best: Hypothesis) -> bool:
+    def explained(self, best: ParityHypothesis) -> bool:
         """Whether the best hypothesis leaves noise only."""
         remaining = len(self.seen) - best.basis.shape[1]
         return remaining < 1 or self.p_value(self.chi2 - best.ratio, remaining) > WRONG_SENSOR
 
-    def candidate(self, h: Hypothesis) -> Candidate:
+    def candidate(self, h: ParityHypothesis) -> Candidate:
         """A hypothesis with its amplitude."""
         inverse = np.linalg.pinv(h.whitened, rcond=UNSEEN)
         return Candidate(
@@ -141,14 +141,14 @@ class Evidence:
             p_value=h.p_value,
         )
 
-    def sensor(self, index: int, false_alarm: float, isolated: list[Hypothesis]) -> SensorParity:
+    def sensor(self, index: int, false_alarm: float, isolated: list[ParityHypothesis]) -> SensorParity:
         """What the recording shows of one sensor, and could have shown."""
         reference = self.change.reference
         hypotheses = {h.kind: h for h in self.all if h.sensor == index}
         bias, scale, axis = (self.sight(hypotheses[kind], false_alarm, isolated) for kind in (BIAS, SCALE, AXIS))
         return SensorParity(reference.names[index], float(reference.visible[index]), bias, scale, axis)
 
-    def sight(self, h: Hypothesis, false_alarm: float, isolated: list[Hypothesis]) -> Sight:
+    def sight(self, h: ParityHypothesis, false_alarm: float, isolated: list[ParityHypothesis]) -> Sight:
         """Estimate and limits of one kind of change of one sensor, beside the change of an isolated one."""
         nuisance = self.nuisance_basis(h, isolated)
         whitened = h.whitened - nuisance @ (nuisance.T @ h.whitened)
@@ -167,7 +167,7 @@ class Evidence:
             isolable=None if isolable is None else max(isolable, float(detectable)),
         )
 
-    def nuisance_basis(self, h: Hypothesis, isolated: list[Hypothesis]) -> Array:
+    def nuisance_basis(self, h: ParityHypothesis, isolated: list[ParityHypothesis]) -> Array:
         """(q, r) orthonormal, dimensionless: the isolated sensor's change beside a hypothesis, less its own."""
         if not isolated or any(h is hypothesis for hypothesis in isolated):
             return np.empty((len(self.seen), 0))
@@ -178,12 +178,12 @@ class Evidence:
         U, sizes, _ = np.linalg.svd(np.hstack(rest), full_matrices=False)
         return np.asarray(U[:, sizes > UNSEEN * sizes[0]])
 
-    def plain(self, h: Hypothesis) -> float:
+    def plain(self, h: ParityHypothesis) -> float:
         """Size of the sensor's largest signature, any kind scaled to the size of the applied vector."""
         combined = [o for o in self.all if o.sensor == h.sensor and o.kind == SEVERAL]
         return float(np.linalg.svd(combined[0].whitened, compute_uv=False)[0])
 
-    def rivals(self, h: Hypothesis, false_alarm: float) -> Rivals:
+    def rivals(self, h: ParityHypothesis, false_alarm: float) -> Rivals:
         """What a change of the kind of ``h`` must be told from."""
         bases = np.zeros((len(self.all), len(self.seen), 4))
         for basis, tried in zip(bases, self.all, strict=True):

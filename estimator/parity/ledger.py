@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.parity.motion import Gyros
-from estimator.parity.reference import Reference
+from estimator.parity.reference import ParityReference
 from estimator.session import Array
 
 BLOCK = 1.0
@@ -143,7 +143,7 @@ class Rails:
 class Ledger:
     """Takes samples as they come and keeps blocks."""
 
-    def __init__(self, reference: Reference, length: int, most: int = MOST, gyros: Gyros | None = None) -> None:
+    def __init__(self, reference: ParityReference, length: int, most: int = MOST, gyros: Gyros | None = None) -> None:
         """``length`` is the number of samples of a block; 1 for rows that are averages."""
         self.reference = reference
         self.gyros = gyros

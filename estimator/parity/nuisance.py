@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from estimator.parity.blocks import ENOUGH_STILL, Mask, turning
 from estimator.parity.ledger import Blocks, pairs
-from estimator.parity.reference import Reference
+from estimator.parity.reference import ParityReference
 from estimator.session import Array
 
 SIZE = 0.1
@@ -42,7 +42,7 @@ RECTIFICATION = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Nuisance:
+class ParityNuisance:
     """k unknowns u with a standard normal prior each, that move the input of sensor i by Σ u·(signals·c). B blocks."""
 
     signals: Array
@@ -62,8 +62,8 @@ class Nuisance:
 
 
 def nuisance_of(
-    blocks: Blocks, rest: Mask, reference: Reference, norm: float | None, rate: float | None, *, arms: bool = True
-) -> Nuisance:
+    blocks: Blocks, rest: Mask, reference: ParityReference, norm: float | None, rate: float | None, *, arms: bool = True
+) -> ParityNuisance:
     """Of the blocks of a recording.
 
     Parameters
@@ -90,7 +90,7 @@ Part = tuple[Array, Array, NDArray[np.intp]]
 """Signals (B, K), coefficients (k, K) and sensors (k,) of one kind of unknown."""
 
 
-def _joined(parts: list[Part], known: Array) -> Nuisance:
+def _joined(parts: list[Part], known: Array) -> ParityNuisance:
     widths = [part[0].shape[1] for part in parts]
     starts = np.concatenate([[0], np.cumsum(widths)])
     blocks = []
@@ -98,7 +98,7 @@ def _joined(parts: list[Part], known: Array) -> Nuisance:
         wide = np.zeros((len(coefficient), starts[-1]))
         wide[:, start : start + coefficient.shape[1]] = coefficient
         blocks.append(wide)
-    return Nuisance(
+    return ParityNuisance(
         signals=np.hstack([part[0] for part in parts]),
         coefficient=np.vstack(blocks),
         sensor=np.concatenate([part[2] for part in parts]),
@@ -106,14 +106,14 @@ def _joined(parts: list[Part], known: Array) -> Nuisance:
     )
 
 
-def _delays(blocks: Blocks, reference: Reference, rate: float | None) -> Part:
+def _delays(blocks: Blocks, reference: ParityReference, rate: float | None) -> Part:
     """A mean of samples that come one later has lost its last and won the one before its first."""
     m = len(reference.names)
     delay = max(DELAY_SAMPLES, DELAY_TIME * (rate or 0.0))
     return -blocks.gain / blocks.samples[:, None], delay * reference.axes, np.arange(m)
 
 
-def _rectified(blocks: Blocks, reference: Reference) -> Part:
+def _rectified(blocks: Blocks, reference: ParityReference) -> Part:
     x, y, z = reference.axes.T
     along = np.column_stack([x * x, y * y, z * z, 2 * x * y, 2 * x * z, 2 * y * z])
     return blocks.shake, RECTIFICATION * along, np.arange(len(along))
@@ -128,7 +128,7 @@ def arm_matrix(blocks: Blocks, zero: Array, rate: float | None) -> Array:
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-def _lever_arms(blocks: Blocks, rest: Mask, reference: Reference, rate: float | None) -> tuple[list[Part], Array]:
+def _lever_arms(blocks: Blocks, rest: Mask, reference: ParityReference, rate: float | None) -> tuple[list[Part], Array]:
     """Unknowns of lever arms where the rate is known, and what stated positions feel, (B, m) m/s²."""
     m, e = len(reference.names), reference.axes
     zero, doubt = _rate_zero(blocks, rest)
@@ -152,7 +152,7 @@ def _rate_zero(blocks: Blocks, rest: Mask) -> tuple[Array, float]:
     return (zero, REST_ZERO) if np.linalg.norm(zero) < MOST_ZERO else (np.zeros(3), RATE_ZERO)
 
 
-def reach(reference: Reference) -> tuple[Array, Array]:
+def reach(reference: ParityReference) -> tuple[Array, Array]:
     """(m,) how long the lever arms may be, and (m,) one sigma of what is not known of each component, m."""
     if reference.position is None:
         return np.full(len(reference.names), SIZE), np.full(len(reference.names), SIZE)
@@ -160,7 +160,7 @@ def reach(reference: Reference) -> tuple[Array, Array]:
     return length + STATED, STATED + 2 * RATE_ERROR * length
 
 
-def _unseen_turns(blocks: Blocks, rest: Mask, turns: Array, reference: Reference, norm: float) -> Part:
+def _unseen_turns(blocks: Blocks, rest: Mask, turns: Array, reference: ParityReference, norm: float) -> Part:
     """Twice four unknown lengths a sensor, where the rate is not known."""
     m = len(reference.names)
     n = reference.vector(blocks.mean)

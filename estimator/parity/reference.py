@@ -21,7 +21,7 @@ NEEDED = ("scale", "bias", "axis")
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class ParityReference:
     """m calibrated sensors of one kind; d = m − 3."""
 
     names: tuple[str, ...]
@@ -79,7 +79,7 @@ class Reference:
         return shown
 
 
-def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str) -> Reference:
+def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str) -> ParityReference:
     """The calibrated sensors of one kind that a recording shares with its reference.
 
     Raises
@@ -108,8 +108,8 @@ def too_few(used: int, present: int, kind: str) -> str:
     """Why there is no parity."""
     if present >= FEWEST:
         return say(
-            "the reference calibration knows scale, bias and axis of {used} of {present} {kind}s; "
-            "parity needs {fewest}: calibrate the block first in a programme that shows all three",
+            "the reference calibration has scale factor, bias and axis of {used} of {present} {kind}s; parity needs "
+            "{fewest}: first calibrate the block with a programme that observes all three",
             used=used,
             present=present,
             kind=kind,
@@ -124,7 +124,9 @@ def too_few(used: int, present: int, kind: str) -> str:
     )
 
 
-def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Calibration, kind: str) -> Reference:
+def assembled(
+    used: list[tuple[int, Sensor, SensorCalibration]], calibration: Calibration, kind: str
+) -> ParityReference:
     """The arrays of the usable sensors."""
     known = [s for _, _, s in used]
     places = [calibration.names.index(f"{s.name}.{element}") for s in known for element in ELEMENTS]
@@ -136,7 +138,7 @@ def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Ca
         covariance[QUADRATIC::5] = covariance[:, QUADRATIC::5] = 0.0
     axes = np.stack([np.asarray(s.axis) for s in known])
     placed = [s.position for _, s, _ in used if s.position is not None]
-    return Reference(
+    return ParityReference(
         names=tuple(s.name for s in known),
         kind=kind,
         column=np.array([k for k, _, _ in used]),

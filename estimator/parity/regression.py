@@ -21,8 +21,8 @@ import numpy as np
 from estimator.arrays import eigh
 from estimator.errors import Problem, ScheduleError
 from estimator.message import say, say_count
-from estimator.parity.blocks import FEWEST_GROUPS, Selection
-from estimator.parity.reference import Reference
+from estimator.parity.blocks import FEWEST_GROUPS, BlockSelection
+from estimator.parity.reference import ParityReference
 from estimator.session import Array
 
 EXCITED = 0.02
@@ -45,10 +45,10 @@ DRAWN = 6.0
 
 
 @dataclass(frozen=True, eq=False)
-class Change:
+class ParityChange:
     """What parity says of the sensors' change since the reference. d = m − 3, s excited directions, q = s·d."""
 
-    reference: Reference
+    reference: ParityReference
     norm: float
     """g, m/s²; for gyros the root mean square rate."""
     excited: Array
@@ -88,7 +88,9 @@ class Change:
         return np.einsum("sk,d->sdk", z, self.reference.parity[sensor]).reshape(-1, rows.shape[1])
 
 
-def regress(selection: Selection, reference: Reference, norm: float | None, *, spent: float = 0.0) -> Change:
+def regress(
+    selection: BlockSelection, reference: ParityReference, norm: float | None, *, spent: float = 0.0
+) -> ParityChange:
     """Θ and its covariance from the used blocks.
 
     Parameters
@@ -106,7 +108,8 @@ def regress(selection: Selection, reference: Reference, norm: float | None, *, s
         raise ScheduleError(
             [
                 Problem(
-                    "table", say("{held}; {fewest_groups} or more are needed", held=held, fewest_groups=FEWEST_GROUPS)
+                    "table",
+                    say("{groups}; {fewest_groups} or more are needed", groups=held, fewest_groups=FEWEST_GROUPS),
                 )
             ]
         )
@@ -128,7 +131,7 @@ def regress(selection: Selection, reference: Reference, norm: float | None, *, s
     noise = np.einsum("mst,md,me->sdte", omega, reference.parity, reference.parity)
     q = theta.size
     course, about = (group_means(w, part, selection) @ reference.parity.T for part in (p, residual))
-    change = Change(
+    change = ParityChange(
         reference=reference,
         norm=size,
         excited=Q,
@@ -150,7 +153,7 @@ def fitted_too_well(spent: float, p: Array) -> float:
     return 1.0 / (1.0 - min(spent / p.size, 0.5))
 
 
-def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
+def excited(x: Array, w: Array, selection: BlockSelection, groups: int) -> Array:
     """(4, s) orthonormal: the mean of x, and the directions of n that change, in several groups.
 
     x (B, 4) and the weights w (B,) of the blocks are dimensionless.
@@ -168,7 +171,7 @@ def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
     return np.linalg.qr(np.column_stack([mean, seen]))[0]
 
 
-def scores(z: Array, w: Array, residual: Array, selection: Selection, G: Array) -> Array:
+def scores(z: Array, w: Array, residual: Array, selection: BlockSelection, G: Array) -> Array:
     """(groups, s, d) each group's part in the error of Θ, m/s² (rad/s): residuals freed of what the fit took (CR2).
 
     Parameters
@@ -190,14 +193,14 @@ def scores(z: Array, w: Array, residual: Array, selection: Selection, G: Array) 
     return np.linalg.solve(root.T, freed @ score)
 
 
-def group_means(w: Array, rows: Array, selection: Selection) -> Array:
+def group_means(w: Array, rows: Array, selection: BlockSelection) -> Array:
     """(groups, k) means of rows (B, k), unit of the rows; weights w (B,) of the blocks, dimensionless."""
     total = np.zeros((selection.groups, rows.shape[1]))
     np.add.at(total, selection.group, w[:, None] * rows)
     return total / np.bincount(selection.group, weights=w)[:, None]
 
 
-def neighbours(z: Array, w: Array, residual: Array, selection: Selection, G: Array) -> float:
+def neighbours(z: Array, w: Array, residual: Array, selection: BlockSelection, G: Array) -> float:
     """Correlation of the residuals of neighbouring groups, all sensors together, without what the fit adds to it.
 
     The fit alone makes neighbours differ: by the hat matrix of the groups' means, and by 2ρ/groups as any correlation.
@@ -228,7 +231,7 @@ def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
     return (weight * omega + DRAWN * mean) / (weight + DRAWN)
 
 
-def known_covariance(change: Change) -> Array:
+def known_covariance(change: ParityChange) -> Array:
     """(q, q) the reference's own error and the zero's repeatability as they show in Θ, (m/s²)² ((rad/s)²)."""
     reference = change.reference
     shown = reference.signatures(change.norm)

@@ -2,9 +2,9 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from estimator.codec import Document
+from estimator.json_object import Json
 from estimator.session import Array
 
 BIAS, SCALE, AXIS, SEVERAL = "bias", "scale", "axis", "several"
@@ -68,7 +68,7 @@ class SensorParity:
     axis: Sight
 
 
-def _before_motion(document: dict[str, Any]) -> dict[str, Any]:
+def _before_motion(document: Json) -> Json:
     """What documents lack that were written before motion was allowed for: they took it to do nothing."""
     unmoved = {"chi2_unmoved": document["chi2"], "p_value_unmoved": document["p_value"]}
     return {"clipped": {}, "moving": False, "suspects": [], "motion_share": 0.0, **unmoved} | document

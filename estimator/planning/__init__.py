@@ -6,22 +6,22 @@
 """
 
 from estimator.planning.elevation import conditioning, optimal_elevation
-from estimator.planning.missing import Expected, Missing, missing
+from estimator.planning.missing import ExpectedSigma, Missing, missing
 from estimator.planning.orientations import OrientationRank, proposed_orientations, rank_of_orientations
 from estimator.planning.positions import OptimalPositions, optimal_positions
 from estimator.planning.propose import plan
-from estimator.planning.results import Judged, Plan, Request, Sweep, Wanted
+from estimator.planning.results import JudgedParameter, Plan, Request, Sweep, ToleranceSet
 
 __all__ = [
-    "Expected",
-    "Judged",
+    "ExpectedSigma",
+    "JudgedParameter",
     "Missing",
     "OptimalPositions",
     "OrientationRank",
     "Plan",
     "Request",
     "Sweep",
-    "Wanted",
+    "ToleranceSet",
     "conditioning",
     "missing",
     "optimal_elevation",

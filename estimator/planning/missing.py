@@ -32,7 +32,7 @@ SETTINGS = Form(
 
 
 @dataclass(frozen=True)
-class Expected(Document, order=("sensor", "parameter", "so_far", "complete"), keys={"so_far": "sigma"}):
+class ExpectedSigma(Document, order=("sensor", "parameter", "so_far", "complete"), keys={"so_far": "sigma"}):
     """One parameter of one sensor; sigmas are total, relative for scale, SI; None where it is not observed."""
 
     sensor: str
@@ -63,7 +63,7 @@ class Missing(
     """(k, 3) where up should point, unit vectors, block axes; none on a stand."""
     unseen: tuple[str, ...]
     """What the positions so far leave open."""
-    expected: tuple["Expected", ...] = ()
+    expected: tuple["ExpectedSigma", ...] = ()
     """How well parameters are known so far and would be; on a stand only."""
 
     @property
@@ -113,7 +113,7 @@ def steps_of(beta: Array, flipped: Array) -> int:
     counts = np.concatenate(gaps)
     count = 2 * np.pi / float(counts.min()) if len(counts) else np.inf
     if not count <= MOST or abs(count - round(count)) > SAME:
-        text = "the steps so far are no equal parts of a turn; say how many positions a run is to have"
+        text = "the steps so far are not equal parts of a turn; state the number of positions per run"
         raise ScheduleError([Problem("beta_deg", text)])
     return round(count)
 
@@ -127,16 +127,16 @@ def _unset(done: Array, every: Array, steps: int, flipped: bool) -> list[tuple[s
     return [(RUNS[flipped], float(beta)) for beta, far in zip(wanted, nearest, strict=True) if far > SAME * step]
 
 
-def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple[Expected, ...]:
+def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple[ExpectedSigma, ...]:
     """Sensor by sensor; both (m, 4) SI, relative for scale."""
     return tuple(
-        Expected(sensor.name, sensor.kind, parameter, finite(now), finite(then))
+        ExpectedSigma(sensor.name, sensor.kind, parameter, finite(now), finite(then))
         for sensor, current, whole in zip(rows.sensors, so_far, complete, strict=True)
         for parameter, now, then in zip(PARAMETERS, current, whole, strict=True)
     )
 
 
-def _open(expected: tuple[Expected, ...]) -> tuple[str, ...]:
+def _open(expected: tuple[ExpectedSigma, ...]) -> tuple[str, ...]:
     """``A1 scale``: what is not observed yet."""
     return tuple(
         say("{sensor} {parameter}", sensor=estimate.sensor, parameter=estimate.parameter)

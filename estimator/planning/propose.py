@@ -28,7 +28,7 @@ from estimator.planning.expected import (
     planned,
 )
 from estimator.planning.positions import optimal_positions
-from estimator.planning.results import Judged, Plan, Request
+from estimator.planning.results import JudgedParameter, Plan, Request
 from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
@@ -166,12 +166,12 @@ def by_formula(session: CalibrationSession, N: int) -> float:
     return optimal_elevation(errors, N)
 
 
-def judged(session: CalibrationSession, request: Request) -> tuple[Judged, ...]:
+def judged(session: CalibrationSession, request: Request) -> tuple[JudgedParameter, ...]:
     """Every parameter of every sensor against its tolerance."""
     total, steady = expected_sigmas(session)
     T = tolerances(session, request)
     return tuple(
-        Judged(
+        JudgedParameter(
             sensor.name,
             sensor.kind,
             parameter,

@@ -12,7 +12,7 @@ from estimator.session import Array, CalibrationSession
 
 
 @dataclass(frozen=True)
-class Wanted:
+class ToleranceSet:
     """Tolerances that a parameter is to be judged against; None where it is not judged."""
 
     scale: float | None = None
@@ -40,8 +40,8 @@ class Request:
     """N of each run."""
     runs: tuple[bool, ...] = (False, True)
     """True for flipped."""
-    wanted: Wanted = field(default_factory=Wanted)
-    gyro_wanted: Wanted | None = None
+    wanted: ToleranceSet = field(default_factory=ToleranceSet)
+    gyro_wanted: ToleranceSet | None = None
     """For the gyros of a mixed block; None: the same as ``wanted``."""
     time_per_position: float = 120.0
     """s."""
@@ -54,7 +54,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedParameter:
     """One expected parameter of one sensor."""
 
     sensor: str
@@ -112,7 +112,7 @@ class Plan(
     conditioning: float
     expected: Calibration
     """The calibration that the session would give: sigmas, what is observable, what is known only together."""
-    judged: tuple[Judged, ...]
+    judged: tuple[JudgedParameter, ...]
     limits: tuple[Limit, ...]
     """What the session would detect of every cause and which it cannot see; none beyond thousands of readings."""
     optimal: OptimalPositions

@@ -5,6 +5,6 @@
 
 from estimator.readiness.assess import readiness
 from estimator.readiness.question import Allowed, Question
-from estimator.readiness.results import Disturbance, Outlook, Readiness, State
+from estimator.readiness.results import Disturbance, DriftOutlook, Readiness, ReadinessState
 
-__all__ = ["Allowed", "Disturbance", "Outlook", "Question", "Readiness", "State", "readiness"]
+__all__ = ["Allowed", "Disturbance", "DriftOutlook", "Question", "Readiness", "ReadinessState", "readiness"]

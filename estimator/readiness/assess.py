@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.readiness.course import WIDE, Course, courses, first_scatter, needed, wander
+from estimator.readiness.course import WIDE, SettlingCourse, courses, first_scatter, needed, wander
 from estimator.readiness.creep import turn
-from estimator.readiness.faults import Fault, content_faults, force_of, is_spatial, readable
-from estimator.readiness.forecast import LIKELY, Drawn, departures, drawn, wait
+from estimator.readiness.faults import RecordFault, content_faults, force_of, is_spatial, readable
+from estimator.readiness.forecast import LIKELY, DrawnDrift, departures, drawn, wait
 from estimator.readiness.question import Question
-from estimator.readiness.results import Disturbance, Kind, Outlook, Readiness, State
+from estimator.readiness.results import Disturbance, DisturbanceKind, DriftOutlook, Readiness, ReadinessState
 from estimator.readiness.series import Series
 from estimator.readiness.stillness import clipped, first_and_last, shaking
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
@@ -66,7 +66,7 @@ def _judged(
     session: CalibrationSession,
     question: Question,
     limited: tuple[Series, Array, list[str]],
-    faults: tuple[Fault, ...],
+    faults: tuple[RecordFault, ...],
     rng: np.random.Generator,
 ) -> Readiness:
     series, allowed, limits = limited
@@ -88,7 +88,7 @@ def _judged(
     thermal = _thermal(session, rest, question, rng)
     base = Readiness(
         unit=session.unit,
-        state=State.TOO_EARLY,
+        state=ReadinessState.TOO_EARLY,
         outlooks=outlooks,
         disturbances=disturbances,
         faults=faults,
@@ -126,15 +126,15 @@ def _outlook(
     i: int,
     session: CalibrationSession,
     question: Question,
-    drift: tuple[Course, Drawn, int, float, str],
+    drift: tuple[SettlingCourse, DrawnDrift, int, float, str],
     rng: np.random.Generator,
-) -> Outlook:
+) -> DriftOutlook:
     course, drawing, means, allowed, limit = drift
     far = departures(drawing, question.duration, rng)
     chance = float(np.mean(far > allowed))
     is_warm, short = chance <= 1 - LIKELY, question.duration / REACH - course.span
     length = None if is_warm else needed(course, means, question.duration, allowed)
-    return Outlook(
+    return DriftOutlook(
         name=session.sensors[i].name,
         kind=session.sensors[i].kind,
         expected=float(np.median(far)),
@@ -148,7 +148,7 @@ def _outlook(
     )
 
 
-def _shares(outlook: Outlook, session: CalibrationSession, series: Series, question: Question) -> Outlook:
+def _shares(outlook: DriftOutlook, session: CalibrationSession, series: Series, question: Question) -> DriftOutlook:
     """With the bound as shares of the tolerances."""
     i = [sensor.name for sensor in session.sensors].index(outlook.name)
     tolerance = question.tolerances[outlook.kind]
@@ -164,7 +164,7 @@ def _shares(outlook: Outlook, session: CalibrationSession, series: Series, quest
 
 def _thermal(
     session: CalibrationSession, series: Series, question: Question, rng: np.random.Generator
-) -> Outlook | None:
+) -> DriftOutlook | None:
     """What the thermometer says of the zeros, by the coefficient that is stated."""
     kind = ACCELEROMETER if any(s.kind == ACCELEROMETER for s in session.sensors) else session.sensors[0].kind
     coefficient, tolerance = (question.coefficient or {}).get(kind), question.tolerances.get(kind)
@@ -181,7 +181,7 @@ def _thermal(
 
 
 def _creep(
-    session: CalibrationSession, series: Series, question: Question, drawings: list[Drawn], allowed: Array
+    session: CalibrationSession, series: Series, question: Question, drawings: list[DrawnDrift], allowed: Array
 ) -> Disturbance | None:
     """A turn that explains what all accelerometers are going to do."""
     felt = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
@@ -193,7 +193,7 @@ def _creep(
     if size is None:
         return None
     names = tuple(session.sensors[i].name for i in felt)
-    return Disturbance(Kind.CREEP, names, float(series.edges[0, 0]), float(series.edges[-1, 1]), size)
+    return Disturbance(DisturbanceKind.CREEP, names, float(series.edges[0, 0]), float(series.edges[-1, 1]), size)
 
 
 def _stated(base: Readiness, creep: Disturbance | None) -> Readiness:
@@ -201,21 +201,33 @@ def _stated(base: Readiness, creep: Disturbance | None) -> Readiness:
     judged = base.outlooks if base.temperature is None else (*base.outlooks, base.temperature)
     late = 1 - (1 - LIKELY) / max(len(judged), 1)
     if any(not item.passed for item in base.disturbances):
-        return replace(base, state=State.NOT_STILL)
+        return replace(base, state=ReadinessState.NOT_STILL)
     if any(item.chance >= late for item in judged):
         if creep is None:
-            return replace(base, state=State.NOT_WARM)
-        return replace(base, state=State.NOT_STILL, disturbances=(*base.disturbances, creep))
+            return replace(base, state=ReadinessState.NOT_WARM)
+        return replace(base, state=ReadinessState.NOT_STILL, disturbances=(*base.disturbances, creep))
     long_enough = base.recorded - base.judged_from >= base.duration / REACH
     is_warm = all(item.chance <= 1 - LIKELY for item in judged)
-    return replace(base, state=State.READY if is_warm and long_enough else State.TOO_EARLY)
+    return replace(base, state=ReadinessState.READY if is_warm and long_enough else ReadinessState.TOO_EARLY)
 
 
-def _unread(session: CalibrationSession, question: Question, faults: tuple[Fault, ...]) -> Readiness:
+def _unread(session: CalibrationSession, question: Question, faults: tuple[RecordFault, ...]) -> Readiness:
     """Nothing can be told."""
     names = tuple(sensor.name for sensor in session.sensors)
     none = np.zeros((0, len(names)))
-    fields = (session.unit, State.CANNOT_TELL, (), (), faults, question.duration, 0.0, 0.0, np.zeros(0), none, names)
+    fields = (
+        session.unit,
+        ReadinessState.CANNOT_TELL,
+        (),
+        (),
+        faults,
+        question.duration,
+        0.0,
+        0.0,
+        np.zeros(0),
+        none,
+        names,
+    )
     return Readiness(*fields)
 
 

@@ -42,7 +42,7 @@ but that the future is no wholly other thing."""
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class SettlingCourse:
     """The posterior of one sensor, on C cells of ρ and τ."""
 
     span: float
@@ -63,7 +63,7 @@ class Course:
     """Degrees of freedom of it."""
 
 
-def courses(time: Array, value: Array, place: Array, count: Array, wide: Array) -> tuple[Course, ...]:
+def courses(time: Array, value: Array, place: Array, count: Array, wide: Array) -> tuple[SettlingCourse, ...]:
     """Of every column of ``value`` (n, m), m/s² or rad/s, at ``time`` (n,), s; ``place`` (n,) numbers of positions,
     ``count`` (n,) samples; ``wide`` (m,) one sigma of the priors of d and a, m/s² or rad/s."""
     t = time - time[0]
@@ -83,7 +83,7 @@ def courses(time: Array, value: Array, place: Array, count: Array, wide: Array) 
     mean, root, scatter = (np.concatenate([getattr(p, name) for p in pieces]) for name in ("mean", "root", "scatter"))
     walk, tau = np.repeat(WALKS, len(SETTLINGS)), np.tile(TAUS[SETTLINGS], (len(WALKS), 1))
     return tuple(
-        Course(span, weight[:, i], walk, tau, mean[:, i], root[:, i], scatter[:, i], freedom)
+        SettlingCourse(span, weight[:, i], walk, tau, mean[:, i], root[:, i], scatter[:, i], freedom)
         for i in range(value.shape[1])
     )
 
@@ -153,7 +153,7 @@ CELLS = 5
 """Likeliest cells, whose median length is stated."""
 
 
-def needed(course: Course, means: int, duration: float, allowed: float) -> float | None:
+def needed(course: SettlingCourse, means: int, duration: float, allowed: float) -> float | None:
     """s more until the forecast over ``duration`` s is good to ``allowed``, m/s² or rad/s; None where none will do.
 
     Foreseen for as many ``means`` as now, each over more samples.
@@ -166,7 +166,7 @@ def needed(course: Course, means: int, duration: float, allowed: float) -> float
     return length if np.isfinite(length) else None
 
 
-def _enough(course: Course, cell: int, means: int, duration: float, allowed: float) -> float:
+def _enough(course: SettlingCourse, cell: int, means: int, duration: float, allowed: float) -> float:
     """s more under one cell; infinite where none will do."""
     for growth in GROWTH[GROWTH * course.span <= LONGEST]:
         if MARGIN * np.sqrt(_variance(course, cell, means, float(growth), duration)) <= allowed:
@@ -174,13 +174,13 @@ def _enough(course: Course, cell: int, means: int, duration: float, allowed: flo
     return np.inf
 
 
-def wander(course: Course, duration: float) -> float:
+def wander(course: SettlingCourse, duration: float) -> float:
     """One sigma of the walk over ``duration`` s, m/s² or rad/s."""
     variance = course.scatter / max(course.freedom - 2, 1) * course.walk * duration / course.span
     return float(np.sqrt(course.weight @ variance))
 
 
-def _variance(course: Course, cell: int, means: int, growth: float, duration: float) -> float:
+def _variance(course: SettlingCourse, cell: int, means: int, growth: float, duration: float) -> float:
     """Of the forecast, (m/s²)² or (rad/s)², by a record ``growth`` times as long."""
     span, tau, walk = growth * course.span, course.tau[cell], course.walk[cell] * growth**2
     sigma2 = course.scatter[cell] / course.freedom / growth

@@ -45,7 +45,7 @@ HARMLESS = frozenset({FaultKind.GAP, FaultKind.ALONE})
 
 
 @dataclass(frozen=True)
-class Fault(Document, order=("kind", "sensors", "amount", "blocks")):
+class RecordFault(Document, order=("kind", "sensors", "amount", "blocks")):
     """One thing wrong with a record."""
 
     kind: FaultKind
@@ -59,24 +59,24 @@ class Fault(Document, order=("kind", "sensors", "amount", "blocks")):
         return self.kind not in HARMLESS
 
 
-def clock_faults(session: CalibrationSession) -> tuple[Fault, ...]:
+def clock_faults(session: CalibrationSession) -> tuple[RecordFault, ...]:
     """Whether the record says when its rows were read."""
     time = times_of(session)
     if not np.isfinite(session.readings).all():
-        return (Fault(FaultKind.NOT_FINITE, amount=1 + float(np.argwhere(~np.isfinite(session.readings))[0, 0])),)
+        return (RecordFault(FaultKind.NOT_FINITE, amount=1 + float(np.argwhere(~np.isfinite(session.readings))[0, 0])),)
     if len(session.readings) < FEWEST:
-        return (Fault(FaultKind.FEW, amount=len(session.readings)),)
+        return (RecordFault(FaultKind.FEW, amount=len(session.readings)),)
     if time is None:
-        return (Fault(FaultKind.NO_TIME),)
+        return (RecordFault(FaultKind.NO_TIME),)
     steps = np.diff(time)
     if (steps < 0).any():
-        return (Fault(FaultKind.CLOCK_BACK, amount=float(np.argmax(steps < 0)) + 2),)
+        return (RecordFault(FaultKind.CLOCK_BACK, amount=float(np.argmax(steps < 0)) + 2),)
     if np.median(steps) <= 0:
-        return (Fault(FaultKind.CLOCK_STANDS),)
+        return (RecordFault(FaultKind.CLOCK_STANDS),)
     return ()
 
 
-def content_faults(session: CalibrationSession, series: Series, allowed: Array) -> tuple[Fault, ...]:
+def content_faults(session: CalibrationSession, series: Series, allowed: Array) -> tuple[RecordFault, ...]:
     """Whether its readings can be those of a resting block; ``allowed`` (m,) drift, m/s² or rad/s."""
     names = tuple(sensor.name for sensor in session.sensors)
     codes = [np.unique(channel) for channel in at_input(session).T]
@@ -86,20 +86,22 @@ def content_faults(session: CalibrationSession, series: Series, allowed: Array) 
         for name, levels, most in zip(names, codes, allowed, strict=True)
         if 1 < len(levels) <= CODES and np.diff(levels).max() > most
     )
-    faults = [Fault(kind, levels) for kind, levels in ((FaultKind.STUCK, stuck), (FaultKind.COARSE, coarse)) if levels]
+    faults = [
+        RecordFault(kind, levels) for kind, levels in ((FaultKind.STUCK, stuck), (FaultKind.COARSE, coarse)) if levels
+    ]
     if not np.isfinite(allowed).any():
-        faults.append(Fault(FaultKind.NOT_JUDGED))
+        faults.append(RecordFault(FaultKind.NOT_JUDGED))
     faults += _rest_faults(session, series)
     informed = len(series.time) - len(np.unique(series.place))
     if informed < FEWEST - 1:
         kind = FaultKind.POSITIONS if len(np.unique(series.place)) > 1 else FaultKind.FEW
         faults.append(
-            Fault(kind, amount=len(np.unique(series.place)) if kind is FaultKind.POSITIONS else len(series.time))
+            RecordFault(kind, amount=len(np.unique(series.place)) if kind is FaultKind.POSITIONS else len(series.time))
         )
     return (*faults, *_notes(session, series))
 
 
-def _rest_faults(session: CalibrationSession, series: Series) -> list[Fault]:
+def _rest_faults(session: CalibrationSession, series: Series) -> list[RecordFault]:
     felt = np.array([sensor.kind == ACCELEROMETER for sensor in session.sensors])
     faults = []
     if felt.any():
@@ -107,19 +109,19 @@ def _rest_faults(session: CalibrationSession, series: Series) -> list[Fault]:
         magnitude = float(np.linalg.norm(force) if np.ndim(force) == 1 and len(force) == 3 else force.max())
         least = RESTING[0] if is_spatial(session) else 0.0
         if not least <= magnitude / STANDARD_GRAVITY <= RESTING[1]:
-            faults.append(Fault(FaultKind.UNITS, _named(session, felt), magnitude / STANDARD_GRAVITY))
+            faults.append(RecordFault(FaultKind.UNITS, _named(session, felt), magnitude / STANDARD_GRAVITY))
     rates = np.abs(np.median(series.value[:, ~felt], axis=0))
     if (rates > TURNING).any():
-        faults.append(Fault(FaultKind.TURNING, _named(session, ~felt), float(rates.max())))
+        faults.append(RecordFault(FaultKind.TURNING, _named(session, ~felt), float(rates.max())))
     return faults
 
 
-def _notes(session: CalibrationSession, series: Series) -> list[Fault]:
-    faults = [Fault(FaultKind.ALONE, (session.sensors[0].name,))] if len(session.sensors) == 1 else []
+def _notes(session: CalibrationSession, series: Series) -> list[RecordFault]:
+    faults = [RecordFault(FaultKind.ALONE, (session.sensors[0].name,))] if len(session.sensors) == 1 else []
     pauses = series.edges[1:, 0] - series.edges[:-1, 1]
     usual = np.median(np.diff(series.time))
     if len(pauses) and pauses.max() > GAP * usual:
-        faults.append(Fault(FaultKind.GAP, amount=float(pauses.max())))
+        faults.append(RecordFault(FaultKind.GAP, amount=float(pauses.max())))
     return faults
 
 
@@ -144,7 +146,7 @@ def force_of(session: CalibrationSession, series: Series) -> Array:
     return np.asarray(np.linalg.lstsq(axes, value, rcond=None)[0])
 
 
-def readable(session: CalibrationSession) -> tuple[Series | None, tuple[Fault, ...]]:
+def readable(session: CalibrationSession) -> tuple[Series | None, tuple[RecordFault, ...]]:
     """The means of a record, or why there are none."""
     faults = clock_faults(session)
     time = times_of(session)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.readiness.course import Course
+from estimator.readiness.course import SettlingCourse
 from estimator.session import Array
 
 DRAWS = 2000
@@ -18,7 +18,7 @@ LIKELY = 0.95
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class DrawnDrift:
     """N courses of one sensor."""
 
     span: float
@@ -40,23 +40,23 @@ class Drawn:
         return np.asarray(self.drift[:, None] * s / self.span + sum(settles))
 
 
-def drawn(course: Course, rng: np.random.Generator) -> Drawn:
+def drawn(course: SettlingCourse, rng: np.random.Generator) -> DrawnDrift:
     """Courses as likely as the record leaves them."""
     cell = rng.choice(len(course.weight), DRAWS, p=course.weight)
     sigma = np.sqrt(course.scatter[cell] / rng.chisquare(course.freedom, DRAWS))
     normal = rng.standard_normal((DRAWS, 3))
     both = course.mean[cell] + sigma[:, None] * np.einsum("nij,nj->ni", course.root[cell], normal)
-    return Drawn(course.span, both[:, 0], both[:, 1:], course.tau[cell], sigma * np.sqrt(course.walk[cell]))
+    return DrawnDrift(course.span, both[:, 0], both[:, 1:], course.tau[cell], sigma * np.sqrt(course.walk[cell]))
 
 
-def departures(courses: Drawn, duration: float, rng: np.random.Generator) -> Array:
+def departures(courses: DrawnDrift, duration: float, rng: np.random.Generator) -> Array:
     """(N,) largest departure from the present value during the programme, the walk included, m/s² or rad/s."""
     step = courses.walk * np.sqrt(duration / STEPS / courses.span)
     walks = np.cumsum(rng.standard_normal((len(step), STEPS)), axis=1) * step[:, None]
     return np.asarray(np.abs(courses.to_come(0.0, duration) + walks).max(axis=1))
 
 
-def wait(courses: Drawn, duration: float, allowed: float) -> tuple[float, float, float] | None:
+def wait(courses: DrawnDrift, duration: float, allowed: float) -> tuple[float, float, float] | None:
     """s until the course without walk stays within ``allowed``: 5, 50, 95 %; None where most never do."""
     until = np.full(len(courses.drift), np.inf)
     for after in WAITS[::-1]:

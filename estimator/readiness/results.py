@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from estimator.codec import Document
-from estimator.readiness.faults import Fault
+from estimator.readiness.faults import RecordFault
 from estimator.session import Array
 
 
-class State(StrEnum):
+class ReadinessState(StrEnum):
     """The answer."""
 
     READY = "ready"
@@ -18,7 +18,7 @@ class State(StrEnum):
     CANNOT_TELL = "cannot-tell"
 
 
-class Kind(StrEnum):
+class DisturbanceKind(StrEnum):
     """What disturbs."""
 
     STEP = "step"
@@ -37,7 +37,7 @@ class Kind(StrEnum):
 class Disturbance(Document, keys={"start": "start_s", "stop": "stop_s"}):
     """One reason why the block is not still."""
 
-    kind: Kind
+    kind: DisturbanceKind
     sensors: tuple[str, ...]
     start: float
     """s since the record's first row."""
@@ -50,7 +50,7 @@ class Disturbance(Document, keys={"start": "start_s", "stop": "stop_s"}):
 
 
 @dataclass(frozen=True)
-class Outlook(
+class DriftOutlook(
     Document,
     order=(
         "name", "expected", "bound", "allowed", "limit", "chance", "bias_share", "scale_share", "wander", "wait",
@@ -101,10 +101,10 @@ class Readiness(
     """The answer with its reasons."""
 
     unit: str
-    state: State
-    outlooks: tuple[Outlook, ...]
+    state: ReadinessState
+    outlooks: tuple[DriftOutlook, ...]
     disturbances: tuple[Disturbance, ...]
-    faults: tuple[Fault, ...]
+    faults: tuple[RecordFault, ...]
     """Why nothing can be told, or what is odd about the record."""
     duration: float
     """s of the planned programme."""
@@ -117,7 +117,7 @@ class Readiness(
     change: Array
     """(n, m) their change since the first of them, m/s² or rad/s, position by position."""
     names: tuple[str, ...]
-    temperature: Outlook | None = None
+    temperature: DriftOutlook | None = None
     """Of the zeros, by the thermometer and the coefficient that was stated; None without either."""
     warmed: float | None = None
     """K that the thermometer rose over what was judged."""
@@ -125,25 +125,25 @@ class Readiness(
     @property
     def ready(self) -> bool:
         """Whether the measurement may begin."""
-        return self.state is State.READY
+        return self.state is ReadinessState.READY
 
     @property
     def wait(self) -> tuple[float, float, float] | None:
         """s more to wait, 5 %, 50 % and 95 %: of whoever needs longest; None where waiting is not the answer."""
         waits = [outlook.wait for outlook in self._judged if outlook.wait is not None]
-        return max(waits, key=lambda wait: wait[1]) if waits and self.state is State.NOT_WARM else None
+        return max(waits, key=lambda wait: wait[1]) if waits and self.state is ReadinessState.NOT_WARM else None
 
     @property
     def needed(self) -> float | None:
         """s more of record until it can be told; None where it can, or no length would do."""
         lengths = [outlook.needed for outlook in self._judged if outlook.needed is not None]
-        return max(lengths) if lengths and self.state is State.TOO_EARLY else None
+        return max(lengths) if lengths and self.state is ReadinessState.TOO_EARLY else None
 
     @property
-    def worst(self) -> Outlook | None:
+    def worst(self) -> DriftOutlook | None:
         """Whose drift takes most of what is allowed."""
         return max(self._judged, key=lambda outlook: outlook.bound / outlook.allowed, default=None)
 
     @property
-    def _judged(self) -> tuple[Outlook, ...]:
+    def _judged(self) -> tuple[DriftOutlook, ...]:
         return self.outlooks if self.temperature is None else (*self.outlooks, self.temperature)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from estimator.least_squares import least_squares
-from estimator.readiness.results import Disturbance, Kind
+from estimator.readiness.results import Disturbance, DisturbanceKind
 from estimator.readiness.series import Series
 from estimator.session import Array
 
@@ -88,7 +88,9 @@ def _step(
     k = int(middles[rows][peak])
     moved = tuple(name for name, size in zip(names, sizes.max(axis=0), strict=True) if size > 0)
     start, stop = series.edges[k - 1, 0], series.edges[k, 1]
-    return min(k + 1, len(series.time)), Disturbance(Kind.STEP, moved, float(start), float(stop), float(sizes.max()))
+    return min(k + 1, len(series.time)), Disturbance(
+        DisturbanceKind.STEP, moved, float(start), float(stop), float(sizes.max())
+    )
 
 
 def _bursts(series: Series, names: tuple[str, ...]) -> list[tuple[int, Disturbance]]:
@@ -105,7 +107,7 @@ def _bursts(series: Series, names: tuple[str, ...]) -> list[tuple[int, Disturban
         shaken = tuple(name for name, is_shaken in zip(names, far[start:stop].any(axis=0), strict=True) if is_shaken)
         size = float(np.sqrt(np.where(far[start:stop], series.inner[start:stop], 0.0).max()))
         first, last = float(series.edges[start, 0]), float(series.edges[stop - 1, 1])
-        bursts.append((stop, Disturbance(Kind.BURST, shaken, first, last, size)))
+        bursts.append((stop, Disturbance(DisturbanceKind.BURST, shaken, first, last, size)))
     return bursts
 
 
@@ -126,7 +128,7 @@ def shaking(series: Series, names: tuple[str, ...], quadratic: Array, allowed: A
         return []
     size = float(np.sqrt(level[far].max()))
     shaken = tuple(name for name, is_shaken in zip(names, far, strict=True) if is_shaken)
-    return [Disturbance(Kind.SHAKING, shaken, float(series.edges[0, 0]), float(series.edges[-1, 1]), size)]
+    return [Disturbance(DisturbanceKind.SHAKING, shaken, float(series.edges[0, 0]), float(series.edges[-1, 1]), size)]
 
 
 def clipped(readings: Array, names: tuple[str, ...], until: float) -> list[Disturbance]:
@@ -136,7 +138,7 @@ def clipped(readings: Array, names: tuple[str, ...], until: float) -> list[Distu
         ends = [channel == end for end in (channel.min(), channel.max())]
         share = max(_in_rows(end) for end in ends)
         if share > CLIPPED and len(np.unique(channel)) > IN_A_ROW:
-            disturbances.append(Disturbance(Kind.CLIPPED, (name,), 0.0, until, share))
+            disturbances.append(Disturbance(DisturbanceKind.CLIPPED, (name,), 0.0, until, share))
     return disturbances
 
 

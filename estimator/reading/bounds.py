@@ -92,6 +92,11 @@ BOUNDS = (
         "16 turns a second; the largest ring lasers have 1e-13",
     ),
     Bound("sensors[].position_m", Interval(-100, 100, "m"), "no block is larger, nor measured from farther away"),
+    Bound(
+        "time_since_power_on_s",
+        Interval(0, 1.6e7, "s"),
+        "half a year: what is on for longer has settled, and its power-on is a slip",
+    ),
     Bound("count_time_s", Interval(1e-9, 1e6, "s"), "from a nanosecond to twelve days"),
     Bound("sample_rate_hz", Interval(1e-6, 1e9, "Hz"), "from a sample in twelve days to a gigahertz"),
     Bound("direction_sigma_deg", Interval(1e-9, 180, "degrees"), "more than half a turn states nothing"),

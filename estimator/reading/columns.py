@@ -63,7 +63,7 @@ class Columns:
             return np.array([index[cell] for cell in cells], dtype=np.int64)  # type: ignore[index]
         except (KeyError, TypeError):
             bad = [j for j, cell in enumerate(cells) if not (isinstance(cell, str) and cell in index)]
-            message = say("give {allowed}", allowed=joined(" or ", allowed))
+            message = say("give {columns}", columns=joined(" or ", allowed))
             self.problems.add_rows(
                 name,
                 bad,

@@ -37,7 +37,7 @@ def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict
         metadata = sidecar
     document = parse_json(metadata, problems)
     if "table" in document:
-        problems.add("table", "stands in the metadata of a CSV file; keep the readings in the CSV rows only")
+        problems.add("table", "is in the metadata of a CSV file; keep the readings in the CSV rows only")
     problems.lines_before_table = len(leading) + 1
     return document | {"table": _parse_table(text, sum(len(line) + 1 for line in leading), problems)}
 
@@ -99,7 +99,9 @@ def _rows(lines: list[str], separator: str, problems: Problems) -> list[list[str
     except csv.Error as error:
         raise problems.fail("file", say("is not a readable CSV table: {error}", error=error)) from error
     if len(rows) != len(lines) or lines[-1].count('"') % 2:
-        raise problems.fail("table", "a cell holds a line break, or a quote is not closed; keep each row in one line")
+        raise problems.fail(
+            "table", "a cell contains a line break, or a quote is not closed; keep each row on one line"
+        )
     return rows
 
 
@@ -121,9 +123,7 @@ def named_columns(header: list[str], columns: list[Column], problems: Problems) 
     table: dict[str, Column] = {}
     for number, (name, cells) in enumerate(zip(map(str.strip, header), columns, strict=True), start=1):
         if name in table:
-            problems.add(
-                name, say("is the name of two columns of the header, {name}; names must differ", name=shown(name))
-            )
+            problems.add(name, say("two columns of the header are named {name}; names must differ", name=shown(name)))
         elif name:
             table[name] = cells
         elif any(cell is not None for cell in cells):

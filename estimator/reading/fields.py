@@ -50,7 +50,7 @@ class Fields:
         if text == "":
             self.add(key, say("empty; {advice}", advice=advice))
         elif text is not None and not text.isprintable():
-            self.add(key, "holds line breaks or characters that cannot be shown; write it in one plain line")
+            self.add(key, "contains line breaks or non-printable characters; write it as one plain line")
         return text or ""
 
     def optional_text(self, key: str) -> str | None:
@@ -63,7 +63,7 @@ class Fields:
         if isinstance(value, str) and value in allowed:
             return value
         problem = say("{value} is unknown", value=shown(value)) if self.has(key) else "missing"
-        self.add(key, say("{problem}; give one of {allowed}", problem=problem, allowed=joined(", ", allowed)))
+        self.add(key, say("{problem}; give one of {values}", problem=problem, values=joined(", ", allowed)))
         return allowed[0]
 
     def number(self, key: str, within: Interval, advice: str) -> float:

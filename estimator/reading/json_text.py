@@ -33,13 +33,15 @@ def parse_json(text: str, problems: Problems) -> dict[str, object]:
             "file", say("is not valid JSON at {place}: {msg}; it may be cut short", place=place, msg=error.msg)
         ) from error
     except RecursionError as error:
-        raise problems.fail("file", "is nested far deeper than any session; check what was written") from error
+        raise problems.fail("file", "is nested far deeper than any session; check the file") from error
     except ValueError as error:
-        raise problems.fail("file", "holds a number of thousands of digits; write numbers as 0.123 or 1e-6") from error
+        raise problems.fail(
+            "file", "contains a number of thousands of digits; write numbers as 0.123 or 1e-6"
+        ) from error
     for key in repeated:
         problems.add(key, "is given more than once in one object; keep one")
     if not isinstance(document, dict):
-        raise problems.fail("file", "must hold one JSON object in braces, with the key format")
+        raise problems.fail("file", "must contain one JSON object in braces, with the key format")
     return document
 
 
@@ -57,12 +59,12 @@ def _check_extent(text: str, problems: Problems) -> None:
             depth, lists = depth + 1, lists + 1
             if depth > most.nesting:
                 raise problems.fail(
-                    "file", say("is nested deeper than {nesting} levels; check what was written", nesting=most.nesting)
+                    "file", say("is nested deeper than {nesting} levels; check the file", nesting=most.nesting)
                 )
             if lists > MOST_LISTS:
                 raise problems.fail(
                     "file",
-                    say("holds more than {most_lists} lists; give each column as one list", most_lists=MOST_LISTS),
+                    say("contains more than {most_lists} lists; give each column as one list", most_lists=MOST_LISTS),
                 )
 
 

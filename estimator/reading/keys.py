@@ -15,8 +15,9 @@ from estimator.reading.fields import Fields
 FORMAT = "imu-session/1"
 """What ``format`` must say; docs/session-file.md describes it."""
 TOP = (
-    "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes", "stage", "origin", "site",
-    "stand", "mounting", "sensors", "table", "count_time_s", "counter", "sample_rate_hz", "direction_sigma_deg",
+    "format", "unit", "unit_type", "block", "programme", "started_at", "powered_on_at", "time_since_power_on_s",
+    "operator", "notes", "stage", "origin", "site", "stand", "mounting", "sensors", "table", "count_time_s", "counter",
+    "sample_rate_hz", "direction_sigma_deg",
 )  # fmt: skip
 SITE = ("latitude_deg", "height_m", "gravity_m_s2")
 STAND = ("id", "alpha_deg", "chi_deg", "sigma_arcsec", "sigma_count_time_s")
@@ -55,9 +56,11 @@ def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
     """Record unknown keys that look like known ones."""
     for key in islice((str(key) for key in fields.values if key not in known), UNKNOWN_LOOKED_AT):
         if meant := meant_key(key, known):
-            fields.add(key, say("is not a key of {path}; {meant}", path=fields.path or "the file", meant=meant))
+            fields.add(
+                key, say("is not a key of {path}; {suggestion}", path=fields.path or "the file", suggestion=meant)
+            )
         elif key in HOME and HOME[key] != fields.path:
-            fields.add(key, say("stands in the wrong place; it belongs in {home}", home=HOME[key]))
+            fields.add(key, say("is in the wrong place; it belongs in {home}", home=HOME[key]))
 
 
 def meant_key(key: str, known: Iterable[str]) -> str | None:

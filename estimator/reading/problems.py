@@ -62,7 +62,7 @@ class Problems:
         """Record the same kind of fault in several rows, ``of`` so many; they count from 0 here, as for the message."""
         faulty = list(rows)
         if of is not None and len(faulty) == of > ROWS_SHOWN:
-            self.add(field, say("all {of} rows have such a fault; the first {message}", of=of, message=message(0)))
+            self.add(field, say("all {of} rows have this fault; the first {message}", of=of, message=message(0)))
             return
         for index in faulty[:ROWS_SHOWN]:
             self.add(field, message(index), index + 1)
@@ -70,8 +70,8 @@ class Problems:
             self.add(
                 field,
                 say_count(
-                    "{n} more row has such a fault, up to row {faulty}",
-                    "{n} more rows have such a fault, up to row {faulty}",
+                    "{n} more row has this fault, up to row {faulty}",
+                    "{n} more rows have this fault, up to row {faulty}",
                     more,
                     faulty=faulty[-1] + 1,
                 ),

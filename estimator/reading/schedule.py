@@ -51,7 +51,9 @@ def _check_beta(table: Rows, problems: Problems) -> None:
     if table.beta is None or np.isnan(table.beta).any():
         return
     if np.unique(np.exp(1j * table.beta).round(9)).size < FEWEST_POSITIONS:
-        problems.add_to_schedule("beta_deg", "all rows stand at a single position; turn the head and read at several β")
+        problems.add_to_schedule(
+            "beta_deg", "all rows are at a single position; turn the head and measure at several β"
+        )
 
 
 def _check_positions(table: Rows, raw: bool, problems: Problems) -> None:

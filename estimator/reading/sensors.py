@@ -36,7 +36,7 @@ def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:
         return ()
     if len(entries) > MOST:
         document.add(
-            "sensors", say("holds {entries} sensors; a block has at most {most}", entries=len(entries), most=MOST)
+            "sensors", say("has {entries} sensors; a block has at most {most}", entries=len(entries), most=MOST)
         )
         return ()
     sensors = []
@@ -57,11 +57,11 @@ def check_pulses(document: Fields, sensors: tuple[Sensor, ...], programme: str) 
     gyros = [s for s in sensors if s.kind == GYROSCOPE]
     if document.has("count_time_s"):
         if sensors and not gyros:
-            document.add("count_time_s", "is for gyroscopes and this session has none; give readings as a rate")
+            document.add("count_time_s", "is for gyroscopes, and this session has none; give readings as a rate")
     elif any(g.reading_unit.lower() in (PULSES | COUNTS if programme == TWO_AXIS_STAND else PULSES) for g in gyros):
-        document.add("count_time_s", "missing; gyro readings are pulses, so add the time in s they were counted over")
+        document.add("count_time_s", "missing; gyro readings are pulses: add the count time in s")
     if document.has("counter") and not document.has("count_time_s"):
-        document.add("counter", "says how pulses are counted, and count_time_s is missing; add it, or take this out")
+        document.add("counter", "states how pulses are counted, but count_time_s is missing; add it, or remove this")
 
 
 def _read_sensor(entry: Fields, block: str) -> Sensor:
@@ -89,7 +89,7 @@ def _read_axis(entry: Fields) -> Array:
     elif abs(length - 1) > LENGTH_TOLERANCE:
         entry.add(
             "nominal_axis",
-            say("has length {length}; must be a unit vector, so divide it by its length", length=f"{length:.6g}"),
+            say("has length {length}; must be a unit vector: divide it by its length", length=f"{length:.6g}"),
         )
     return axis / length if length else axis
 
@@ -97,7 +97,7 @@ def _read_axis(entry: Fields) -> Array:
 def _read_position(entry: Fields) -> Array | None:
     if not entry.has("position_m"):
         return None
-    advice = "give where the sensor sits, three components in m, block axes"
+    advice = "give the position of the sensor, three components in m, block axes"
     return vector(entry, "position_m", advice, WITHIN["sensors[].position_m"])
 
 
@@ -107,7 +107,12 @@ def _read_repeatability(entry: Fields, kind: str) -> float:
         if other != kind and entry.has(key):
             entry.add(
                 key,
-                say("is for a {other}; this sensor is a {kind}, so give {field}", other=other, kind=kind, field=field),
+                say(
+                    "is for a {other_kind}; this sensor is a {kind}, so give {field}",
+                    other_kind=other,
+                    kind=kind,
+                    field=field,
+                ),
             )
     value = entry.optional_number(field, WITHIN[f"sensors[].{field}"])
     return 0.0 if value is None else value
@@ -121,7 +126,9 @@ def _check_names(sensors: list[Sensor], problems: Problems) -> None:
         if name and name in seen:
             problems.add(
                 field,
-                say("{name} is also the name of sensors[{seen}]; names must differ", name=shown(name), seen=seen[name]),
+                say(
+                    "{name} is also the name of sensors[{index}]; names must differ", name=shown(name), index=seen[name]
+                ),
             )
         elif name in taken:
             problems.add(

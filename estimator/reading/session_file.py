@@ -10,7 +10,7 @@ from estimator.reading.keys import FORMAT, TOP, check_keys
 from estimator.reading.problems import Extent, Problems, Where, shown
 from estimator.reading.schedule import check_schedule
 from estimator.reading.sensors import KINDS, check_pulses, read_sensors
-from estimator.reading.setting import read_mounting, read_site, read_stand, read_started_at
+from estimator.reading.setting import read_moment, read_mounting, read_site, read_stand, read_time_since_power_on
 from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
 from estimator.session import COUNTERS, ORIGINS, PROGRAMMES, SIMULATED, STAGES, CalibrationSession
@@ -55,7 +55,8 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
     unit = document.text("unit", "give the unit's serial number")
     block = document.choice("block", KINDS)
     programme = document.choice("programme", PROGRAMMES)
-    started_at = read_started_at(document)
+    started_at = read_moment(document, "started_at")
+    on_for = read_time_since_power_on(document, started_at)
     sensors = read_sensors(document, block)
     kinds = {sensor.kind for sensor in sensors} or {block}
     site = read_site(document, programme, kinds)
@@ -73,6 +74,7 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
         check_schedule(programme, table, kinds, raw=document.has("sample_rate_hz"), problems=problems)
     problems.raise_if_any()
     assert table is not None, "a session without a table has problems"
+    begun = 0.0 if table.time is None else float(table.time[0])
     return CalibrationSession(
         unit=unit,
         block=block,
@@ -87,6 +89,7 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
         counter=counter,
         unit_type=texts["unit_type"] or None,
         started_at=started_at,
+        switched_on=None if on_for is None else begun - on_for,
         operator=texts["operator"] or "",
         notes=texts["notes"] or "",
         stage=stage,

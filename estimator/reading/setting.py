@@ -7,7 +7,7 @@ from datetime import datetime
 import numpy as np
 
 from estimator.message import say
-from estimator.moments import written
+from estimator.moments import DAY, moment, written
 from estimator.reading.bounds import WITHIN, Interval
 from estimator.reading.columns import vector
 from estimator.reading.fields import Fields
@@ -33,6 +33,8 @@ ROTATION_TOLERANCE = 1e-6
 """Of the products of rows that should be 0 or 1: a mounting written with seven digits, known to 0.2″."""
 YEARS = Interval(1950, 2200)
 """Strapdown systems are younger; later is a slip."""
+POWERED_ON, SINCE_POWER_ON = "powered_on_at", "time_since_power_on_s"
+"""The keys that tell when the unit was switched on: a moment, or how long that was before the first row."""
 NEEDS_GRAVITY = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT)
 NEEDS_LATITUDE = (TWO_AXIS_STAND, ROTATION_ALIGNMENT)
 """Programmes whose accelerometers need gravity, and whose gyros the latitude."""
@@ -88,24 +90,52 @@ def read_mounting(document: Fields) -> Array:
     return matrix
 
 
-def read_started_at(document: Fields) -> str | None:
-    """The start in UTC, ISO 8601; None when not given."""
-    text = document.optional_text("started_at")
+def read_moment(document: Fields, key: str) -> str | None:
+    """A moment in UTC, ISO 8601; None when not given."""
+    text = document.optional_text(key)
     if text is None:
         return None
     try:
         at = datetime.fromisoformat(text)
     except ValueError:
-        document.add("started_at", say("is {text}; write it like 2026-03-01T09:00:00Z", text=shown(text)))
+        document.add(key, say("is {value}; write it like 2026-03-01T09:00:00Z", value=shown(text)))
         return None
     if at.tzinfo is None:
         document.add(
-            "started_at", say("{text} has no offset; end it with Z for UTC or with one like +03:00", text=shown(text))
+            key, say("{value} has no offset; end it with Z for UTC or with one like +03:00", value=shown(text))
         )
     elif at.year not in YEARS:
-        document.add("started_at", say("is in the year {year}; must be {years}", year=at.year, years=YEARS))
+        document.add(key, say("is in the year {year}; must be {years}", year=at.year, years=YEARS))
     else:
         return written(at)
+    return None
+
+
+def read_time_since_power_on(document: Fields, started_at: str | None) -> float | None:
+    """s, from switching on to the first row, which is measured at ``started_at``; None when neither key says it."""
+    passed = document.optional_number(SINCE_POWER_ON, WITHIN[SINCE_POWER_ON])
+    at = read_moment(document, POWERED_ON)
+    if at is None:
+        return passed
+    if document.has(SINCE_POWER_ON):
+        document.add(POWERED_ON, say("is given beside {other}; give one of the two", other=SINCE_POWER_ON))
+    elif started_at is not None:
+        return _between(document, moment(at), moment(started_at))
+    elif not document.has("started_at"):
+        document.add(POWERED_ON, say("needs started_at; give that too, or {other} instead", other=SINCE_POWER_ON))
+    return None
+
+
+def _between(document: Fields, on: datetime, start: datetime) -> float | None:
+    """s from switching on to the start; None, and a problem, where that cannot be."""
+    within, passed = WITHIN[SINCE_POWER_ON], (start - on).total_seconds()
+    if passed < 0:
+        document.add(POWERED_ON, "is later than started_at; the unit was on when its first row was measured")
+    elif passed not in within:
+        most = within.high / DAY
+        document.add(POWERED_ON, say("is more than {most} days before started_at; check both", most=f"{most:.0f}"))
+    else:
+        return passed
     return None
 
 

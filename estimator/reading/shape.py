@@ -32,7 +32,7 @@ def read_columns(document: Fields) -> Columns | None:
     given = {str(name): cells for name, cells in table.items() if cells is not None}
     lists = {name: cells for name, cells in given.items() if _is_column(cells)}
     for name in (name for name in given if name not in lists):
-        problems.add(name, say("is {given}; must be a list with one value per row", given=shown(given[name])))
+        problems.add(name, say("is {value}; must be a list with one value per row", value=shown(given[name])))
     rows = _row_count(lists, problems)
     if rows == 0:
         return None
@@ -42,15 +42,15 @@ def read_columns(document: Fields) -> Columns | None:
 
 def check_extent(rows: int, columns: int, problems: Problems) -> None:
     """Raises FormatError where a table of this size is too large."""
-    most, advice = problems.most, "can be read, so average or split it"
+    most, advice = problems.most, "can be read: average or split it"
     if rows > most.rows:
         raise problems.fail(
-            "table", say("has {rows} rows; at most {rows2} {advice}", rows=rows, rows2=most.rows, advice=advice)
+            "table", say("has {rows} rows; at most {limit} {advice}", rows=rows, limit=most.rows, advice=advice)
         )
     if columns > most.columns:
         raise problems.fail(
             "table",
-            say("has {columns} columns; at most {columns2} can be read", columns=columns, columns2=most.columns),
+            say("has {columns} columns; at most {limit} can be read", columns=columns, limit=most.columns),
         )
     if rows * columns > most.cells:
         raise problems.fail(
@@ -72,9 +72,9 @@ def check_unknown(columns: Columns, names: list[str]) -> None:
     unknown = (name for name in columns.values if name not in known)
     for name in islice(unknown, UNKNOWN_LOOKED_AT):
         if _pattern(name.removesuffix("_se")) in patterns or SENSOR_LIKE.fullmatch(name) or name.endswith("_se"):
-            columns.problems.add(name, "belongs to no declared sensor; declare it in sensors or take the column out")
+            columns.problems.add(name, "belongs to no declared sensor; declare it in sensors or remove the column")
         elif meant := meant_key(name, COLUMNS):
-            columns.problems.add(name, say("is not a column of the table; {meant}", meant=meant))
+            columns.problems.add(name, say("is not a column of the table; {suggestion}", suggestion=meant))
 
 
 def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
@@ -90,7 +90,7 @@ def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
         if len(cells) != rows:
             held = counted(len(cells), "value")
             problems.add(
-                name, say("has {held} where the other columns have {rows}; give one per row", held=held, rows=rows)
+                name, say("has {values} where the other columns have {rows}; give one per row", values=held, rows=rows)
             )
     return rows
 

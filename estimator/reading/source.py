@@ -84,5 +84,5 @@ def _decode(content: bytes, problems: Problems) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise problems.fail(
-            "file", say("is not UTF-8 text (byte {start}); save it as UTF-8", start=error.start + 1)
+            "file", say("is not UTF-8 text (byte {position}); save it as UTF-8", position=error.start + 1)
         ) from error

@@ -96,9 +96,7 @@ def _standard_errors(columns: Columns, names: list[str], *, raw: bool) -> Array:
     """(R, m), NaN where none is stated."""
     stated = [f"{name}_se" for name in names if columns.has(f"{name}_se")]
     if raw and stated:
-        columns.problems.add(
-            stated[0], "standard errors belong to averaged readings; a raw log has none, take them out"
-        )
+        columns.problems.add(stated[0], "standard errors belong to averaged readings; remove them from a raw log")
     empty = np.full(columns.rows, np.nan)
     return _stack(
         [
@@ -159,12 +157,12 @@ def _direction_sigma(document: Fields, columns: Columns) -> float | None:
     """rad."""
     key = "direction_sigma_deg"
     if any(columns.has(name) for name in DIRECTIONS):
-        return math.radians(document.number(key, WITHIN[key], "give how well the stated directions are known"))
+        return math.radians(document.number(key, WITHIN[key], "give the uncertainty of the stated directions"))
     if document.has(key):
         document.add(
             key,
             say(
-                "is given without directions; add the columns {directions} or take it out",
+                "is given without directions; add the columns {directions} or remove it",
                 directions=joined(", ", DIRECTIONS),
             ),
         )

@@ -1,13 +1,14 @@
-"""What the service answers, as `docs/api.md` describes it; SI, moments in UTC. `document` is always the whole answer,
-with the fields that are not named here.
+"""Answers of the service, as documented in `docs/api.md`; SI, times in UTC. `document` is always the whole answer, with
+the fields that are not named here.
 
-These are types of what comes over the wire: a program that asks needs nothing of the service's own, whose records they
-resemble where an answer is one.
+These types are independent of the service's own records, so that a client needs nothing else of the service.
 """
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any, Literal
+from typing import Literal
+
+from estimator.json_object import Json
 
 Verdict = Literal["pass", "conditional-pass", "undecidable", "conditional-fail", "fail"]
 
@@ -19,7 +20,7 @@ class Reservation:
     kind: str
     text: str
     advice: str
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Said:
     reason: str
     said: str
     reservations: tuple[Reservation, ...]
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ class Point:
     is_reference: bool
     axis: tuple[float, ...] | None
     revision: int
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,7 @@ class Finding:
     alternatives: tuple[str, ...]
     sentence: str
     advice: str
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -138,7 +139,7 @@ class Diagnosis:
     verdict_after: Verdict | None
     """With the named causes in the model."""
     notes: tuple[str, ...]
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,7 @@ class Flag:
     session: str | None
     raised_at: datetime
     changed_at: datetime
-    document: dict[str, Any]
+    document: Json
 
 
 @dataclass(frozen=True)
@@ -170,4 +171,4 @@ class Usable:
     until: datetime | None
     session: str | None
     as_of: datetime
-    document: dict[str, Any]
+    document: Json

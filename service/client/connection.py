@@ -1,4 +1,4 @@
-"""HTTP to a running service; its refusals become the errors of `service.errors`, with its own words."""
+"""HTTP to a running service; its refusals become errors of `service.errors`, with the service's messages."""
 
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -8,47 +8,48 @@ from typing import IO, Any
 import httpx
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.errors import AwayError, RefusedError, ServiceError
 
-MOST_LOOKS = 10
-"""Looks at whether a diagnosis is made; the service itself waits some seconds at each."""
+MAX_POLLS = 10
+"""Polls for a diagnosis; the service itself waits some seconds at each."""
 MEDIA_TYPE = "application/problem+json"
 
 
 @dataclass(frozen=True)
 class Connection:
-    """One connection to a service, for calls that have no method of their own."""
+    """One connection to a service, for calls without a method of their own."""
 
     server: str
     http: httpx.Client
 
     def get(self, path: str, **query: Any) -> httpx.Response:
-        """Reads a resource below /api/v1; what is None is not asked for."""
+        """Reads a resource below /api/v1; parameters of None are left out."""
         return self.answer("GET", path, params={name: value for name, value in query.items() if value is not None})
 
-    def post(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
+    def post(self, path: str, body: Json) -> Json:
         """Sends JSON to a resource below /api/v1."""
-        answer: dict[str, Any] = self.answer("POST", path, json=body).json()
+        answer: Json = self.answer("POST", path, json=body).json()
         return answer
 
-    def put(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
-        """Puts JSON in the place of a resource below /api/v1."""
-        answer: dict[str, Any] = self.answer("PUT", path, json=body).json()
+    def put(self, path: str, body: Json) -> Json:
+        """Replaces a resource below /api/v1 with JSON."""
+        answer: Json = self.answer("PUT", path, json=body).json()
         return answer
 
     def send(
         self, name: str, content: bytes | IO[bytes], stated: dict[str, str] | None = None, *, later: bool = False
-    ) -> dict[str, Any]:
-        """Sends a session file with what is ``stated`` of it; RefusedError with its problems when it is unusable.
-        ``later``: a large one is answered with its job, once it was received."""
+    ) -> Json:
+        """Sends a session file with its form fields; RefusedError with its problems when it is unusable. ``later``: a
+        large one is answered with its job after it was received."""
         headers = {"Prefer": "respond-async"} if later else {}
         response = self.answer("POST", "/sessions", files={"file": (name, content)}, data=stated or {}, headers=headers)
-        answer: dict[str, Any] = response.json()
+        answer: Json = response.json()
         return answer
 
     def is_diagnosed(self, session: str) -> bool:
-        """Whether a session's diagnosis is made, some time after it was asked for."""
-        for _ in range(MOST_LOOKS):
+        """Whether a session's diagnosis is made, after waiting for it."""
+        for _ in range(MAX_POLLS):
             response = self.get(f"/sessions/{session}/diagnosis")
             if response.status_code != HTTPStatus.ACCEPTED:
                 return True
@@ -67,13 +68,13 @@ class Connection:
 
 
 def _error(response: httpx.Response) -> ServiceError:
-    """The service's problem+json as the error that it was; anything else by its status."""
+    """The service's problem+json as its original error; any other answer by its status."""
     if not response.headers.get("content-type", "").startswith(MEDIA_TYPE):
         return ServiceError(f"{response.url} answered {response.status_code} {response.reason_phrase}")
     problem = response.json()
     if response.status_code == RefusedError.status:
-        found = (Problem(p["field"], p["message"], p.get("row")) for p in problem.get("problems") or ())
-        return RefusedError(problem["detail"], tuple(found))
+        problems = (Problem(p["field"], p["message"], p.get("row")) for p in problem.get("problems") or ())
+        return RefusedError(problem["detail"], tuple(problems))
     error: ServiceError = _KINDS.get(response.status_code, ServiceError)(problem["detail"])
     if isinstance(error, AwayError) and response.headers.get("Retry-After", "").isdecimal():
         error.retry_after = int(response.headers["Retry-After"])

@@ -1,6 +1,5 @@
-"""JSON of the service as the types of `answers`: fields that are not known yet are passed over, one that is missing or
-of another type is an error that names it.
-"""
+"""JSON of the service as the types of `answers`: unknown fields are ignored; a missing field, or one of another type,
+is an error that names it."""
 
 from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
@@ -9,11 +8,12 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
+from estimator.json_object import Json
 from service.errors import ServiceError
 
 T = TypeVar("T")
 WHOLE = "document"
-"""The field that holds the whole answer."""
+"""The field with the whole answer."""
 
 
 def read(kind: type[T], document: Any) -> T:
@@ -34,30 +34,30 @@ def _hints(kind: type[Any]) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
-def _object(kind: type[T], document: dict[str, Any]) -> T:
+def _object(kind: type[T], document: Json) -> T:
     hints, names = _hints(kind), [field.name for field in fields(kind)]  # type: ignore[arg-type]  # all are dataclasses
     known = {name: _value(hints[name], document[name], name) for name in names if name != WHOLE}
     return kind(**known, **({WHOLE: document} if WHOLE in names else {}))
 
 
-def _value(hint: Any, given: Any, name: str) -> Any:
+def _value(hint: Any, value: Any, name: str) -> Any:
     origin = get_origin(hint)
     if origin in (Union, UnionType):
-        return None if given is None else _value(next(a for a in get_args(hint) if a is not NoneType), given, name)
+        return None if value is None else _value(next(a for a in get_args(hint) if a is not NoneType), value, name)
     if origin is tuple:
-        return tuple(_value(get_args(hint)[0], one, name) for one in given)
+        return tuple(_value(get_args(hint)[0], item, name) for item in value)
     if origin is Literal:
-        return _checked(given, given in get_args(hint), name)
+        return _checked(value, value in get_args(hint), name)
     if is_dataclass(hint):
-        return _object(hint, given)  # type: ignore[arg-type]  # a class, not an object of one
+        return _object(hint, value)  # type: ignore[arg-type]  # a class, not an object of one
     if hint is datetime:
-        return datetime.fromisoformat(given)
+        return datetime.fromisoformat(value)
     if hint is float:
-        return float(_checked(given, isinstance(given, int | float), name))
-    return _checked(given, isinstance(given, hint), name)
+        return float(_checked(value, isinstance(value, int | float), name))
+    return _checked(value, isinstance(value, hint), name)
 
 
-def _checked(given: Any, is_right: bool, name: str) -> Any:
-    if not is_right:
-        raise TypeError(f"{name} is {given!r}")
-    return given
+def _checked(value: Any, is_valid: bool, name: str) -> Any:
+    if not is_valid:
+        raise TypeError(f"{name} is {value!r}")
+    return value

@@ -1,4 +1,4 @@
-"""`imu-health user`, `token`, `audit`: who may sign in, for whoever may reach the database."""
+"""`imu-health user`, `token`, `audit`: accounts, for whoever has access to the database."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -80,8 +80,8 @@ def connect_user(
     if not settings.oidc_issuer:
         raise ConflictError("No provider is set: IMU_HEALTH_OIDC_ISSUER.")
     with _opened(settings) as storage:
-        found = connect(storage, login, settings.oidc_issuer, subject, _now(), who=WHO)
-    screen().print(f"[bold]{escape(found.login)}[/] signs in at {escape(settings.oidc_issuer)}.")
+        account = connect(storage, login, settings.oidc_issuer, subject, _now(), who=WHO)
+    screen().print(f"[bold]{escape(account.login)}[/] signs in at {escape(settings.oidc_issuer)}.")
 
 
 @user.command("change")
@@ -131,9 +131,9 @@ def add_token(
 ) -> None:
     """Make a token for an account and print its secret, which is not shown again."""
     with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
-        lasts = timedelta(days=days)
-        made, secret = make_token(storage, login, label, role, _now(), lasts=lasts, who=WHO)
-    say(f"Token {made.id} for {made.login}, {made.role}, until {made.expires_at:%Y-%m-%d}:")
+        lifetime = timedelta(days=days)
+        new_token, secret = make_token(storage, login, label, role, _now(), lifetime=lifetime, who=WHO)
+    say(f"Token {new_token.id} for {new_token.login}, {new_token.role}, until {new_token.expires_at:%Y-%m-%d}:")
     typer.echo(secret)
 
 

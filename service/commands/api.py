@@ -1,6 +1,5 @@
-"""Commands that only ask a running service: records, services, notes, flags, customers, saved views, whether a unit may
-be used. Each is a row of one table at the end of this file; those that need more than one call are functions.
-"""
+"""Commands that call a running service: records, services, notes, flags, customers, saved views, usability of a unit.
+Each is a row of one table at the end of this file; those that need more than one call are functions."""
 
 import re
 import webbrowser
@@ -15,14 +14,16 @@ from rich.markup import escape
 from service.client import Client, connect
 from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
 from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, Listing, Server, screen
-from service.commands.speech import said, spoken
+from service.commands.speech import output_language, translated
 from service.errors import ServiceError
 from service.flags.records import FlagState
+from service.judging.use import Use, in_words
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
-"""Red asks for somebody."""
+"""Red needs attention."""
+USE_COLOURS = {Use.YES: "green", Use.RESERVED: "yellow", Use.NO: "bold red", Use.PENDING: "bold red"}
 SESSION_ID = re.compile("[0-9a-f]{20}")
-"""What a session's id looks like; a serial number may look like one as well."""
+"""Pattern of a session's id; a serial number may match as well."""
 
 By = Annotated[str, typer.Option("--by", help="Your name.")]
 Why = Annotated[str, typer.Option("--why", help="Why.")]
@@ -32,11 +33,11 @@ SessionId = Annotated[str, typer.Argument(metavar="SESSION", help="The session's
 FlagId = Annotated[int, typer.Argument(metavar="FLAG", help="Number of the flag.")]
 At = Annotated[datetime | None, typer.Option(help="When, UTC.", show_default="now")]
 DAYS = ["%Y-%m-%d"]
-"""How a day is written."""
+"""Format of a day."""
 
 
 def is_session(client: Client, name: str) -> bool:
-    """Whether a stored session has this id; anything else is taken for a unit's serial number."""
+    """Whether a stored session has this id; any other name is a unit's serial number."""
     if not SESSION_ID.fullmatch(name):
         return False
     try:
@@ -57,7 +58,7 @@ def open_page(
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Print the address alone.")] = True,
 ) -> None:
     """Open the page of a unit or a session in the browser, and print its address; without one the fleet."""
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         if what is None:
             client.get("/me")
             page = "/"
@@ -74,7 +75,7 @@ def open_page(
 
 def choose_reference(id: SessionId, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
     """Choose and approve a session as what all others of its time are judged against."""
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         unit = client.get(f"/sessions/{id}").json()["unit"]
         _show_session(client.post(f"/units/{unit}/reference", {"session": id, "by": by, "why": why}))
 
@@ -88,13 +89,14 @@ def attach_files(
     server: Server = DEFAULT_SERVER,
 ) -> None:
     """Attach files to a unit or a session: photographs, protocols. They are kept as they are and never opened."""
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         subject = "session" if is_session(client, to) else "unit"
         for file in files:
             form = {subject: to, "by": by, "text": text}
-            kept = client.answer("POST", "/attachments", files={"file": (file.name, file.read_bytes())}, data=form)
-            found = kept.json()
-            screen().print(f"[bold]{escape(found['unit'])}[/]  attachment {found['id']}  {escape(found['filename'])}")
+            answer = client.answer("POST", "/attachments", files={"file": (file.name, file.read_bytes())}, data=form)
+            attachment = answer.json()
+            unit, name = escape(attachment["unit"]), escape(attachment["filename"])
+            screen().print(f"[bold]{unit}[/]  attachment {attachment['id']}  {name}")
 
 
 def write_note(
@@ -106,7 +108,7 @@ def write_note(
 ) -> None:
     """Write a note on a unit's history, or on a session."""
     note = {"text": text, "by": by}
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         if not is_session(client, unit):
             when = {} if at is None else {"at": at.isoformat()}
             _show_event(client.post(in_address("/units/{unit}/notes", {"unit": unit}), note | when))
@@ -131,12 +133,12 @@ def list_flags(
     """Show flags; without a state those that are open, which the API has first."""
     if context.invoked_subcommand is not None:
         return
-    wanted = {"unit": unit, "state": state, "assigned": assigned}
-    with connect(server, language=spoken()) as client:
-        found = client.every("/flags", "flags", limit=1000, **{name: value for name, value in wanted.items() if value})
-        shown = list(found if state else takewhile(lambda flag: flag["state"] != FlagState.RESOLVED, found))
+    filters = {"unit": unit, "state": state, "assigned": assigned}
+    with connect(server, language=output_language()) as client:
+        found = client.every("/flags", "flags", limit=1000, **{name: value for name, value in filters.items() if value})
+        rows = list(found if state else takewhile(lambda flag: flag["state"] != FlagState.RESOLVED, found))
     columns = Columns("flags", "There is none." if state else "No flag is open.", FLAG_CELLS)
-    Listing(form, as_json).show(shown, lambda: columns.table(shown))
+    Listing(form, as_json).show(rows, lambda: columns.table(rows))
 
 
 def assign_flags(
@@ -148,28 +150,28 @@ def assign_flags(
     server: Server = DEFAULT_SERVER,
 ) -> None:
     """Say who is to look after flags; `imu-health flags --assigned NAME` finds them."""
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         for id in ids:
             _show_flag(client.post(f"/flags/{id}/assign", {"to": to, "by": by, "why": why}))
 
 
-def _show_session(found: Answer) -> None:
-    reference = "  reference" if found["is_reference"] else ""
-    line = f"Session {found['id']}  [bold]{escape(found['unit'])}[/]  {found['state']}{reference}"
-    screen().print(f"{line}  {escape(found['reason'])}")
+def _show_session(session: Answer) -> None:
+    reference = "  reference" if session["is_reference"] else ""
+    line = f"Session {session['id']}  [bold]{escape(session['unit'])}[/]  {session['state']}{reference}"
+    screen().print(f"{line}  {escape(session['reason'])}")
 
 
-def _show_withdrawn_service(found: Answer) -> None:
-    screen().print(f"Service {found['id']}  [bold]{escape(found['unit'])}[/]  {found['kind']}  {found['state']}")
+def _show_withdrawn_service(record: Answer) -> None:
+    screen().print(f"Service {record['id']}  [bold]{escape(record['unit'])}[/]  {record['kind']}  {record['state']}")
 
 
-def _show_event(kept: Answer) -> None:
-    what = kept.get("kind", "note")
-    screen().print(f"[bold]{escape(kept['unit'])}[/]  {kept['at'][:10]}  {what} {kept['id']} recorded")
+def _show_event(event: Answer) -> None:
+    what = event.get("kind", "note")
+    screen().print(f"[bold]{escape(event['unit'])}[/]  {event['at'][:10]}  {what} {event['id']} recorded")
 
 
 def _show_flag(flag: Answer) -> None:
-    unit, what = escape(flag["unit"]), escape(said(flag["summary"]))
+    unit, what = escape(flag["unit"]), escape(translated(flag["summary"]))
     screen().print(f"Flag {flag['id']}  [bold]{unit}[/]  {_flag_state(flag)}  {what}")
 
 
@@ -178,19 +180,21 @@ def _flag_state(flag: Answer) -> str:
     return f"[{COLOURS[state]}]{state.value}[/]"
 
 
-def _show_customer(kept: Answer) -> None:
-    where = escape(kept["address"] or "address not stated")
-    screen().print(f"[bold]{escape(kept['unit'])}[/]  {escape(kept['name'])}, {where}")
+def _show_customer(customer: Answer) -> None:
+    where = escape(customer["address"] or "address not stated")
+    screen().print(f"[bold]{escape(customer['unit'])}[/]  {escape(customer['name'])}, {where}")
 
 
-def _show_stand(kept: Answer) -> None:
-    screen().print(f"[bold]{escape(kept['stand'])}[/]  {escape(kept['number'])}, valid until {kept['valid_until']}")
+def _show_stand(stand: Answer) -> None:
+    screen().print(f"[bold]{escape(stand['stand'])}[/]  {escape(stand['number'])}, valid until {stand['valid_until']}")
 
 
 def _show_usable(answer: Answer) -> None:
-    word = f"[green]{said('usable')}[/]" if answer["usable"] else f"[bold red]{said('not usable')}[/]"
+    colour = USE_COLOURS[Use(answer["use"])]
+    word = translated(in_words(Use(answer["use"]), answer["action"]))
     lines = (answer["why"], *answer["reasons"][1:], *(f"But: {line}" for line in answer["reservations"]))
-    screen().print(f"[bold]{escape(answer['unit'])}[/]  {word}", *(escape(said(line)) for line in lines), sep="\n  ")
+    head = f"[bold]{escape(answer['unit'])}[/]  [{colour}]{escape(word)}[/]"
+    screen().print(head, *(escape(translated(line)) for line in lines), sep="\n  ")
 
 
 FLAG_CELLS = {
@@ -200,7 +204,7 @@ FLAG_CELLS = {
     "since": lambda flag: flag["raised_at"][:10],
     "who": lambda flag: escape(flag["assignee"]),
     "where": lambda flag: escape(flag["place"]),
-    "what": lambda flag: escape(said(f"{flag['summary']} {flag['proposal']}".strip())),
+    "what": lambda flag: escape(translated(f"{flag['summary']} {flag['proposal']}".strip())),
 }
 VIEWS = Columns(
     "views",

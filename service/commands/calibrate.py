@@ -1,6 +1,6 @@
 """`imu-health calibrate`: session files to calibrations, without a server.
 
-People read tables in µg, ppm, arcsec, °/h, and how model and readings agree in words.
+Tables are in µg, ppm, arcsec, °/h, and the agreement of model and readings in words.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from estimator import calibrate
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
 from service.commands.console import AsJson, Files, for_each, print_json, screen
-from service.commands.speech import said
+from service.commands.speech import translated
 from service.ingest import read_file
 from service.kit.measures import (
     COVERAGE,
@@ -31,8 +31,8 @@ from service.kit.measures import (
 )
 from service.sessions.words.readings import fit_in_words
 
-UNSEEN = "not observable"
-"""In the place of a value that the session does not show."""
+NOT_OBSERVABLE = "not observable"
+"""In place of a value that the session does not show."""
 Result = tuple[CalibrationSession, Calibration]
 
 
@@ -69,7 +69,7 @@ def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
 
 
 def _parameters(session: CalibrationSession, calibration: Calibration) -> RenderableType:
-    """Two tables of one row a sensor: beside each other where there is room, else one below the other."""
+    """Two tables of one row a sensor: side by side where the screen is wide enough."""
     if session.programme not in CALIBRATIONS:
         return _axes_of_block(calibration)
     numbers = _table("sensor", "scale, off nominal", "bias", "quadratic")
@@ -85,18 +85,18 @@ def _axes_of_block(calibration: Calibration) -> RenderableType:
     table = _table("axis", "scale, off 1", "bias", "misalignment")
     for sensor in calibration.sensors:
         off = _off_nominal(sensor.scale, 1.0)
-        own = {"scale": off, "bias": sensor.bias, "misalignment": sensor.misalignment or off}
-        cells = (_cell(sensor, name, estimate) for name, estimate in own.items())
+        estimates = {"scale": off, "bias": sensor.bias, "misalignment": sensor.misalignment or off}
+        cells = (_cell(sensor, name, estimate) for name, estimate in estimates.items())
         table.add_row(escape(sensor.name), *cells)
     return table
 
 
 def _cell(sensor: SensorCalibration, parameter: str, estimate: Estimate) -> str:
-    """Empty where the session does not speak of the parameter."""
+    """Empty where the session does not concern the parameter."""
     if parameter not in sensor.observable:
         return ""
     if estimate.value is None:
-        return UNSEEN
+        return NOT_OBSERVABLE
     return measured(estimate.value, _expanded(estimate), deviation_measure(sensor.kind, parameter, estimate.value))
 
 
@@ -111,12 +111,12 @@ def _numbers(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
     off = _off_nominal(sensor.scale, declared.nominal_scale)
     for parameter, estimate in (("scale", off), ("bias", sensor.bias), ("quadratic", sensor.quadratic)):
         unit = deviation_measure(sensor.kind, parameter, estimate.value or 0.0)
-        yield UNSEEN if estimate.value is None else measured(estimate.value, _expanded(estimate), unit)
+        yield NOT_OBSERVABLE if estimate.value is None else measured(estimate.value, _expanded(estimate), unit)
 
 
 def _axis(sensor: SensorCalibration) -> tuple[str, str]:
     if sensor.axis is None:
-        return UNSEEN, ""
+        return NOT_OBSERVABLE, ""
     if sensor.axis_sigma is None:
         return " ".join(number(x, 6) for x in sensor.axis), UNKNOWN
     expanded = sensor.factor("axis") * sensor.axis_sigma
@@ -125,7 +125,7 @@ def _axis(sensor: SensorCalibration) -> tuple[str, str]:
 
 
 def _expanded(estimate: Estimate) -> float | None:
-    """U; None where nothing tells the noise."""
+    """U; None where the noise is unknown."""
     return None if estimate.sigma is None else estimate.factor() * estimate.sigma
 
 
@@ -137,9 +137,9 @@ def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
 
 
 def _notes(calibration: Calibration) -> Iterator[Text]:
-    """Sentences: how model and readings agree, and what this session cannot see."""
+    """Sentences: agreement of model and readings, and what this session cannot see."""
     fit = fit_in_words(calibration)
-    yield Text(f"{said(fit.headline)} {said(fit.detail)}")
+    yield Text(f"{translated(fit.headline)} {translated(fit.detail)}")
     sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
         unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)
@@ -148,4 +148,4 @@ def _notes(calibration: Calibration) -> Iterator[Text]:
         if unseen:
             yield Text(f"{', '.join(names)}: this session does not observe {unseen}.", "yellow")
     for warning in fit.warnings:
-        yield Text(said(warning), "yellow")
+        yield Text(translated(warning), "yellow")

@@ -14,24 +14,25 @@ from urllib.parse import quote
 import typer
 from rich.table import Table
 
+from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.catalogue import CATALOGUE
 from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, Listing, Server, print_json, table_of
 from service.commands.speech import FAILED
 
-Answer = dict[str, Any]
+Answer = Json
 
 
 @dataclass(frozen=True)
 class Columns:
-    """How a list is printed; numbers in the first column are aligned to the right."""
+    """Printed form of a list; numbers in the first column are aligned to the right."""
 
     entries: str
-    """Field of the answer that holds the list."""
+    """Field of the answer with the list."""
     empty: str
-    """Printed where the list has no entry."""
+    """Printed for an empty list."""
     cells: Mapping[str, Callable[[Answer], str]]
-    """What stands under each heading, as Rich markup."""
+    """CellKind under each heading, as Rich markup."""
     is_paged: bool = False
 
     def table(self, rows: list[Answer]) -> Table | str:
@@ -51,33 +52,33 @@ class Call:
     request: str
     """Method and address below /api/v1."""
     parameters: Mapping[str, Any]
-    """Annotation of each, or the annotation and the default, in the order of the help."""
+    """Annotation of each, or annotation and default, in the order of the help."""
     show: Callable[[Answer], None] | Columns
     """Prints the answer, to which the parameters are added where it has no field of their name."""
     help: str = ""
-    """One line; empty where the catalogue has it."""
+    """One line; empty where it is in the catalogue."""
     has_json: bool = False
     """Whether ``--json`` prints the answer as it is; lists always have it."""
     then: str = ""
-    """Address of what is shown in place of the answer, with names of its fields."""
+    """Address of an answer shown in place of the first, with names of its fields."""
     is_failure: Callable[[Answer], bool] = lambda _: False
     """Whether an answer ends the command with exit code 1."""
 
-    def run(self, given: dict[str, Any]) -> None:
+    def run(self, arguments: dict[str, Any]) -> None:
         """Makes the call and prints the answer."""
-        sent = {name: given[name] for name in self.parameters}
-        with connect(given["server"]) as client:
+        sent = {name: arguments[name] for name in self.parameters}
+        with connect(arguments["server"]) as client:
             if isinstance(self.show, Columns):
                 rows = self._rows(client, sent, self.show)
                 view = self.show.table
-                listing = Listing(given["form"], given["as_json"])
-                listing.show(rows, lambda: view([given | row for row in rows]))
+                listing = Listing(arguments["form"], arguments["as_json"])
+                listing.show(rows, lambda: view([arguments | row for row in rows]))
                 return
             answer = self._answer(client, sent)
-        if given.get("as_json"):
+        if arguments.get("as_json"):
             print_json(answer)
         else:
-            self.show(given | answer)
+            self.show(arguments | answer)
         if self.is_failure(answer):
             raise typer.Exit(FAILED)
 
@@ -85,8 +86,8 @@ class Call:
         method, path, rest = _request(self.request, sent)
         if columns.is_paged:
             return list(client.every(path, columns.entries, limit=1000, **rest))
-        found: list[Answer] = client.answer(method, path, params=rest).json()[columns.entries]
-        return found
+        entries: list[Answer] = client.answer(method, path, params=rest).json()[columns.entries]
+        return entries
 
     def _answer(self, client: Client, sent: dict[str, Any]) -> Answer:
         method, path, rest = _request(self.request, sent)
@@ -95,59 +96,61 @@ class Call:
         return client.get(in_address(self.then, answer)).json() if self.then else answer
 
     def function(self, name: str, *, is_group: bool) -> Callable[..., None]:
-        """The function that Typer makes a command of; of a group it does nothing where a command below was named."""
-        asked = {**({"context": typer.Context} if is_group else {}), **self.parameters, **self._common()}
+        """The function of a Typer command; for a group it is a no-op where a subcommand was named."""
+        parameters = {**({"context": typer.Context} if is_group else {}), **self.parameters, **self._common()}
 
         def command(**given: Any) -> None:
             context = given.pop("context", None)
             if context is None or context.invoked_subcommand is None:
                 self.run(given)
 
-        signature = inspect.Signature([_parameter(key, one) for key, one in asked.items()])
+        signature = inspect.Signature([_parameter(key, one) for key, one in parameters.items()])
         command.__signature__ = signature  # type: ignore[attr-defined]  # which Typer reads
         command.__annotations__ = {key: one.annotation for key, one in signature.parameters.items()}
         command.__doc__ = self.help or CATALOGUE[name].says
         return command
 
     def _common(self) -> dict[str, Any]:
-        common: dict[str, Any] = {"server": (Server, DEFAULT_SERVER)}
+        options: dict[str, Any] = {"server": (Server, DEFAULT_SERVER)}
         if isinstance(self.show, Columns):
-            common |= {"form": (FormOf, None), "as_json": (AsLines, False)}
+            options |= {"form": (FormOf, None), "as_json": (AsLines, False)}
         elif self.has_json:
-            common |= {"as_json": (AsJson, False)}
-        return common
+            options |= {"as_json": (AsJson, False)}
+        return options
 
 
 Row = Call | Callable[..., None]
-"""A command of a table: one call, or a function where it takes more."""
+"""A command of a table: one call, or a function for several."""
 
 
 def app_of(name: str, rows: Mapping[str, Row]) -> typer.Typer:
-    """The command of a name with those below it; a group that is a row itself is one that can be run."""
-    below = {words.split()[1]: row for words, row in rows.items() if words.startswith(f"{name} ")}
-    itself = rows.get(name)
+    """The command of a name with its subcommands; a group that is a row itself can be run."""
+    subcommands = {words.split()[1]: row for words, row in rows.items() if words.startswith(f"{name} ")}
+    row_of_group = rows.get(name)
     app = typer.Typer(
         name=name,
         add_completion=False,
         help=CATALOGUE[name].says,
-        no_args_is_help=itself is None,
-        invoke_without_command=itself is not None,
+        no_args_is_help=row_of_group is None,
+        invoke_without_command=row_of_group is not None,
     )
-    if itself is not None:
-        function = itself.function(name, is_group=bool(below)) if isinstance(itself, Call) else itself
-        (app.callback() if below else app.command(name))(function)
-    for word, row in below.items():
+    if row_of_group is not None:
+        function = (
+            row_of_group.function(name, is_group=bool(subcommands)) if isinstance(row_of_group, Call) else row_of_group
+        )
+        (app.callback() if subcommands else app.command(name))(function)
+    for word, row in subcommands.items():
         app.command(word)(row.function(word, is_group=False) if isinstance(row, Call) else row)
     return app
 
 
 def in_address(template: str, names: Mapping[str, Any]) -> str:
-    """An address with the names in its braces filled in."""
+    """An address with its placeholders filled."""
     return template.format(**{name: quote(str(value), safe="") for name, value in names.items()})
 
 
-def _request(request: str, sent: dict[str, Any]) -> tuple[str, str, dict[str, Any]]:
-    """Method, address, and the parameters that are not part of it."""
+def _request(request: str, sent: Json) -> tuple[str, str, Json]:
+    """Method, address, and the remaining parameters."""
     method, template = request.split()
     in_path = {name for _, name, _, _ in Formatter().parse(template) if name}
     rest = {name: _plain(value) for name, value in sent.items() if name not in in_path and value is not None}
@@ -158,6 +161,6 @@ def _plain(value: Any) -> Any:
     return value.isoformat() if isinstance(value, datetime) else value
 
 
-def _parameter(name: str, given: Any) -> inspect.Parameter:
-    annotation, default = given if isinstance(given, tuple) else (given, inspect.Parameter.empty)
+def _parameter(name: str, declaration: Any) -> inspect.Parameter:
+    annotation, default = declaration if isinstance(declaration, tuple) else (declaration, inspect.Parameter.empty)
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=annotation, default=default)

@@ -1,133 +1,137 @@
-"""Every command of `imu-health`: where it is, and what the list of commands says of it.
+"""Every command of `imu-health`: its module, and its line in the list of commands.
 
-The list is shown, and a name completed, without importing a single command;
-`tests/service/commands/test_start_up.py` holds what stands here equal to what a command says of itself.
+The list is shown, and a name completed, without importing any command; `tests/service/commands/test_start_up.py`
+compares the texts with the commands' own help.
 """
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Entry:
+class CommandEntry:
     """One command."""
 
     home: str
-    """Module below `service.commands`, and in it the function or the group; none where the module has a table."""
+    """Module below `service.commands`, and its function or group; none where the module has a table."""
     says: str
     """The first paragraph of its help."""
 
 
 CATALOGUE = {
-    "serve": Entry("serve.serve", "Start the service: schema brought up to date, pages and API on one address."),
-    "calibrate": Entry(
+    "serve": CommandEntry("serve.serve", "Start the service: schema brought up to date, pages and API on one address."),
+    "calibrate": CommandEntry(
         "calibrate.calibrate_files",
         "Calibrate session files: scale factor, bias, quadratic term and axis of every sensor, with uncertainties.",
     ),
-    "diagnose": Entry(
+    "diagnose": CommandEntry(
         "diagnose.diagnose_files",
         "Say what the simulation gets wrong: the cause with its size, what else it could be, and what cannot be seen.",
     ),
-    "template": Entry(
+    "template": CommandEntry(
         "documents.write_template",
         "Write a workbook to fill in: sensors, stand and schedule are there; `imu-health upload` takes it as it is.",
     ),
-    "upload": Entry(
+    "upload": CommandEntry(
         "upload.upload_files",
         "Upload session files and print the verdict of each; a file that is already there is stored once.",
     ),
-    "fleet": Entry(
+    "fleet": CommandEntry(
         "fleet.fleet",
         "Show every unit with its condition, the worst first; some of them by stand, type, due date or flag.",
     ),
-    "history": Entry(
+    "history": CommandEntry(
         "fleet.history",
         "Show the parameters of a unit through time, each beside its reference and its tolerance.",
     ),
-    "report": Entry("documents.report", "Write the fleet's condition as a file for other programs."),
-    "usable": Entry(
+    "report": CommandEntry("documents.report", "Write the fleet's condition as a file for other programs."),
+    "usable": CommandEntry(
         "api",
         "Say whether a unit may be used: exit code 0 for yes, 1 for no, for a unit nobody knows, and in doubt.",
     ),
-    "flags": Entry("api", "Show what somebody must look after; give it to somebody, acknowledge or resolve it."),
-    "views": Entry("api", "List the views of the pages that were saved under a name, with their addresses."),
-    "models": Entry(
+    "flags": CommandEntry("api", "Show what somebody must look after; give it to somebody, acknowledge or resolve it."),
+    "views": CommandEntry("api", "List the views of the pages that were saved under a name, with their addresses."),
+    "models": CommandEntry(
         "long_work",
         "Show accepted causes and what they moved; accept what sessions show together, or withdraw it.",
     ),
-    "service": Entry(
+    "service": CommandEntry(
         "api",
         "Record a service: a break, after which the unit's next session is its new reference.",
     ),
-    "session": Entry(
+    "session": CommandEntry(
         "api",
         "Withdraw a session, accept it again, or choose it as the reference of its time.",
     ),
-    "withdraw-service": Entry(
+    "withdraw-service": CommandEntry(
         "api",
         "Take a service back: it stays on record and is no break any more.",
     ),
-    "note": Entry("api", "Write a note on a unit's history, or on a session."),
-    "attach": Entry(
+    "note": CommandEntry("api", "Write a note on a unit's history, or on a session."),
+    "attach": CommandEntry(
         "api",
         "Attach files to a unit or a session: photographs, protocols. They are kept as they are and never opened.",
     ),
-    "certificate": Entry("documents.certificate", "Write the certificate of a session."),
-    "sign": Entry(
+    "certificate": CommandEntry("documents.certificate", "Write the certificate of a session."),
+    "sign": CommandEntry(
         "sign.sign",
         "Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password.",
     ),
-    "seal": Entry("sign.seal", "The laboratory's electronic seal."),
-    "customer": Entry("api", "Record for whom a unit is calibrated; its certificates name them."),
-    "stand-certificate": Entry(
+    "seal": CommandEntry("sign.seal", "The laboratory's electronic seal."),
+    "customer": CommandEntry("api", "Record for whom a unit is calibrated; its certificates name them."),
+    "stand-certificate": CommandEntry(
         "api",
         "Record the certificate of a stand's own calibration, which every session on it hangs on.",
     ),
-    "correction": Entry("documents.correction", "Write the correction that firmware applies to readings, as JSON."),
-    "export": Entry("documents.export", "Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."),
-    "simulate": Entry(
+    "correction": CommandEntry(
+        "documents.correction", "Write the correction that firmware applies to readings, as JSON."
+    ),
+    "export": CommandEntry(
+        "documents.export", "Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."
+    ),
+    "simulate": CommandEntry(
         "simulate.simulate_files",
         "Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.",
     ),
-    "plan": Entry(
+    "plan": CommandEntry(
         "plan.plan_session",
         "Plan a session: elevation, positions, expected uncertainty of every parameter, and what it cannot see.",
     ),
-    "ready": Entry(
+    "ready": CommandEntry(
         "plan.ready",
         "Say whether a unit is warm and still enough to be measured, by the first minutes of a record: exit code 0 for "
         "ready, 1 for not yet.",
     ),
-    "missing": Entry(
+    "missing": CommandEntry(
         "plan.missing_positions",
         "Say which positions a session still lacks while it is measured: settings of the stand, or orientations to "
         "add.",
     ),
-    "parity": Entry(
+    "parity": CommandEntry(
         "parity.parity",
         "Judge a recording in service by what the redundant sensors say of one another; no stand needed.",
     ),
-    "recalibrate": Entry(
+    "recalibrate": CommandEntry(
         "recalibrate.recalibrate_units",
         "Compute stored sessions again under the model in force; what was computed before stays readable.",
     ),
-    "jobs": Entry("long_work", "Show work that takes long: ask for it, look how far it has come, cancel it."),
-    "user": Entry("accounts.user", "Make and change accounts."),
-    "token": Entry("accounts.token", "Make and revoke tokens."),
-    "audit": Entry("accounts.audit", "Read and check the audit trail."),
-    "open": Entry(
+    "jobs": CommandEntry("long_work", "Show work that takes long: ask for it, look how far it has come, cancel it."),
+    "user": CommandEntry("accounts.user", "Make and change accounts."),
+    "token": CommandEntry("accounts.token", "Make and revoke tokens."),
+    "audit": CommandEntry("accounts.audit", "Read and check the audit trail."),
+    "open": CommandEntry(
         "api",
         "Open the page of a unit or a session in the browser, and print its address; without one the fleet.",
     ),
-    "doctor": Entry(
+    "doctor": CommandEntry(
         "doctor.doctor",
         "Look at everything the service needs on this machine, and say what to do; exit code 1 where something fails.",
     ),
-    "db": Entry("database.database", "Bring the database's schema up or down."),
-    "backup": Entry(
+    "db": CommandEntry("database.database", "Bring the database's schema up or down."),
+    "backup": CommandEntry(
         "database.backup",
         "Write all that is stored into one file, while the service runs: `imu-health backup FILE`.",
     ),
-    "restore": Entry(
+    "restore": CommandEntry(
         "database.restore_backup",
         "Put a backup into an empty database, of either kind, and an empty data folder. Everybody must sign in again.",
     ),

@@ -1,6 +1,6 @@
-"""What commands share: options, one bad file not stopping the others, and how an answer is printed.
+"""Shared parts of commands: options, handling of unusable files, and output.
 
-A list is a table on a terminal, one JSON object a line in a pipe, or what `--format` says.
+A list is a table on a terminal, one JSON object a line in a pipe, or in the form of `--format`.
 """
 
 import json
@@ -19,14 +19,14 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from estimator.errors import SessionError
-from service.commands.speech import UNUSABLE, problems_said, say
+from service.commands.speech import UNUSABLE, problems_in_words, say
 from service.errors import RefusedError
 
 T = TypeVar("T")
 
 
-class Form(StrEnum):
-    """What a list is printed as."""
+class OutputForm(StrEnum):
+    """Output form of a list."""
 
     TABLE = "table"
     JSON = "json"
@@ -34,7 +34,7 @@ class Form(StrEnum):
 
 
 FormOf = Annotated[
-    Form | None,
+    OutputForm | None,
     typer.Option(
         "--format",
         help="table; json: one document; jsonl: one object a line.",
@@ -47,11 +47,11 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON: one object; wi
 Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU_HEALTH_SERVER")]
 Out = Annotated[Path | None, typer.Option(help="File to write.", show_default="standard output")]
 WIDE = 160
-"""Columns of a table that goes to a file or another program."""
+"""Columns of a table in a file or a pipe."""
 LARGE = 8 * 1024 * 1024
 """Bytes of a file that takes seconds: a log of an hour at 100 Hz."""
 DEFAULT_SERVER = "http://127.0.0.1:8000"
-"""Where `imu-health serve` listens unless it is told otherwise."""
+"""Default address of `imu-health serve`."""
 
 
 def screen() -> Console:
@@ -73,16 +73,16 @@ def deliver(content: bytes, out: Path | None) -> None:
 
 
 def say_unusable(file: Path, fault: SessionError | RefusedError | OSError) -> None:
-    """Everything wrong with a file on one line: the file, then each field, row and what to do."""
+    """All problems of a file on one line: the file, then each field, row and what to do."""
     if isinstance(fault, OSError):
         say(f"{file}: file: {fault.strerror or fault}; check the name and that it can be read")
     else:
-        say(f"{file}: {problems_said(fault.problems)}")
+        say(f"{file}: {problems_in_words(fault.problems)}")
 
 
 @contextmanager
 def usable(file: Path) -> Iterator[None]:
-    """Exit code 2 with one line where a file cannot be used."""
+    """Exit code 2 with one line for an unusable file."""
     try:
         yield
     except (SessionError, RefusedError, OSError) as fault:
@@ -93,7 +93,7 @@ def usable(file: Path) -> Iterator[None]:
 def for_each(
     files: list[Path], work: Callable[[Path], T], show: Callable[[T], None], doing: str, *, quiet: bool = False
 ) -> None:
-    """Works on every file in order and shows each result; unusable ones get a line, and exit code 2 at the end."""
+    """Processes every file in order and shows each result; unusable ones get a line, and exit code 2 at the end."""
     unusable = 0
     with progress(len(files), doing, quiet=quiet, is_long=are_large(files)) as advance:
         for file in files:
@@ -108,16 +108,15 @@ def for_each(
 
 
 def are_large(files: Iterable[Path]) -> bool:
-    """Whether one of them is a log that takes more than a moment; one that is not there says so where it is read."""
+    """Whether one of them is a log that takes more than a moment; a missing file is reported where it is read."""
     return any(file.is_file() and file.stat().st_size > LARGE for file in files)
 
 
 @contextmanager
 def progress(total: int, doing: str, *, quiet: bool = False, is_long: bool = False) -> Iterator[Callable[[], None]]:
-    """A bar on standard error, for more than one thing or one that takes long; yields what moves it on.
+    """A progress bar on standard error, for several items or a long one; yields the function that advances it.
 
-    Only on a terminal, and neither in a pipe nor beside JSON. Of one thing nobody knows how far it is: the bar says
-    that it goes on, and since when.
+    Only on a terminal, and neither in a pipe nor with JSON. For one item the bar shows the elapsed time.
     """
     several = total > 1
     counts = (MofNCompleteColumn(), TimeRemainingColumn()) if several else (TimeElapsedColumn(),)
@@ -136,23 +135,23 @@ def progress(total: int, doing: str, *, quiet: bool = False, is_long: bool = Fal
 
 @dataclass(frozen=True)
 class Listing:
-    """How somebody wants a list."""
+    """Requested form of a list."""
 
-    chosen: Form | None
+    chosen: OutputForm | None
     as_lines: bool = False
 
     @property
-    def form(self) -> Form:
-        """What was chosen by hand; else what suits whoever reads."""
+    def form(self) -> OutputForm:
+        """The chosen form, else that for a terminal or a pipe."""
         if self.chosen is not None:
             return self.chosen
-        return Form.JSONL if self.as_lines or not sys.stdout.isatty() else Form.TABLE
+        return OutputForm.JSONL if self.as_lines or not sys.stdout.isatty() else OutputForm.TABLE
 
     def show(self, rows: Sequence[Any], view: Callable[[], RenderableType]) -> None:
-        """Prints the rows as they were answered, or the view of them."""
-        if self.form is Form.TABLE:
+        """Prints the rows as they were answered, or their view."""
+        if self.form is OutputForm.TABLE:
             screen().print(view())
-        elif self.form is Form.JSON:
+        elif self.form is OutputForm.JSON:
             print_json(list(rows))
         else:
             for row in rows:
@@ -160,7 +159,7 @@ class Listing:
 
 
 def rows_of(records: Sequence[Any]) -> list[dict[str, Any]]:
-    """Records as JSON has them, moments in ISO 8601."""
+    """Records as JSON, times in ISO 8601."""
     return [{name: _plain(value) for name, value in asdict(record).items()} for record in records]
 
 
@@ -169,7 +168,7 @@ def _plain(value: Any) -> Any:
 
 
 def table_of(*headings: str, right: Sequence[str] = ()) -> Table:
-    """An empty table without lines; numbers stand to the right."""
+    """An empty table without lines; numbers are aligned to the right."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for heading in headings:
         table.add_column(heading, justify="right" if heading in right else "left", overflow="fold")

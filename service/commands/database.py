@@ -1,4 +1,4 @@
-"""`imu-health db`, `backup`, `restore`: the schema's revisions, and one file with all that is stored."""
+"""`imu-health db`, `backup`, `restore`: the schema's revisions, and one file with all stored data."""
 
 import sys
 from datetime import UTC, datetime
@@ -17,7 +17,7 @@ from service.settings import Settings
 from service.storage import Files
 from service.storage.audit import Audit
 from service.storage.backup import Restored, restore, verified, write_backup
-from service.storage.backup.manifest import Doors, Manifest
+from service.storage.backup.manifest import Manifest, RevokedAccess
 from service.storage.losses import Loss, losses
 from service.storage.schema import downgrade, head_revision, upgrade
 
@@ -51,19 +51,19 @@ def downgrade_schema(
 ) -> None:
     """Take the schema back to an earlier revision; says what will be deleted, asks, and writes a backup first."""
     settings = settings_from(database_url=database_url, data_folder=data_folder)
-    found = losses(settings.database, revision)
-    for loss in found:
+    expected_losses = losses(settings.database, revision)
+    for loss in expected_losses:
         say(_lost_rows(loss))
-    if found and not yes:
-        _ask()
-    if found and not no_backup:
+    if expected_losses and not yes:
+        _confirm()
+    if expected_losses and not no_backup:
         _write_backup(settings, backup)
     downgrade(settings.database, revision)
     typer.echo(f"The schema is at {revision}.")
 
 
-def _ask() -> None:
-    """Goes on only when a person at a terminal says so."""
+def _confirm() -> None:
+    """Goes on only after confirmation at a terminal."""
     if sys.stdin.isatty() and typer.confirm("Delete this?", err=True):
         return
     say("Nothing was changed. Say --yes to delete this.")
@@ -78,7 +78,7 @@ def _write_backup(settings: Settings, target: Path | None) -> None:
 
 
 def _lost_rows(loss: Loss) -> str:
-    """What would be gone of a table."""
+    """Rows of a table that would be deleted."""
     parts = [many(loss.rows, "row")] if loss.rows else []
     parts += [f"{column} of {many(rows, 'row')}" for column, rows in loss.values]
     return f"Will be deleted from {loss.table}: {', '.join(parts)}"
@@ -91,7 +91,7 @@ class WritesByDefault(TyperGroup):
     """`backup FILE` is `backup write FILE`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
-        """The first word is a command, or what to write."""
+        """The first word is a command, or the file to write."""
         if args and args[0] != "--help" and args[0] not in self.commands:
             args = ["write", *args]
         return super().parse_args(ctx, args)
@@ -137,30 +137,30 @@ def restore_backup(
     settings = settings_from(database_url=database_url, data_folder=data_folder)
     now = datetime.now(UTC)
     restored = restore(file, settings.database, settings.files, now, revoke_tokens=revoke_tokens)
-    _write_down(settings.database, restored, now)
+    _record_restore(settings.database, restored, now)
     typer.echo(f"Restored {_contents(restored.manifest)}.")
-    _say_who_is_in(restored.doors)
+    _report_access(restored.access)
 
 
-def _write_down(url: str, restored: Restored, now: datetime) -> None:
-    """In the audit trail, which a schema of an earlier version may not have room for yet."""
+def _record_restore(url: str, restored: Restored, now: datetime) -> None:
+    """Records the restore in the audit trail, which an earlier schema may not have."""
     if restored.manifest.revision != head_revision():
         return
     database = open_database(url)
     with database.writing() as store:
-        details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.doors)}
+        details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.access)}
         Audit(store).write(now, WHO, "restore", "backup", details)
     database.close()
 
 
-def _say_who_is_in(doors: Doors) -> None:
-    if doors.browsers:
-        say(f"{counted(doors.browsers, 'signed-in browser')} {'was' if doors.browsers == 1 else 'were'} signed out.")
-    if doors.tokens and doors.revoked:
-        say(f"{counted(doors.tokens, 'token')} {'was' if doors.tokens == 1 else 'were'} revoked: make new ones.")
-    elif doors.tokens:
+def _report_access(access: RevokedAccess) -> None:
+    if access.browsers:
+        say(f"{counted(access.browsers, 'signed-in browser')} {'was' if access.browsers == 1 else 'were'} signed out.")
+    if access.tokens and access.revoked:
+        say(f"{counted(access.tokens, 'token')} {'was' if access.tokens == 1 else 'were'} revoked: make new ones.")
+    elif access.tokens:
         say(
-            f"{counted(doors.tokens, 'token')} {'holds' if doors.tokens == 1 else 'hold'} again, revoked since the "
+            f"{counted(access.tokens, 'token')} {'holds' if access.tokens == 1 else 'hold'} again, revoked since the "
             "backup or not: look at `imu-health token list`. --revoke-tokens would have revoked them all."
         )
 

@@ -1,6 +1,6 @@
-"""`imu-health diagnose`: what the simulation gets wrong about session files, without a server.
+"""`imu-health diagnose`: errors of the simulation for session files, without a server.
 
-People read the cause and what to do first, then its size, rivals, gain and limits.
+The cause and what to do come first, then its size, alternatives, gain and limits.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -15,15 +15,16 @@ from rich.text import Text
 
 from estimator import diagnose
 from estimator.diagnosis import Diagnosis
-from estimator.diagnosis.results import Gain, Limit, Score, Structure
+from estimator.diagnosis.results import Limit, Score, Structure
 from estimator.session import DIAGNOSED, CalibrationSession
 from estimator.wording import counted
 from service.commands.console import AsJson, Files, for_each, print_json, screen, usable
-from service.commands.speech import said
+from service.commands.speech import translated
 from service.diagnosis.records import state_of
 from service.diagnosis.store import inapplicable_to_dict
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE, blind_causes, errors_of, nothing_of, what_to_do
 from service.diagnosis.words.findings import FindingView, finding_view, standard_errors, told
+from service.diagnosis.words.gain import concerned, gain_in_words
 from service.ingest import read_file
 from service.kit.measures import number
 from service.sessions.records import DiagnosisState
@@ -35,9 +36,9 @@ COLOURS = {
     DiagnosisState.UNEXPLAINED: "magenta",
 }
 NEXT = slice(1, 3)
-"""Lines of the ranking that are shown beside the named cause."""
+"""Lines of the ranking next to the named cause."""
 Result = tuple[CalibrationSession, Diagnosis | None]
-"""None of a programme in which no causes are looked for."""
+"""None for a programme without diagnosis."""
 History = Annotated[
     list[Path] | None,
     typer.Option(help="An earlier session of the unit; repeat it for more, oldest first.", show_default=False),
@@ -52,7 +53,7 @@ def diagnose_files(files: Files, as_json: AsJson = False, history: History = Non
 
 
 def _earlier(file: Path) -> CalibrationSession:
-    """A session of the history; without it the answer would be another one, so it must be readable."""
+    """An earlier session; it must be readable, since without it the answer would differ."""
     with usable(file):
         return read_file(file)
 
@@ -63,8 +64,8 @@ def _diagnosed(file: Path, earlier: list[CalibrationSession]) -> Result:
 
 
 def _print_json(result: Result) -> None:
-    session, found = result
-    print_json(inapplicable_to_dict(session.unit) if found is None else found.to_dict())
+    session, diagnosis = result
+    print_json(inapplicable_to_dict(session.unit) if diagnosis is None else diagnosis.to_dict())
 
 
 def _print_view(result: Result) -> None:
@@ -72,38 +73,38 @@ def _print_view(result: Result) -> None:
 
 
 def diagnosis_view(session: CalibrationSession, diagnosis: Diagnosis | None) -> RenderableType:
-    """The whole diagnosis of one session; None of a programme in which no causes are looked for."""
+    """The whole diagnosis of one session; None for a programme without diagnosis."""
     when = f", {session.started_at}" if session.started_at else ""
     heading = Text.assemble((session.unit, "bold"), when)
-    told = [Text(said(NOT_APPLICABLE), "yellow")] if diagnosis is None else _told(diagnosis)
-    return Group(heading, *told, Text(""))
+    lines = [Text(translated(NOT_APPLICABLE), "yellow")] if diagnosis is None else _lines_of(diagnosis)
+    return Group(heading, *lines, Text(""))
 
 
-def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
+def _lines_of(diagnosis: Diagnosis) -> Iterator[RenderableType]:
     state = state_of(diagnosis)
     for finding in diagnosis.findings:
         yield from _finding(finding_view(finding, (), diagnosis.findings), COLOURS[state])
     for structure in diagnosis.structures:
-        yield Text(said(_structure(structure)), COLOURS[DiagnosisState.UNEXPLAINED])
+        yield Text(translated(_structure(structure)), COLOURS[DiagnosisState.UNEXPLAINED])
     if state is DiagnosisState.UNEXPLAINED:
-        yield Text(f"  What to do: {said(what_to_do(diagnosis))}")
+        yield Text(f"  What to do: {translated(what_to_do(diagnosis))}")
     if not diagnosis.findings and not diagnosis.structures:
-        yield Text(said(nothing_of(diagnosis)), COLOURS[state])
+        yield Text(translated(nothing_of(diagnosis)), COLOURS[state])
     else:
-        yield from (Text(said(sentence), "yellow") for sentence in errors_of(diagnosis))
-    yield from (Text(said(note)) for note in diagnosis.notes)
+        yield from (Text(translated(sentence), "yellow") for sentence in errors_of(diagnosis))
+    yield from (Text(translated(note)) for note in diagnosis.notes)
     if diagnosis.findings:
-        yield Text(_gain(diagnosis.gain))
+        yield from _gain(diagnosis)
     yield from _unseen(diagnosis.limits)
 
 
 def _finding(finding: FindingView, colour: str) -> Iterator[RenderableType]:
-    """The name or the choice, then the evidence."""
-    yield Text(said(finding.statement), f"bold {colour}")
+    """The cause or the alternatives, then the evidence."""
+    yield Text(translated(finding.statement), f"bold {colour}")
     if finding.doubtful and not finding.lone:
         yield _choices(finding)
     else:
-        yield Text(f"  {'If it comes back' if finding.lone else 'What to do'}: {said(finding.advice)}")
+        yield Text(f"  {'If it appears again' if finding.lone else 'What to do'}: {translated(finding.advice)}")
     size = ", ".join(finding.amplitudes)
     parts = [f"size {size}" if size else "", finding.shape, finding.evidence, finding.since]
     yield Text("  " + "; ".join(part.rstrip(".") for part in parts if part))
@@ -125,23 +126,27 @@ def _structure(structure: Structure) -> str:
     return f"{told([structure]).rstrip('.')} ({standard_errors(structure.strength)})"
 
 
-def _gain(gain: Gain) -> str:
-    lines = [_scores(f"Predicting {gain.held_out} held out of the estimation", gain.before, gain.after)]
+def _gain(diagnosis: Diagnosis) -> Iterator[Text]:
+    """One sentence for everybody, then the scores for experts."""
+    gain = diagnosis.gain
+    if sentence := gain_in_words(gain, concerned(diagnosis.findings)):
+        yield Text(f"  {translated(sentence)}")
+    yield Text(_scores(f"Predicting {gain.held_out} held out of the estimation", gain.before, gain.after), "dim")
     if gain.session is not None:
         started = gain.session.started_at or "no stated date"
-        lines.append(_scores(f"Predicting the session before ({started})", gain.session.before, gain.session.after))
-    return "\n".join(lines)
+        before = f"Predicting the session before ({started})"
+        yield Text(_scores(before, gain.session.before, gain.session.after), "dim")
 
 
-def _scores(what: str, before: Score, after: Score) -> str:
+def _scores(label: str, before: Score, after: Score) -> str:
     chi2 = " → ".join(number(score.chi2_per_dof, 2) for score in (before, after))
     log = " → ".join(number(score.log_score, 2) for score in (before, after))
-    return f"  {what}: χ² per degree of freedom {chi2}, log score {log}"
+    return f"  {label}: χ² per degree of freedom {chi2}, log score {log}"
 
 
 def _unseen(limits: Sequence[Limit]) -> Iterator[Text]:
-    """What this session cannot see, by reason; and how many limits --json states."""
+    """Causes that this session cannot show, by reason; and the number of limits in --json."""
     for row in blind_causes(limits):
-        yield Text(f"  Not seen ({row.reason}): {row.causes}", "dim")
+        yield Text(f"  Not detectable ({row.reason}): {row.causes}", "dim")
     seen = sum(bool(limit.amplitude) for limit in limits)
-    yield Text(f"  Smallest effects that would have been found: {counted(seen, 'cause')}, see --json", "dim")
+    yield Text(f"  Smallest detectable effects: {counted(seen, 'cause')}, see --json", "dim")

@@ -1,4 +1,4 @@
-"""`imu-health doctor`: what the service needs, looked at from this machine, and what to do where something lacks."""
+"""`imu-health doctor`: checks the needs of the service on this machine, and advises where something is missing."""
 
 import difflib
 import os
@@ -33,138 +33,143 @@ from service.storage.engine import shown_url
 from service.storage.folders import require_writable, space_at
 from service.web.hosts import hosts_of
 
-ELSEWHERE = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")
+OTHER_VARIABLES = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")
 """Variables that are read by commands and tests, not by the service."""
-APART = timedelta(seconds=5)
+CLOCK_TOLERANCE = timedelta(seconds=5)
 """More than a busy machine takes to answer; due dates and tokens are kept to the second."""
 SQLITE = "sqlite:///"
 
 
-class State(StrEnum):
-    """How well a matter stands."""
+class CheckState(StrEnum):
+    """Result of a check."""
 
     OK = "ok"
     WARN = "warn"
     """The service works; somebody should know."""
     FAIL = "fail"
-    """Something cannot be done until it is put right."""
+    """Something does not work until it is corrected."""
 
 
-COLOURS = {State.OK: "green", State.WARN: "yellow", State.FAIL: "red"}
+COLOURS = {CheckState.OK: "green", CheckState.WARN: "yellow", CheckState.FAIL: "red"}
 
 
 @dataclass(frozen=True)
-class Finding:
+class Check:
     """One line."""
 
     what: str
-    state: State
+    state: CheckState
     text: str
     remedy: str = ""
-    """What to do; empty where nothing is to be done."""
+    """What to do; empty where nothing is needed."""
 
 
-def program() -> Iterator[Finding]:
-    """Python, this program, and the libraries that it needs."""
-    yield Finding("python", State.OK, f"{platform.python_version()} at {sys.executable}, imu-health {VERSION}")
+def program() -> Iterator[Check]:
+    """Python, this program, and its libraries."""
+    yield Check("python", CheckState.OK, f"{platform.python_version()} at {sys.executable}, imu-health {VERSION}")
     extras: dict[str, list[str]] = {}
     missing = []
-    for wanted in map(Requirement, requires("imu-health") or ()):
-        extra = re.search(r"extra == [\"']([\w-]+)[\"']", str(wanted.marker or ""))
+    for requirement in map(Requirement, requires("imu-health") or ()):
+        extra = re.search(r"extra == [\"']([\w-]+)[\"']", str(requirement.marker or ""))
         if extra is None or extra[1] != "test":
-            fault = _lacking(wanted)
+            fault = _fault_of_library(requirement)
             if fault and extra is None:
                 missing.append(fault)
             elif fault and extra is not None:
                 extras.setdefault(extra[1], []).append(fault)
     if missing:
-        yield Finding("libraries", State.FAIL, "; ".join(missing), "Install again: pip install -r requirements.lock")
+        yield Check("libraries", CheckState.FAIL, "; ".join(missing), "Install again: pip install -r requirements.lock")
     else:
-        yield Finding("libraries", State.OK, "all there, none too old")
+        yield Check("libraries", CheckState.OK, "all there, none too old")
     for name, faults in extras.items():
-        yield Finding(f"extra {name}", State.OK, f"not installed ({'; '.join(faults)}); needed only for what it adds")
+        yield Check(
+            f"extra {name}", CheckState.OK, f"not installed ({'; '.join(faults)}); needed only for what it adds"
+        )
 
 
-def _lacking(wanted: Requirement) -> str:
-    """Why a library will not do; empty where it will."""
+def _fault_of_library(requirement: Requirement) -> str:
+    """Why a library does not fit; empty where it does."""
     try:
-        found = version(wanted.name)
+        installed = version(requirement.name)
     except PackageNotFoundError:
-        return f"{wanted.name} is missing"
+        return f"{requirement.name} is missing"
     return (
         ""
-        if wanted.specifier.contains(found, prereleases=True)
-        else f"{wanted.name} is {found}, not {wanted.specifier}"
+        if requirement.specifier.contains(installed, prereleases=True)
+        else f"{requirement.name} is {installed}, not {requirement.specifier}"
     )
 
 
-def variables(environment: Mapping[str, str]) -> Iterator[Finding]:
-    """Variables of the environment that nothing reads, most often because they are misspelt."""
-    known = {*(f"{PREFIX}{name.upper()}" for name in Settings.model_fields), *ELSEWHERE}
+def variables(environment: Mapping[str, str]) -> Iterator[Check]:
+    """Unknown variables of the environment, most often misspelt."""
+    known = {*(f"{PREFIX}{name.upper()}" for name in Settings.model_fields), *OTHER_VARIABLES}
     known |= retired(environment).keys()  # a failure of its own, with what stands in their place
     unknown = sorted(name for name in environment if name.upper().startswith(PREFIX) and name.upper() not in known)
     for name in unknown:
-        close = difflib.get_close_matches(name.upper(), known, 1)
-        remedy = f"Did you mean {close[0]}?" if close else "Remove it, or look its name up on the page of settings."
-        yield Finding("settings", State.WARN, f"{name} is no setting and has no effect", remedy)
+        similar = difflib.get_close_matches(name.upper(), known, 1)
+        remedy = f"Did you mean {similar[0]}?" if similar else "Remove it, or look its name up on the page of settings."
+        yield Check("settings", CheckState.WARN, f"{name} is no setting and has no effect", remedy)
     if not unknown:
-        yield Finding("settings", State.OK, "every variable is known")
+        yield Check("settings", CheckState.OK, "every variable is known")
 
 
-def contradictions(settings: Settings) -> Iterator[Finding]:
-    """Settings that do not go together."""
+def contradictions(settings: Settings) -> Iterator[Check]:
+    """Contradictory settings."""
     if settings.sign_in == "off" and not settings.is_local:
-        yield Finding("sign-in", State.WARN, f"nobody signs in, and {settings.host} may be reached from elsewhere",
+        yield Check("sign-in", CheckState.WARN, f"nobody signs in, and {settings.host} may be reached from elsewhere",
                       "Set IMU_HEALTH_SIGN_IN=required.")  # fmt: skip
     if hosts_of(settings).any_address:
-        yield Finding("address", State.WARN, "the service answers to addresses in digits only",
+        yield Check("address", CheckState.WARN, "the service answers to addresses in digits only",
                       "Name it with IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS.")  # fmt: skip
     if settings.oidc_issuer and not settings.oidc_client_id:
-        yield Finding("sign-in elsewhere", State.FAIL, "an OpenID provider is named, but not how it knows this service",
+        yield Check("sign-in elsewhere", CheckState.FAIL,
+                    "an OpenID provider is named, but not how it knows this service",
                       "Set IMU_HEALTH_OIDC_CLIENT_ID.")  # fmt: skip
     for name in ("oidc_client_secret_file", "seal_key_file", "seal_password_file"):
         path: Path | None = getattr(settings, name)
         if path is not None and not os.access(path, os.R_OK):
-            yield Finding(
-                "secrets", State.FAIL, f"{path} cannot be read", f"Correct {PREFIX}{name.upper()}, or the file."
+            yield Check(
+                "secrets", CheckState.FAIL, f"{path} cannot be read", f"Correct {PREFIX}{name.upper()}, or the file."
             )
     if settings.seal_password_file and not settings.seal_key_file:
-        yield Finding("seal", State.WARN, "a password is given, but no key that it opens",
+        yield Check("seal", CheckState.WARN, "a password is given, but no key that it opens",
                       "Set IMU_HEALTH_SEAL_KEY_FILE.")  # fmt: skip
 
 
-def folders(settings: Settings) -> Iterator[Finding]:
-    """Whether uploads can be kept, and how much room there is."""
+def folders(settings: Settings) -> Iterator[Check]:
+    """Whether uploads can be stored, and the free space."""
     try:
         require_writable(settings.files)
     except ServiceError as fault:
-        yield Finding("folder", State.FAIL, str(fault))
+        yield Check("folder", CheckState.FAIL, str(fault))
         return
-    yield Finding("folder", State.OK, f"{settings.files} can be written")
+    yield Check("folder", CheckState.OK, f"{settings.files} can be written")
     space = space_at(settings.files, limits_of(settings).free)
     free = f"{space.free / 2**30:.1f} GiB free"
     if space.too_little:
-        yield Finding("disk", State.FAIL, space.too_little, "Make room, or move the data folder.")
+        yield Check("disk", CheckState.FAIL, space.too_little, "Make room, or move the data folder.")
     elif space.free < 4 * space.least:
-        yield Finding("disk", State.WARN, f"{free}; uploads stop at {space.least / 2**20:.0f} MiB", "Make room soon.")
+        yield Check(
+            "disk", CheckState.WARN, f"{free}; uploads stop at {space.least / 2**20:.0f} MiB", "Make room soon."
+        )
     else:
-        yield Finding("disk", State.OK, free)
+        yield Check("disk", CheckState.OK, free)
 
 
-def database(settings: Settings, now: datetime) -> Iterator[Finding]:
-    """Whether the database answers, is at the newest migration, and agrees about the time."""
+def database(settings: Settings, now: datetime) -> Iterator[Check]:
+    """Whether the database answers, has the newest migration, and agrees about the time."""
     where = shown_url(settings.database)
     if settings.database.startswith(SQLITE) and not Path(settings.database.removeprefix(SQLITE)).exists():
-        yield Finding("database", State.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
+        yield Check("database", CheckState.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
         return
     opened = open_database(settings.database)
     try:
         opened.require_ready()
-        yield Finding("database", State.OK, f"{where} answers and is at the newest migration")
+        yield Check("database", CheckState.OK, f"{where} answers and is at the newest migration")
         yield from _clock(opened, now)
         yield from _waiting(opened, settings)
     except ServiceError as fault:
-        yield Finding("database", State.FAIL, f"{where}: {fault}", _remedy(str(fault)))
+        yield Check("database", CheckState.FAIL, f"{where}: {fault}", _remedy(str(fault)))
     finally:
         opened.close()
 
@@ -173,36 +178,38 @@ def _remedy(fault: str) -> str:
     return "" if "run" in fault else "Start it, or correct IMU_HEALTH_DATABASE_URL."
 
 
-def _clock(opened: Database, now: datetime) -> Iterator[Finding]:
-    """This machine's clock against the server's, and against what is stored already."""
+def _clock(opened: Database, now: datetime) -> Iterator[Check]:
+    """This machine's clock against the server's, and against stored times."""
     remedy = "Set the clocks of both machines, best by NTP."
     server = opened.server_time()
     with opened.reading() as store:
         lines = Audit(store).page(1)
-    if server is not None and abs(server - now) > APART:
-        yield Finding("clock", State.FAIL, f"{abs(server - now).total_seconds():.0f} s apart from the database", remedy)
-    elif lines and lines[0].at - now > APART:
+    if server is not None and abs(server - now) > CLOCK_TOLERANCE:
+        yield Check(
+            "clock", CheckState.FAIL, f"{abs(server - now).total_seconds():.0f} s apart from the database", remedy
+        )
+    elif lines and lines[0].at - now > CLOCK_TOLERANCE:
         text = f"the audit trail's last line is of {lines[0].at:%Y-%m-%d %H:%M:%S} UTC, later than this clock says"
-        yield Finding("clock", State.FAIL, text, remedy)
+        yield Check("clock", CheckState.FAIL, text, remedy)
     else:
-        yield Finding("clock", State.OK, f"{now:%Y-%m-%d %H:%M:%S} UTC, as the database has it")
+        yield Check("clock", CheckState.OK, f"{now:%Y-%m-%d %H:%M:%S} UTC, as the database has it")
 
 
-def _waiting(opened: Database, settings: Settings) -> Iterator[Finding]:
-    """Processes that work beside the requests, and what waits for them."""
+def _waiting(opened: Database, settings: Settings) -> Iterator[Check]:
+    """Background processes, and the work waiting for them."""
     with opened.reading() as store:
-        waiting = WorkQueue(store, WorkKind.DIAGNOSIS).count()
+        pending = WorkQueue(store, WorkKind.DIAGNOSIS).count()
     workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
-    text = f"{workers} beside the requests, {waiting} diagnoses waiting"
+    text = f"{workers} beside the requests, {pending} diagnoses waiting"
     if workers == 0:
-        yield Finding(
-            "workers", State.WARN, text, "Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."
+        yield Check(
+            "workers", CheckState.WARN, text, "Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."
         )
     elif workers > cores:
-        yield Finding("workers", State.WARN, f"{text}; the machine has {cores} cores",
+        yield Check("workers", CheckState.WARN, f"{text}; the machine has {cores} cores",
                       "Set IMU_HEALTH_DIAGNOSIS_WORKERS to fewer.")  # fmt: skip
     else:
-        yield Finding("workers", State.OK, text)
+        yield Check("workers", CheckState.OK, text)
 
 
 def doctor(
@@ -211,30 +218,30 @@ def doctor(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, one finding a line.")] = False,
 ) -> None:
     """Look at everything the service needs on this machine, and say what to do; exit code 1 where something fails."""
-    found = list(_findings(database_url=database_url, data_folder=data_folder))
-    for one in found:
+    findings = list(_findings(database_url=database_url, data_folder=data_folder))
+    for finding in findings:
         if as_json:
-            print_json(asdict(one))
+            print_json(asdict(finding))
         else:
-            remedy = f"\n      {escape(one.remedy)}" if one.remedy else ""
-            mark = f"[{COLOURS[one.state]}]{one.state:4}[/]"
-            screen().print(f"{mark}  [bold]{escape(one.what)}[/]: {escape(one.text)}{remedy}", soft_wrap=True)
-    if any(one.state is State.FAIL for one in found):
+            remedy = f"\n      {escape(finding.remedy)}" if finding.remedy else ""
+            mark = f"[{COLOURS[finding.state]}]{finding.state:4}[/]"
+            screen().print(f"{mark}  [bold]{escape(finding.what)}[/]: {escape(finding.text)}{remedy}", soft_wrap=True)
+    if any(finding.state is CheckState.FAIL for finding in findings):
         raise typer.Exit(FAILED)
 
 
-def _findings(**options: object) -> Iterator[Finding]:
+def _findings(**options: object) -> Iterator[Check]:
     yield from program()
     yield from variables(os.environ)
     try:
         settings = Settings(**{name: value for name, value in options.items() if value is not None})  # type: ignore[arg-type]
     except ServiceError as fault:
-        yield Finding("settings", State.FAIL, str(fault))
+        yield Check("settings", CheckState.FAIL, str(fault))
         return
     except ValidationError as fault:
         for error in fault.errors():
             name = "IMU_HEALTH_" + "_".join(map(str, error["loc"])).upper()
-            yield Finding("settings", State.FAIL, f"{name}: {error['msg']}", "Correct it or unset it.")
+            yield Check("settings", CheckState.FAIL, f"{name}: {error['msg']}", "Correct it or unset it.")
         return
     yield from contradictions(settings)
     yield from folders(settings)

@@ -11,12 +11,12 @@ import typer
 from service.client import connect
 from service.commands.calls import in_address
 from service.commands.console import DEFAULT_SERVER, Out, Server, deliver, progress
-from service.commands.speech import say, spoken
+from service.commands.speech import output_language, say
 from service.languages.language import Language, of_environment
 
 
-class System(StrEnum):
-    """Whose parameters."""
+class ExportSystem(StrEnum):
+    """Target system of the parameters."""
 
     PX4 = "px4"
     ARDUPILOT = "ardupilot"
@@ -25,14 +25,14 @@ class System(StrEnum):
 
 
 class CertificateForm(StrEnum):
-    """What a certificate can be written as."""
+    """Form of a certificate."""
 
     PDF = "pdf"
     DCC = "dcc"
 
 
-class ReportForm(StrEnum):
-    """What a report can be written as."""
+class FleetReportForm(StrEnum):
+    """Form of a report."""
 
     JSON = "json"
     CSV = "csv"
@@ -41,7 +41,7 @@ class ReportForm(StrEnum):
 
 
 class LabelForm(StrEnum):
-    """What a label can be written as."""
+    """Form of a label."""
 
     PDF = "pdf"
     SVG = "svg"
@@ -65,27 +65,29 @@ def certificate(
     """Write the certificate of a session."""
     path = "/sessions/{session}/certificates/{number}" if number else "/sessions/{session}/certificate"
     query = {"format": format.value} | ({} if number else {"by": by})
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         deliver(client.get(in_address(path, {"session": session, "number": number}), **query).content, out)
 
 
 def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = None) -> None:
     """Write the correction that firmware applies to readings, as JSON."""
-    with connect(server, language=spoken()) as client:
-        found = client.get(in_address("/sessions/{session}/correction", {"session": session})).json()
-    deliver((json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode(), out)
+    with connect(server, language=output_language()) as client:
+        document = client.get(in_address("/sessions/{session}/correction", {"session": session})).json()
+    deliver((json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode(), out)
 
 
 def export(
     session: Session,
-    system: Annotated[System, typer.Option("--system", help="px4, ardupilot, kalibr or ros2.")],
+    system: Annotated[ExportSystem, typer.Option("--system", help="px4, ardupilot, kalibr or ros2.")],
     server: Server = DEFAULT_SERVER,
     out: Out = None,
+    *,
+    force: Annotated[bool, typer.Option("--force", help="Also where the unit must not be used.")] = False,
 ) -> None:
     """Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."""
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         path = in_address("/sessions/{session}/export", {"session": session})
-        deliver(client.get(path, system=system.value).content, out)
+        deliver(client.get(path, system=system.value, force=str(force).lower()).content, out)
 
 
 report = typer.Typer(add_completion=False, rich_markup_mode="markdown", invoke_without_command=True)
@@ -95,14 +97,14 @@ report = typer.Typer(add_completion=False, rich_markup_mode="markdown", invoke_w
 def write_report(
     context: typer.Context,
     server: Server = DEFAULT_SERVER,
-    format: Annotated[ReportForm, typer.Option("--format", help="json, csv, xlsx or pdf.")] = ReportForm.CSV,
+    format: Annotated[FleetReportForm, typer.Option("--format", help="json, csv, xlsx or pdf.")] = FleetReportForm.CSV,
     out: Out = None,
 ) -> None:
     """Write the fleet's condition as a file for other programs."""
     if context.invoked_subcommand is not None:
         return
-    is_long = format in (ReportForm.XLSX, ReportForm.PDF)
-    with connect(server, language=spoken()) as client, progress(1, "making the report", is_long=is_long):
+    is_long = format in (FleetReportForm.XLSX, FleetReportForm.PDF)
+    with connect(server, language=output_language()) as client, progress(1, "making the report", is_long=is_long):
         content = client.get("/fleet/report", format=format.value).content
     deliver(content, out)
 
@@ -117,7 +119,7 @@ def write_label(
 ) -> None:
     """Write a unit's label: serial number, due date, and a QR code that opens its page."""
     path = in_address(f"/units/{{unit}}/label.{format.value}", {"unit": unit})
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         deliver(client.get(path, due=str(due).lower()).content, out)
 
 
@@ -134,8 +136,8 @@ def write_template(
     out: Annotated[Path, typer.Option(help="File to write.")] = Path("session.xlsx"),
 ) -> None:
     """Write a workbook to fill in: sensors, stand and schedule are there; `imu-health upload` takes it as it is."""
-    asked = {"unit": unit, "unit_type": unit_type, "kind": kind, "sensors": sensors}
+    query = {"unit": unit, "unit_type": unit_type, "kind": kind, "sensors": sensors}
     language = lang or of_environment(os.environ)
-    with connect(server, language=spoken()) as client:
-        out.write_bytes(client.get("/session-template", lang=language.value, **asked).content)
+    with connect(server, language=output_language()) as client:
+        out.write_bytes(client.get("/session-template", lang=language.value, **query).content)
     say(f"{out} is ready to fill in: its yellow cells; then imu-health upload {out}")

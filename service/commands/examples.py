@@ -1,6 +1,6 @@
-"""What the help of every command shows: lines to type, each with what it is for.
+"""Examples in the help of every command: lines to type, each with its purpose.
 
-A line belongs to the command whose words it begins with, and to the group that this is one of.
+A line belongs to the command whose words it begins with, and to its group.
 """
 
 from collections.abc import Iterator
@@ -91,7 +91,7 @@ restore /backups/today.backup --data-folder /data  # into an empty database
 
 
 def examples_of(words: str) -> tuple[tuple[str, str], ...]:
-    """Lines of a command or of a group of commands, and what each is for."""
+    """Lines of a command or of a group of commands, with their purposes."""
     return tuple(pair for pair in _pairs() if f"{pair[0]} ".startswith(f"{words} "))
 
 

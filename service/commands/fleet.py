@@ -13,7 +13,7 @@ from estimator.wording import counted
 from service.client import Point, connect
 from service.commands.calls import Answer
 from service.commands.console import DEFAULT_SERVER, AsLines, FormOf, Listing, Server, table_of
-from service.commands.speech import said, spoken
+from service.commands.speech import output_language, translated
 from service.commands.upload import coloured
 from service.kit.measures import deviation_measure, measured, number
 from service.sessions.decision import Verdict
@@ -22,7 +22,7 @@ from service.sessions.words.conditions import WITH_RESERVATION
 from service.sessions.words.noise import size_in_words
 
 KNOWN = (*ALL_PARAMETERS, *TERMS)
-"""Parameters that a history has."""
+"""Parameters of a history."""
 Stand = Annotated[str | None, typer.Option(help="Only those last measured on this stand.", show_default="all")]
 UnitType = Annotated[str | None, typer.Option("--unit-type", help="Only those of this type.", show_default="all")]
 DueBefore = Annotated[
@@ -48,21 +48,24 @@ def fleet(
 ) -> None:
     """Show every unit with its condition, the worst first; some of them by stand, type, due date or flag."""
     due = None if due_before is None else f"{due_before.isoformat()}Z"
-    wanted = {"stand": stand, "unit_type": unit_type, "due_before": due, "flagged": flagged or None}
-    with connect(server, language=spoken()) as client:
+    filters = {"stand": stand, "unit_type": unit_type, "due_before": due, "flagged": flagged or None}
+    with connect(server, language=output_language()) as client:
         condition = client.get("/fleet").json()
-        found = [unit.document for unit in client.units(**wanted)]
-    is_whole = len(found) == condition["units"]
-    heading = _summary(condition) if is_whole else f"{len(found)} of {counted(condition['units'], 'unit')}\n"
-    Listing(form, as_json).show(found, lambda: Group(heading, _fleet_table(found)))
+        units = [unit.document for unit in client.units(**filters)]
+    is_complete = len(units) == condition["units"]
+    heading = _summary(condition) if is_complete else f"{len(units)} of {counted(condition['units'], 'unit')}\n"
+    Listing(form, as_json).show(units, lambda: Group(heading, _fleet_table(units)))
 
 
 def _summary(condition: Answer) -> str:
     """``12 units, 12 of them simulated: 1 Unfit, …``"""
     counts = {Verdict(name): count for name, count in condition["verdicts"].items() if count}
-    found = (_counted(verdict, counts[verdict], condition) for verdict in reversed(Verdict) if verdict in counts)
+    references = condition["references"]
+    counts[Verdict.UNDECIDABLE] = counts.get(Verdict.UNDECIDABLE, 0) - references
+    parts = [_counted(verdict, counts[verdict], condition) for verdict in reversed(Verdict) if counts.get(verdict)]
+    parts += [f"{references} {coloured(Verdict.UNDECIDABLE, is_reference=True)}"] if references else []
     simulated = f", {condition['simulated']} of them simulated" if condition["simulated"] else ""
-    return f"{counted(condition['units'], 'unit')}{simulated}: {', '.join(found)}\n"
+    return f"{counted(condition['units'], 'unit')}{simulated}: {', '.join(parts)}\n"
 
 
 def _counted(verdict: Verdict, count: int, condition: Answer) -> str:
@@ -82,7 +85,7 @@ def _fleet_table(units: list[Answer]) -> Table:
             number(unit["margin"], 2),
             (unit["last_at"] or "")[:10],
             str(unit["sessions"]),
-            escape(said(unit["reason"])),
+            escape(translated(unit["reason"])),
         )
     return table
 
@@ -103,12 +106,12 @@ def history(
     The terms of noise at rest, of sessions that were sent as raw logs, stand beside them: their size and where it lies
     with 95 %.
     """
-    with connect(server, language=spoken()) as client:
-        found = list(client.history(unit, sensor=sensor, parameter=parameter, since=since, until=until))
-    Listing(form, as_json).show([point.document for point in found], lambda: _history_table(found))
+    with connect(server, language=output_language()) as client:
+        points = list(client.history(unit, sensor=sensor, parameter=parameter, since=since, until=until))
+    Listing(form, as_json).show([point.document for point in points], lambda: _history_table(points))
 
 
-def _history_table(found: list[Point]) -> Table:
+def _history_table(points: list[Point]) -> Table:
     table = table_of(
         "measured",
         "sensor",
@@ -118,7 +121,7 @@ def _history_table(found: list[Point]) -> Table:
         "condition",
         right=("off reference", "tolerance"),
     )
-    for point in found:
+    for point in points:
         condition = "" if point.parameter in TERMS else coloured(point.verdict, point.is_reference)
         day, sensor = f"{point.at:%Y-%m-%d}", escape(point.sensor)
         table.add_row(day, sensor, point.parameter, *_numbers(point), condition)

@@ -1,33 +1,34 @@
-"""What `imu-health simulate --hide` hides, how it is asked for, and where the answer goes."""
+"""Options and answer file of `imu-health simulate --hide`."""
 
 import json
 import re
 from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, NoReturn
 
 import numpy as np
 import typer
 
 from estimator.causes import CATALOGUE, Cause, find
 from estimator.errors import SessionError
-from estimator.hiding import Hidden, TooWeakError, UnhideableError, hide, hide_any
+from estimator.hiding import HiddenCause, TooWeakError, UnhideableError, hide, hide_any
+from estimator.json_object import Json
 from estimator.session import CALIBRATIONS, GYROSCOPE, TWO_AXIS_STAND, CalibrationSession
 from service.commands.speech import UNUSABLE, say
 
 ANY = "random"
-"""As the cause: one that the seed draws."""
-USUAL = 12.0
-"""Standard errors: plainly seen, and not yet seen by eye."""
-OWN_STREAM = 14
-"""Beside the seed, so that without what is hidden the readings are the same as without --hide."""
+"""Cause that stands for one drawn by the seed."""
+DEFAULT_STRENGTH = 12.0
+"""Standard errors: clearly detected, but not visible to the eye."""
+RANDOM_STREAM = 14
+"""Stream of random numbers beside the seed, so that the other readings are the same as without --hide."""
 REMEDY = {"temperature": "give --warming 3", "history": "give --sessions 2"}
-"""What a session can be given that a cause needs."""
-ROOM = 21.0
+"""Option that provides what a cause needs."""
+ROOM_TEMPERATURE = 21.0
 """°C, at the first row."""
 WARMEST = 0.35
-"""Of the session, when the room is warmest: a course that neither time nor the head's angle has."""
+"""Fraction of the session at which the room is warmest: a course of neither time nor the head's angle."""
 NamedCause = Annotated[
     str | None,
     typer.Option(
@@ -41,7 +42,7 @@ Strength = Annotated[
     typer.Option(
         min=1,
         help="Of what is hidden, in standard errors of a reading.",
-        show_default=f"{USUAL:g}, or the least that can be",
+        show_default=f"{DEFAULT_STRENGTH:g}, or the least that can be",
     ),
 ]
 OnSensor = Annotated[
@@ -56,23 +57,23 @@ Warming = Annotated[
 
 
 @dataclass(frozen=True)
-class Wish:
+class HidingRequest:
     """What is to be hidden."""
 
     cause: Cause | None
     """None for any."""
     strength: float
     exact: bool
-    """Whether that strength was asked for."""
+    """Whether that strength was requested."""
     sensor: str | None
-    """Name of the one to have it; None where the seed draws one."""
+    """Name of the affected sensor; None where the seed draws one."""
     answer: Path | None
 
 
-def read_wish(
+def read_request(
     cause: str | None, strength: float | None, sensor: str | None, answer: Path | None, programme: str
-) -> Wish | None:
-    """The options as one wish; None without --hide, a usage error where they do not fit one another."""
+) -> HidingRequest | None:
+    """The options as one request; None without --hide, a usage error for contradictory options."""
     if cause is None:
         if (strength, sensor, answer) != (None, None, None):
             raise typer.BadParameter("--strength, --sensor and --answer belong to --hide, which is not given")
@@ -89,40 +90,42 @@ def read_wish(
         refuse(f"{programme} shows none of the causes that can be hidden; {TWO_AXIS_STAND} does")
     if known is not None and strength is not None and not known.units:
         refuse(f"{known.identifier} is there or not, and has no strength; leave --strength out")
-    return Wish(known, strength or USUAL, strength is not None, sensor, answer)
+    return HidingRequest(known, strength or DEFAULT_STRENGTH, strength is not None, sensor, answer)
 
 
-def hidden_in(sessions: list[CalibrationSession], wish: Wish, seed: int) -> tuple[CalibrationSession, Hidden]:
-    """The last session, its pulses not counted yet, with what is wished for in it; exit code 2 with a sentence where
-    that cannot be."""
-    rng = np.random.default_rng([seed, OWN_STREAM])
+def hidden_in(
+    sessions: list[CalibrationSession], request: HidingRequest, seed: int
+) -> tuple[CalibrationSession, HiddenCause]:
+    """The last session before its pulses are counted, with the requested cause in it; exit code 2 with a sentence where
+    that is impossible."""
+    rng = np.random.default_rng([seed, RANDOM_STREAM])
     names = [one.name for one in sessions[-1].sensors]
-    if wish.sensor is not None and wish.sensor not in names:
-        refuse(f"--sensor {wish.sensor} is not there; the block has {names[0]} to {names[-1]}")
-    sensor = None if wish.sensor is None else names.index(wish.sensor)
+    if request.sensor is not None and request.sensor not in names:
+        refuse(f"--sensor {request.sensor} is not there; the block has {names[0]} to {names[-1]}")
+    sensor = None if request.sensor is None else names.index(request.sensor)
     try:
-        if wish.cause is None:
-            return hide_any(sessions, rng, strength=wish.strength, sensor=sensor, exact=wish.exact)
-        return hide(sessions, wish.cause, rng, strength=wish.strength, sensor=sensor, exact=wish.exact)
+        if request.cause is None:
+            return hide_any(sessions, rng, strength=request.strength, sensor=sensor, exact=request.exact)
+        return hide(sessions, request.cause, rng, strength=request.strength, sensor=sensor, exact=request.exact)
     except TooWeakError as fault:
         refuse(f"{fault}; give --strength {ceil(fault.least)}, or more --positions")
     except UnhideableError as fault:
-        lacking = "" if wish.cause is None else _remedy(wish.cause, sessions)
-        refuse(f"{fault}{lacking}")
+        remedy = "" if request.cause is None else _remedy(request.cause, sessions)
+        refuse(f"{fault}{remedy}")
     except SessionError as fault:
         refuse(str(fault))
 
 
 def _remedy(cause: Cause, sessions: list[CalibrationSession]) -> str:
-    """``; give --warming 3`` where an option would provide what lacks."""
+    """``; give --warming 3`` for an option that provides what is missing."""
     if "gravity" in cause.needs and sessions[-1].stand is not None:
         return "; give --programme arbitrary-orientations"
     if cause.kind == GYROSCOPE and all(sensor.kind != GYROSCOPE for sensor in sessions[-1].sensors):
         return "; give --block gyroscope"
-    has = {"temperature": sessions[-1].temperature is not None, "history": len(sessions) > 1}
+    present = {"temperature": sessions[-1].temperature is not None, "history": len(sessions) > 1}
     needs = cause.needs | ({"history"} if cause.between and cause.units else frozenset())
-    ways = [way for need, way in REMEDY.items() if need in needs and not has[need]]
-    return "".join(f"; {way}" for way in ways)
+    options = [option for name, option in REMEDY.items() if name in needs and not present[name]]
+    return "".join(f"; {option}" for option in options)
 
 
 def refuse(sentence: str) -> NoReturn:
@@ -131,13 +134,13 @@ def refuse(sentence: str) -> NoReturn:
     raise typer.Exit(UNUSABLE)
 
 
-def write_answer(hidden: Hidden, file: Path, session: CalibrationSession, target: Path) -> None:
+def write_answer(hidden: HiddenCause, file: Path, session: CalibrationSession, target: Path) -> None:
     """What is hidden in ``file``, sensors by name and rows counted from 1."""
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(json.dumps(_answer(hidden, file, session), ensure_ascii=False), encoding="utf-8")
 
 
-def _answer(hidden: Hidden, file: Path, session: CalibrationSession) -> dict[str, Any]:
+def _answer(hidden: HiddenCause, file: Path, session: CalibrationSession) -> Json:
     known = find(hidden.cause)
     assert known is not None
     return {
@@ -155,16 +158,16 @@ def _answer(hidden: Hidden, file: Path, session: CalibrationSession) -> dict[str
     }
 
 
-def _unit(unit: str, hidden: Hidden, session: CalibrationSession) -> str:
+def _unit(unit: str, hidden: HiddenCause, session: CalibrationSession) -> str:
     """Of a size at the input, which of a gyro is a rate."""
     on_gyro = any(session.sensors[i].kind == GYROSCOPE for i in hidden.sensors)
     return "rad/s" if on_gyro and unit == "m/s²" else unit
 
 
-def warmed(schedule: CalibrationSession, by: float) -> CalibrationSession:
-    """The schedule in a room that warms by so many °C and cools again; without any, nobody looks at a thermometer."""
-    if not by:
+def warmed(schedule: CalibrationSession, rise: float) -> CalibrationSession:
+    """The schedule in a room that warms by some °C and cools again; without any, no temperature is recorded."""
+    if not rise:
         return schedule
     assert schedule.time is not None
-    passed = schedule.time / schedule.time[-1] / WARMEST
-    return replace(schedule, temperature=np.round(ROOM + by * passed * np.exp(1 - passed), 2))
+    fraction = schedule.time / schedule.time[-1] / WARMEST
+    return replace(schedule, temperature=np.round(ROOM_TEMPERATURE + rise * fraction * np.exp(1 - fraction), 2))

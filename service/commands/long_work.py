@@ -1,6 +1,5 @@
-"""`imu-health jobs` and `models`: long work of a running service, and what engineers accepted into its models, after
-which sessions are computed again. Each command is a row of the table at the end; two need more than one call.
-"""
+"""`imu-health jobs` and `models`: long jobs of a running service, and accepted causes of its models, after which
+sessions are computed again. Each command is a row of the table at the end; two need more than one call."""
 
 from enum import StrEnum
 from typing import Annotated
@@ -14,7 +13,7 @@ from service.client import connect
 from service.commands.api import By, WhyHandled
 from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
-from service.commands.speech import FAILED, problems_said, say, spoken
+from service.commands.speech import FAILED, output_language, problems_in_words, say
 from service.commands.upload import followed
 from service.errors import RefusedError, ServiceError
 from service.groups.records import Level
@@ -30,7 +29,7 @@ RevisionId = Annotated[int, typer.Argument(metavar="REVISION", help="Number of t
 
 
 class ReportForm(StrEnum):
-    """What a report can be made as."""
+    """Form of a report."""
 
     PDF = "pdf"
     XLSX = "xlsx"
@@ -40,7 +39,7 @@ def show_job(
     id: JobId, server: Server = DEFAULT_SERVER, as_json: AsJson = False, wait: Wait = False, out: Out = None
 ) -> None:
     """Show how far a job has come; --out writes the file that it made."""
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         job = followed(client, id, quiet=as_json) if wait else client.get(f"/jobs/{id}").json()
         if out is not None:
             deliver(client.get(f"/jobs/{id}/file").content, out)
@@ -61,25 +60,25 @@ def accept_cause(
 ) -> None:
     """Accept what sessions show together; every session that it concerns is computed again."""
     body = {"cause": cause, "sensors": sensor or [], "by": by, "note": why}
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         try:
-            made = client.post(in_address(f"/{PATHS[level]}/{{name}}/diagnosis/accept", {"name": name}), body)
+            accepted = client.post(in_address(f"/{PATHS[level]}/{{name}}/diagnosis/accept", {"name": name}), body)
         except RefusedError as refused:
             reasons = "; ".join(f"{problem.field} {problem.message}" for problem in refused.problems)
             raise ServiceError(f"{refused.detail} {reasons}") from refused
-        found = client.get(f"/models/{made['id']}").json()
-    print_json(found) if as_json else _show_model(found)
+        model = client.get(f"/models/{accepted['id']}").json()
+    print_json(model) if as_json else _show_model(model)
 
 
 def _show_job(job: Answer) -> None:
     screen().print(f"Job {job['id']}  {_state(job)}  {escape(_work(job))}  {_done(job)}")
     if job["held_up"]:
         say(f"Held up, and tried again by itself: {job['held_up']}")
-    for one in job["failures"]:
-        say(f"{one['subject']}: {one['reason']}" if one["subject"] else one["reason"])
+    for failure in job["failures"]:
+        say(f"{failure['subject']}: {failure['reason']}" if failure["subject"] else failure["reason"])
     if job["problems"]:
-        problems = (Problem(one["field"], one["message"], one["row"]) for one in job["problems"])
-        say(f"{job['subject']}: {problems_said(problems)}")
+        problems = (Problem(failure["field"], failure["message"], failure["row"]) for failure in job["problems"])
+        say(f"{job['subject']}: {problems_in_words(problems)}")
     if job["session"]:
         say(f"Session {job['session']}")
 
@@ -101,13 +100,13 @@ def _state(job: Answer) -> str:
     return f"[{COLOURS.get(state, 'blue')}]{state.value}[/]"
 
 
-def _show_model(found: Answer) -> None:
-    what = "withdraws revision " + str(found["withdraws"]) if found["withdraws"] else "accepted"
-    by = f"{what} by {found['accepted_by']}, {found['accepted_at'][:10]}"
-    line = f"Revision {found['id']}  {_cause(found)}  of {found['scope']} {found['subject']}, {by}"
+def _show_model(model: Answer) -> None:
+    action = "withdraws revision " + str(model["withdraws"]) if model["withdraws"] else "accepted"
+    heading = f"{action} by {model['accepted_by']}, {model['accepted_at'][:10]}"
+    line = f"Revision {model['id']}  {_cause(model)}  of {model['scope']} {model['subject']}, {heading}"
     screen().print(escape(line), highlight=False)
-    for one in found["recomputations"]:
-        screen().print(f"  [bold]{escape(one['unit'])}[/]  {_outcome(one)}", highlight=False)
+    for recomputation in model["recomputations"]:
+        screen().print(f"  [bold]{escape(recomputation['unit'])}[/]  {_outcome(recomputation)}", highlight=False)
 
 
 def _cause(revision: Answer) -> str:
@@ -115,12 +114,12 @@ def _cause(revision: Answer) -> str:
     return f"{revision['cause']}{sensors}"
 
 
-def _outcome(one: Answer) -> str:
-    outcome = one["outcome"]
+def _outcome(recomputation: Answer) -> str:
+    outcome = recomputation["outcome"]
     if outcome is None:
-        return str(one["state"])
-    moved = "; ".join(f"{m['session']} {m['before']} → {m['after']}" for m in outcome["verdicts"])
-    return f"{outcome['recomputed']} of {counted(outcome['sessions'], 'session')}; {moved or 'no verdict moved'}"
+        return str(recomputation["state"])
+    changes = "; ".join(f"{m['session']} {m['before']} → {m['after']}" for m in outcome["verdicts"])
+    return f"{outcome['recomputed']} of {counted(outcome['sessions'], 'session')}; {changes or 'no verdict changes'}"
 
 
 JOBS = Columns(

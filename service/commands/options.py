@@ -1,4 +1,4 @@
-"""Options that several commands share, and the settings that they give."""
+"""Options shared by several commands, and the settings made from them."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,7 +19,7 @@ DataFolder = Annotated[
 
 
 def settings_from(**options: Any) -> Settings:
-    """The environment's settings, with the options that were given in their place."""
+    """The environment's settings, overridden by the given options."""
     try:
         return Settings(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as fault:

@@ -1,4 +1,4 @@
-"""`imu-health parity`: a recording of any length beside the calibration that its readings are corrected by."""
+"""`imu-health parity`: a recording of any length against the calibration that corrects its readings."""
 
 from pathlib import Path
 from typing import Annotated
@@ -17,7 +17,7 @@ from service.judging.words import found_in_words
 from service.kit.measures import COVERAGE, in_words
 
 PARAMETERS = ("bias", "scale", "axis")
-"""What a recording in service shows, the most frequent change first."""
+"""Parameters visible in a recording in service, the most frequent change first."""
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="The recording.", show_default=False)]
 Reference = Annotated[Path, typer.Option(help="Session file of the calibration to compare with.", show_default=False)]
@@ -60,7 +60,7 @@ def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> Par
 
 
 def parity_view(result: ParityResult) -> RenderableType:
-    """The finding in a sentence, then every sensor: what it seems to have moved, and what would have been seen."""
+    """The finding in a sentence, then every sensor: its apparent change, and the detection limit."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for heading in ("sensor", "visible", *(f"{name}{part}" for name in PARAMETERS for part in ("", ", seen from"))):
         table.add_column(heading, justify="left" if heading == "sensor" else "right", no_wrap=True)
@@ -76,14 +76,14 @@ def parity_view(result: ParityResult) -> RenderableType:
 
 def _cells(kind: str, name: str, sight: Sight) -> tuple[str, str]:
     if sight.size is None or sight.sigma is None or sight.detectable is None:
-        return "not seen", "—"
-    moved = in_words(kind, name, sight.size, signed=name != "axis")
-    return f"{moved} ± {in_words(kind, name, COVERAGE * sight.sigma)}", in_words(kind, name, sight.detectable)
+        return "not observed", "—"
+    change = in_words(kind, name, sight.size, signed=name != "axis")
+    return f"{change} ± {in_words(kind, name, COVERAGE * sight.sigma)}", in_words(kind, name, sight.detectable)
 
 
 def _used(result: ParityResult) -> str:
-    """Which part of the recording it rests on."""
-    left = [f"{count} {why}" for why, count in result.left_out.items() if count]
-    dropped = f" ({', '.join(left)} left out)" if left else ""
-    lasted = "" if result.duration is None else f", {result.duration:,.0f} s"
-    return f"{result.used} of {result.blocks} blocks used{dropped}{lasted}"
+    """The part of the recording that was used."""
+    omissions = [f"{count} {why}" for why, count in result.left_out.items() if count]
+    dropped = f" ({', '.join(omissions)} left out)" if omissions else ""
+    length = "" if result.duration is None else f", {result.duration:,.0f} s"
+    return f"{result.used} of {result.blocks} blocks used{dropped}{length}"

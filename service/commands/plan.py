@@ -1,9 +1,8 @@
-"""`imu-health plan`, `missing` and `ready`: what a session would tell before it is measured, what it still lacks while
-it is, and whether its unit is warm and still enough for it.
-"""
+"""`imu-health plan`, `missing` and `ready`: expected results of a session before it is measured, its missing positions
+during it, and whether its unit is warm and still enough."""
 
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, TypeVar
 from urllib.parse import urlencode
 
 import numpy as np
@@ -16,12 +15,13 @@ from rich.text import Text
 
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.planning import OrientationRank, Plan, missing, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 from service.client import connect
 from service.commands.console import AsJson, print_json, screen, usable
-from service.commands.speech import FAILED, spoken
+from service.commands.speech import FAILED, output_language
 from service.ingest import read_file
 from service.kit.measures import number
 from service.planning.question import PlanQuestion, ReadyQuestion
@@ -43,7 +43,7 @@ Question = TypeVar("Question", bound=BaseModel)
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """In the order of the table."""
 MOST_ORIENTATIONS = 200
-"""That can be asked for: nobody turns a block by hand more often."""
+"""Most orientations of a plan: nobody turns a block by hand more often."""
 
 
 def plan_session(
@@ -89,23 +89,23 @@ def plan_session(
         noise=noise, **dict(map(amount, tolerance or ())),
     )  # fmt: skip
     with usable(file or Path("plan")):
-        like = question.cone() if file is None else read_file(file)
-        if orientations is not None or like.programme == ARBITRARY_ORIENTATIONS:
-            _show(ranked(like, orientations), as_json)
+        pattern = question.cone() if file is None else read_file(file)
+        if orientations is not None or pattern.programme == ARBITRARY_ORIENTATIONS:
+            _show(rank_of(pattern, orientations), as_json)
         else:
-            sigma = question.sigma(like) if file is None or noise is not None else input_noise(like)
-            _show(plan(like, question.request(head_kind(like)), sigma=sigma), as_json)
+            sigma = question.sigma(pattern) if file is None or noise is not None else input_noise(pattern)
+            _show(plan(pattern, question.request(head_kind(pattern)), sigma=sigma), as_json)
 
 
-def _show(found: Plan | OrientationRank, as_json: bool) -> None:
+def _show(result: Plan | OrientationRank, as_json: bool) -> None:
     if as_json:
-        print_json(found.to_dict())
+        print_json(result.to_dict())
     else:
-        screen().print(plan_view(found) if isinstance(found, Plan) else orientation_view(found))
+        screen().print(plan_view(result) if isinstance(result, Plan) else orientation_view(result))
 
 
 def checked(model: type[Question], /, **options: object) -> Question:
-    """The options that were given as a question; a usage error that names each that makes no sense."""
+    """The given options as a question; a usage error that names each invalid one."""
     try:
         return model.model_validate({name: value for name, value in options.items() if value is not None})
     except ValidationError as fault:
@@ -121,24 +121,24 @@ def amount(text: str) -> tuple[str, str]:
     return name, value
 
 
-def ranked(like: CalibrationSession, wanted: int | None) -> OrientationRank:
-    """Rank of the session's own orientations, or of as many as are asked for."""
-    if wanted is None:
-        return rank_of_orientations(like.sensors, stated(like))
-    if not 1 <= wanted <= MOST_ORIENTATIONS:
+def rank_of(session: CalibrationSession, number: int | None) -> OrientationRank:
+    """Rank of the session's own orientations, or of a requested number."""
+    if number is None:
+        return rank_of_orientations(session.sensors, directions_of(session))
+    if not 1 <= number <= MOST_ORIENTATIONS:
         raise SessionError([Problem("--orientations", f"ask for 1 to {MOST_ORIENTATIONS}")])
-    return rank_of_orientations(like.sensors, proposed_orientations(like.sensors, wanted))
+    return rank_of_orientations(session.sensors, proposed_orientations(session.sensors, number))
 
 
-def stated(like: CalibrationSession) -> Array:
-    """(R, 3) directions, dimensionless, as the session states them, else as its readings show them."""
-    if like.directions is None or not np.isfinite(like.directions).all():
-        return fitted_state(like).directions
-    return like.directions
+def directions_of(session: CalibrationSession) -> Array:
+    """(R, 3) directions, dimensionless, as stated in the session, else as shown by its readings."""
+    if session.directions is None or not np.isfinite(session.directions).all():
+        return fitted_state(session).directions
+    return session.directions
 
 
 def plan_view(found: Plan) -> RenderableType:
-    """The plan for people."""
+    """The plan as text and tables."""
     coverage = number(found.request.coverage)
     heading = Text(headline(found), "bold")
     facts = Text(
@@ -183,10 +183,10 @@ def _blind(found: Plan) -> list[Text]:
 
 
 def orientation_view(found: OrientationRank) -> RenderableType:
-    """The rank for people."""
-    said = "identify everything" if found.full else "leave something open"
+    """The rank as text and a table."""
+    result = "identify everything" if found.full else "leave something open"
     lines = [
-        Text(f"{len(found.directions)} orientations {said}: rank {found.rank} of {found.parameters}.", "bold"),
+        Text(f"{len(found.directions)} orientations {result}: rank {found.rank} of {found.parameters}.", "bold"),
         Text(f"Least known: {found.weakest[0]}."),
         *(Text(f"Open: {direction}", "yellow") for direction in found.unseen),
     ]
@@ -213,11 +213,11 @@ def missing_positions(
     if runs not in ("both", "direct"):
         raise typer.BadParameter(f"--runs is {runs}; give both or direct")
     with usable(file):
-        found = missing(read_file(file), positions, both_runs=runs == "both")
+        result = missing(read_file(file), positions, both_runs=runs == "both")
     if as_json:
-        print_json(found.to_dict())
+        print_json(result.to_dict())
     else:
-        screen().print(*missing_in_words(found), sep="\n", highlight=False)
+        screen().print(*missing_in_words(result), sep="\n", highlight=False)
 
 
 def ready(
@@ -259,30 +259,30 @@ def ready(
     )
     if unit_type is not None and server is None:
         raise typer.BadParameter("--type is known to a service: give its address with --server")
-    document = _here(file, question) if server is None else _there(file, question, server)
+    document = _judged_locally(file, question) if server is None else _judged_by_service(file, question, server)
     _show_readiness(document, as_json)
     if not document["ready"]:
         raise typer.Exit(FAILED)
 
 
-def _here(file: Path, asked: ReadyQuestion) -> dict[str, Any]:
+def _judged_locally(file: Path, question: ReadyQuestion) -> Json:
     """On this machine, by default tolerances."""
     with usable(file):
-        answer = judged_by_defaults(read_file(file, part=True), asked)
-    said = [readiness_headline(answer.found), *reasons(answer.found, answer.kind)]
-    return {**answer.found.to_dict(), "unit_type": None, "said": said}
+        answer = judged_by_defaults(read_file(file, part=True), question)
+    sentences = [readiness_headline(answer.found), *reasons(answer.found, answer.kind)]
+    return {**answer.found.to_dict(), "unit_type": None, "said": sentences}
 
 
-def _there(file: Path, asked: ReadyQuestion, server: str) -> dict[str, Any]:
+def _judged_by_service(file: Path, question: ReadyQuestion, server: str) -> Json:
     """By the service, which knows the unit."""
-    query = urlencode(asked.model_dump(exclude_none=True))
+    query = urlencode(question.model_dump(exclude_none=True))
     with usable(file):
         content = file.read_bytes()
-        with connect(server, language=spoken()) as client:
+        with connect(server, language=output_language()) as client:
             return dict(client.answer("POST", f"/plan/ready?{query}", files={"file": (file.name, content)}).json())
 
 
-def _show_readiness(document: dict[str, Any], as_json: bool) -> None:
+def _show_readiness(document: Json, as_json: bool) -> None:
     if as_json:
         print_json(document)
         return

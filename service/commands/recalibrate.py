@@ -1,14 +1,15 @@
-"""`imu-health recalibrate`: stored sessions computed again under the models in force, in the database itself."""
+"""`imu-health recalibrate`: stored sessions computed again under the models in force, directly in the database."""
 
 import os
 from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
+from estimator.json_object import Json
 from service.commands.console import AsJson, print_json, progress, screen
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import FAILED, many, say
@@ -20,7 +21,7 @@ from service.settings import Settings
 from service.storage import Storage
 
 WORTH_STARTING = 100
-"""Units for which other processes are started unless somebody says how many: their start takes some five seconds."""
+"""Units for which other processes are started by default: their start takes some five seconds."""
 Units = Annotated[list[str] | None, typer.Argument(metavar="[UNIT]…", help="Serial numbers.", show_default=False)]
 All = Annotated[bool, typer.Option("--all", help="Every unit with sessions that another model concerns since.")]
 Workers = Annotated[
@@ -33,13 +34,13 @@ Scheduler = Annotated[
 
 
 @dataclass(frozen=True)
-class How:
-    """In which processes."""
+class Processes:
+    """Processes of the computation."""
 
     workers: int | None
     scheduler: str | None
     quiet: bool
-    """Without a bar."""
+    """Without a progress bar."""
 
 
 def recalibrate_units(
@@ -58,60 +59,63 @@ def recalibrate_units(
     settings = settings_from(database_url=database_url, data_folder=data_folder)
     storage = open_storage(settings)
     storage.database.require_ready()
-    sums = _Sums()
-    for outcome in _outcomes(storage, settings, units, How(workers, scheduler, as_json)):
-        sums.add(outcome)
+    totals = _Totals()
+    for outcome in _outcomes(storage, settings, units, Processes(workers, scheduler, as_json)):
+        totals.add(outcome)
         _show(outcome, as_json)
     storage.database.close()
     if not as_json:
-        screen().print(sums.in_words(), highlight=False)
-    if sums.failed:
+        screen().print(totals.in_words(), highlight=False)
+    if totals.failed:
         raise typer.Exit(FAILED)
 
 
-def _outcomes(storage: Storage, settings: Settings, units: list[str] | None, how: How) -> Iterator[Outcome]:
-    """Unit after unit as it is done."""
+def _outcomes(storage: Storage, settings: Settings, units: list[str] | None, processes: Processes) -> Iterator[Outcome]:
+    """Outcomes unit by unit."""
     with storage.database.reading() as store:
         count = len(units) if units else Models(store).count_behind()
-    wanted: Iterable[str] = units or units_behind(storage)
-    with progress(count, "recalibrating", quiet=how.quiet) as advance, _run(storage, settings, count, how) as run:
-        for outcome in run(wanted):
+    serials: Iterable[str] = units or units_behind(storage)
+    with (
+        progress(count, "recalibrating", quiet=processes.quiet) as advance,
+        _run(storage, settings, count, processes) as run,
+    ):
+        for outcome in run(serials):
             yield outcome
             advance()
 
 
-def _run(storage: Storage, settings: Settings, count: int, how: How) -> AbstractContextManager[Run]:
+def _run(storage: Storage, settings: Settings, count: int, processes: Processes) -> AbstractContextManager[Run]:
     def clock() -> datetime:
         return datetime.now(UTC)
 
-    is_worth_it = count >= WORTH_STARTING and can_share()
-    workers = how.workers or ((os.cpu_count() or 1) if is_worth_it else 1)
-    if how.scheduler is None and workers == 1:
+    is_worthwhile = count >= WORTH_STARTING and can_share()
+    workers = processes.workers or ((os.cpu_count() or 1) if is_worthwhile else 1)
+    if processes.scheduler is None and workers == 1:
         return nullcontext(one_by_one(storage, clock, settings.coverage_factor))
-    return by_workers(storage, settings, clock, workers=workers, scheduler=how.scheduler)
+    return by_workers(storage, settings, clock, workers=workers, scheduler=processes.scheduler)
 
 
-class _Sums:
-    """What became of all units."""
+class _Totals:
+    """Totals of all units."""
 
     def __init__(self) -> None:
         self.units = self.failed = self.recomputed = self.left = self.moved = 0
 
-    def add(self, one: Outcome) -> None:
+    def add(self, outcome: Outcome) -> None:
         self.units += 1
-        if one.done is None:
+        if outcome.done is None:
             self.failed += 1
         else:
-            self.recomputed += one.done.recomputed
-            self.left += one.done.left
-            self.moved += len(one.done.verdicts)
+            self.recomputed += outcome.done.recomputed
+            self.left += outcome.done.left
+            self.moved += len(outcome.done.verdicts)
 
     def in_words(self) -> str:
         """``2 units: 12 sessions recomputed, 1 with another verdict, 0 left, 0 units failed``."""
         if not self.units:
             return "Nothing to do: every session is computed under the model that concerns it."
-        told = f"{many(self.recomputed, 'session')} recomputed, {self.moved:,} with another verdict"
-        return f"{many(self.units, 'unit')}: {told}, {self.left:,} left as they were; {self.failed:,} failed"
+        summary = f"{many(self.recomputed, 'session')} recomputed, {self.moved:,} with another verdict"
+        return f"{many(self.units, 'unit')}: {summary}, {self.left:,} left as they were; {self.failed:,} failed"
 
 
 def _show(outcome: Outcome, as_json: bool) -> None:
@@ -120,20 +124,22 @@ def _show(outcome: Outcome, as_json: bool) -> None:
         assert outcome.failure is not None
         say(f"{outcome.unit}: {outcome.failure.reason}")
         return
-    for one in outcome.done.kept:
-        say(f"{outcome.unit}, session {one.session}: {one.why}")
+    for session in outcome.done.kept:
+        say(f"{outcome.unit}, session {session.session}: {session.why}")
     print_json(_as_json(outcome.done)) if as_json else _print_line(outcome.done)
 
 
-def _as_json(done: Recalibrated) -> dict[str, Any]:
+def _as_json(done: Recalibrated) -> Json:
     names = ("unit", "sessions", "recomputed", "unchanged", "left", "revision")
-    moved = [{"session": one.session, "before": one.before, "after": one.after} for one in done.verdicts]
-    kept = [{"session": one.session, "why": one.why} for one in done.kept]
-    return {name: getattr(done, name) for name in names} | {"verdicts": moved, "kept": kept}
+    changes = [{"session": item.session, "before": item.before, "after": item.after} for item in done.verdicts]
+    kept = [{"session": item.session, "why": item.why} for item in done.kept]
+    return {name: getattr(done, name) for name in names} | {"verdicts": changes, "kept": kept}
 
 
 def _print_line(done: Recalibrated) -> None:
-    left = f", {done.left} cannot be computed under it" if done.left else ""
-    other = f", {len(done.verdicts)} with another verdict" if done.verdicts else ""
-    line = f"{done.recomputed} recomputed, {done.unchanged} unchanged{left}{other}; model revision {done.revision}"
+    remainder = f", {done.left} cannot be computed under it" if done.left else ""
+    changes = f", {len(done.verdicts)} with another verdict" if done.verdicts else ""
+    line = (
+        f"{done.recomputed} recomputed, {done.unchanged} unchanged{remainder}{changes}; model revision {done.revision}"
+    )
     screen().print(f"[bold]{done.unit}[/]  {line}", highlight=False)

@@ -1,4 +1,4 @@
-"""`imu-health serve`: the service, with its schema up to date, and the demonstration fleet where it is asked for."""
+"""`imu-health serve`: the service, with an upgraded schema, and the demonstration fleet if requested."""
 
 import socket
 from typing import Annotated
@@ -22,7 +22,7 @@ from service.web.hosts import hosts_of
 from service.web.server import Server, address_of
 
 STARTED = "who started the service"
-"""As the audit trail names them."""
+"""Name in the audit trail."""
 FIRST = "To make everybody sign in, open this within an hour and make the first account:"
 
 
@@ -48,7 +48,7 @@ def serve(
 
 
 class _Server(Server):
-    """Says where it listens once it does, and how to make the first account."""
+    """Prints its address once it listens, and how to make the first account."""
 
     def __init__(self, settings: Settings, first: str | None) -> None:
         super().__init__(create_app(settings), settings)
@@ -63,8 +63,8 @@ class _Server(Server):
 
 
 def _first_link(settings: Settings) -> str | None:
-    """The secret of the link that makes the first account; None once there is one: what a start prints is kept in logs,
-    and must not reset anybody's password."""
+    """The secret of the link that makes the first account; None once there is one: start messages are kept in logs, and
+    must not allow a reset of anybody's password."""
     if settings.sign_in == "off":
         return None
     storage = Storage(open_database(settings.database), Files(settings.files))
@@ -76,7 +76,7 @@ def _first_link(settings: Settings) -> str | None:
 
 
 def _fill(settings: Settings) -> None:
-    """Uploads the demonstration fleet when there is nothing else in the database."""
+    """Uploads the demonstration fleet to an empty database."""
     storage = Storage(open_database(settings.database), Files(settings.files))
     if is_wanted(storage):
         say(f"Filling the empty database with a simulated demonstration fleet, {FILES} sessions.")

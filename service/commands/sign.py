@@ -1,4 +1,4 @@
-"""`imu-health sign` puts a name under a certificate; `imu-health seal` makes a key to try electronic seals with."""
+"""`imu-health sign` signs a certificate; `imu-health seal` makes a key for trying electronic seals."""
 
 import os
 from datetime import UTC, datetime
@@ -12,7 +12,7 @@ from rich.markup import escape
 from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server, screen
 from service.commands.documents import Session
-from service.commands.speech import say, spoken
+from service.commands.speech import output_language, say
 from service.errors import ConflictError
 from service.papers.changes import NOT_ISSUED
 from service.papers.records import Meaning
@@ -20,8 +20,8 @@ from service.papers.sealing import seal_room
 from service.papers.words import STATES
 from service.settings import Settings
 
-OWN_EYES_ONLY = 0o600
-"""Of a file with a key."""
+OWNER_ONLY = 0o600
+"""Permissions of a file with a key."""
 seal = typer.Typer(name="seal", add_completion=False, no_args_is_help=True, help="The laboratory's electronic seal.")
 
 
@@ -33,15 +33,15 @@ def sign(
 ) -> None:
     """Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password."""
     path = f"/sessions/{quote(session, safe='')}/certificate"
-    with connect(server, language=spoken()) as client:
+    with connect(server, language=output_language()) as client:
         issued = client.get(f"{path}s").json()["certificates"]
         if not issued:
             raise ConflictError(NOT_ISSUED)
-        read = number or issued[-1]["number"]
-        say(f"Certificate {read}: {STATES[meaning]}")
+        certificate = number or issued[-1]["number"]
+        say(f"Certificate {certificate}: {STATES[meaning]}")
         password = typer.prompt("Your password", hide_input=True, err=True)
-        given = client.post(f"{path}/signatures", {"number": read, "meaning": meaning, "password": password})
-    screen().print(f"[bold]{escape(given['certificate'])}[/]  {meaning} by {escape(given['name'])}")
+        signature = client.post(f"{path}/signatures", {"number": certificate, "meaning": meaning, "password": password})
+    screen().print(f"[bold]{escape(signature['certificate'])}[/]  {meaning} by {escape(signature['name'])}")
 
 
 @seal.callback()
@@ -54,8 +54,8 @@ def make_trial(
     out: Annotated[Path, typer.Option(help="File to write; one that is there stays as it is.", show_default=False)],
 ) -> None:
     """Make a key that nobody trusts, to try seals with: it says so in its name, and holds for ninety days."""
-    made: bytes = seal_room().make_trial_key(Settings().laboratory_name, datetime.now(UTC))
-    file = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, OWN_EYES_ONLY)
+    key: bytes = seal_room().make_trial_key(Settings().laboratory_name, datetime.now(UTC))
+    file = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, OWNER_ONLY)
     with os.fdopen(file, "wb") as opened:
-        opened.write(made)
+        opened.write(key)
     say(f"{out}: a key for trial. Start the service with IMU_HEALTH_SEAL_KEY_FILE={out}.")

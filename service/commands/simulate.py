@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from math import ceil
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
 
 from estimator.alignment.simulate import Truth
+from estimator.json_object import Json
 from estimator.parameters import SensorParameters
 from estimator.results import ARCSEC
 from estimator.session import (
@@ -32,13 +33,13 @@ from estimator.writing import session_document
 from service.commands.console import AsJson, print_json
 from service.commands.hiding import (
     Answer,
+    HidingRequest,
     NamedCause,
     OnSensor,
     Strength,
     Warming,
-    Wish,
     hidden_in,
-    read_wish,
+    read_request,
     warmed,
     write_answer,
 )
@@ -177,7 +178,7 @@ def simulate_files(
         raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")
     if warming and programme != TWO_AXIS_STAND:
         raise typer.BadParameter(f"--warming: {programme} records no temperature; {TWO_AXIS_STAND} does")
-    wish = read_wish(hide, strength, sensor, answer, programme)
+    wish = read_request(hide, strength, sensor, answer, programme)
     rng = np.random.default_rng([seed, *unit.encode()])
     if programme == ARBITRARY_ORIENTATIONS:
         schedule = orientations(unit, sensors, positions, rng)
@@ -192,7 +193,7 @@ def simulate_files(
     _write((_earlier(one, back) for one in made), wish, seed, f"{out}/{safe_name(unit)}", as_json=as_json)
 
 
-def _write(made: Iterator[Simulated], wish: Wish | None, seed: int, start: str, *, as_json: bool) -> None:
+def _write(made: Iterator[Simulated], wish: HidingRequest | None, seed: int, start: str, *, as_json: bool) -> None:
     """The sessions as files that begin with ``start``; nothing is written of what cannot be hidden."""
     if wish is not None:
         *before, last = made
@@ -280,7 +281,7 @@ def _dated(session: CalibrationSession, at: datetime) -> CalibrationSession:
     return replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", notes="Simulated.", origin=SIMULATED)
 
 
-def _truth(file: Path, simulated: Simulated) -> dict[str, Any]:
+def _truth(file: Path, simulated: Simulated) -> Json:
     """What the file should be found to say, SI; and the stand's errors that a calibration cannot know."""
     head = {"format": "imu-truth/1", "file": str(file), "unit": simulated.session.unit}
     if isinstance(simulated.truth, Truth):
@@ -288,7 +289,7 @@ def _truth(file: Path, simulated: Simulated) -> dict[str, Any]:
     return {**head, **_sensors(simulated, simulated.truth)}
 
 
-def _turntable(truth: Truth) -> dict[str, Any]:
+def _turntable(truth: Truth) -> Json:
     return {
         "accelerometer_bias": truth.accelerometer_bias.tolist(),
         "gyro_bias": truth.gyro_bias.tolist(),
@@ -298,7 +299,7 @@ def _turntable(truth: Truth) -> dict[str, Any]:
     }
 
 
-def _sensors(simulated: Simulated, truth: SensorParameters) -> dict[str, Any]:
+def _sensors(simulated: Simulated, truth: SensorParameters) -> Json:
     stand = None if simulated.draw is None else simulated.draw.constant
     errors = {} if stand is None else {"stand_arcsec": {k: float(getattr(stand, k)) / ARCSEC for k in STAND_ERRORS}}
     return {

@@ -1,6 +1,6 @@
-"""What a command says and how it ends: its exit code, a line that says why, and the language of both.
+"""Messages and exit codes of commands, and their language.
 
-Helps, headings and what a command says of itself stay English. JSON never depends on the language.
+Help, headings and a command's own messages stay English. JSON never depends on the language.
 """
 
 import os
@@ -15,9 +15,9 @@ from estimator.on_demand import function_on_demand
 from service.languages.language import Language, of_environment
 
 FAILED = 1
-"""Exit code where what was asked for could not be done."""
+"""Exit code where the request failed."""
 UNUSABLE = 2
-"""Exit code where a file cannot be used."""
+"""Exit code for an unusable file."""
 
 
 def many(number: int, thing: str) -> str:
@@ -35,26 +35,26 @@ if TYPE_CHECKING:
 else:
     catalogue_of = function_on_demand("service.languages.catalogue", "catalogue_of")
 
-CHOSEN = "LANGUAGE"
-"""The variable in which gettext programs look first; `--lang` sets it for what the command says."""
+LANGUAGE_VARIABLE = "LANGUAGE"
+"""Variable that gettext programs read first; set by `--lang` for the output of the command."""
 
 
-def choose(language: Language) -> None:
-    """What this command says from now on is said in a language."""
-    os.environ[CHOSEN] = language.value
+def set_language(language: Language) -> None:
+    """Sets the language of this command's output."""
+    os.environ[LANGUAGE_VARIABLE] = language.value
 
 
-def spoken() -> str:
-    """The language of what this command says, as HTTP has it."""
+def output_language() -> str:
+    """The language of this command's output, for HTTP."""
     return of_environment(os.environ).value
 
 
-def said(text: str) -> str:
-    """A sentence that was made in English, in the language of whoever reads it."""
+def translated(text: str) -> str:
+    """An English sentence in the language of the user."""
     language = of_environment(os.environ)
     return text if language is Language.ENGLISH else catalogue_of(language).say(text)
 
 
-def problems_said(problems: Iterable[Problem]) -> str:
-    """Problems with their places on one line; fields are named as files name them."""
-    return "; ".join(str(replace(problem, message=said(problem.message))) for problem in problems)
+def problems_in_words(problems: Iterable[Problem]) -> str:
+    """Problems with their places on one line; fields have the names in files."""
+    return "; ".join(str(replace(problem, message=translated(problem.message))) for problem in problems)

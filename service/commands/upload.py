@@ -1,6 +1,5 @@
-"""`imu-health upload`: session files to a running service; a large one is sent as it is read, and followed until it is
-stored. Long work is followed by a bar on standard error, which can be left while the work goes on.
-"""
+"""`imu-health upload`: session files to a running service; a large one is streamed, and followed until it is stored.
+Long work is followed by a progress bar on standard error, which can be interrupted while the work goes on."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -25,62 +24,63 @@ from rich.progress import (
 )
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
-from service.commands.speech import said, say, spoken
+from service.commands.speech import output_language, say, translated
 from service.errors import RefusedError, ServiceError
 from service.jobs.records import KILOBYTE, OPEN, JobKind, JobState
 from service.sessions.decision import Verdict
 from service.sessions.words.conditions import Condition, condition_of
 
-LOOK_EVERY = 1.0
-"""Seconds between two looks at a job that is followed."""
-Moved = Callable[[int, int | None, str], None]
-"""How much is done, of how much where that is known, and what it is."""
+POLL_SECONDS = 1.0
+"""Seconds between two polls of a job."""
+ProgressCallback = Callable[[int, int | None, str], None]
+"""Called with the amount done, the total where known, and a description."""
 
 
 @dataclass(frozen=True)
-class Sending:
-    """How files are sent."""
+class Uploader:
+    """Uploads files."""
 
     client: Client
     stated: dict[str, str]
-    """What is said of each."""
+    """Form fields of each file."""
     wait: bool
     quiet: bool
 
-    def sent(self, file: Path) -> dict[str, Any]:
-        """The receipt; of a large file that nobody waits for its job. RefusedError where it cannot be used."""
+    def sent(self, file: Path) -> Json:
+        """The receipt; for a large file without waiting its job. RefusedError for an unusable file."""
         if not are_large((file,)):
             return self.client.send(file.name, file.read_bytes(), self.stated)
         size, counts = file.stat().st_size, DownloadColumn()
-        with file.open("rb") as content, bar(file.name, quiet=self.quiet, counts=counts) as moved:
-            watched: Any = _Watched(content, size, f"sending {file.name}", moved)
-            answer = self.client.send(file.name, watched, self.stated, later=True)
+        with file.open("rb") as content, bar(file.name, quiet=self.quiet, counts=counts) as callback:
+            file_with_progress: Any = _WatchedFile(content, size, f"sending {file.name}", callback)
+            answer = self.client.send(file.name, file_with_progress, self.stated, later=True)
         if "verdict" in answer or not self.wait:
             return answer
         return self._became(followed(self.client, answer["id"], quiet=self.quiet))
 
-    def _became(self, job: dict[str, Any]) -> dict[str, Any]:
-        """The receipt of the session that a file became."""
+    def _became(self, job: Json) -> Json:
+        """The receipt of the session of a file."""
         if job["problems"]:
-            found = tuple(Problem(one["field"], one["message"], one["row"]) for one in job["problems"])
-            raise RefusedError(f"{job['subject']} cannot be used.", found)
+            problems = tuple(Problem(item["field"], item["message"], item["row"]) for item in job["problems"])
+            raise RefusedError(f"{job['subject']} cannot be used.", problems)
         if job["state"] != JobState.DONE:
-            reasons = " ".join(one["reason"] for one in job["failures"])
+            reasons = " ".join(item["reason"] for item in job["failures"])
             raise ServiceError(f"Job {job['id']} is {job['state']}. {reasons}".strip())
-        receipt: dict[str, Any] = self.client.get(f"/uploads/{job['upload']}").json()["session"]
+        receipt: Json = self.client.get(f"/uploads/{job['upload']}").json()["session"]
         return receipt | {"created": True, "url": f"{self.client.server}/api/v1/sessions/{receipt['id']}"}
 
 
 @dataclass(frozen=True)
-class _Watched:
-    """A file that says how much of it was taken."""
+class _WatchedFile:
+    """A file that reports how much of it was read."""
 
     file: IO[bytes]
     size: int
     doing: str
-    moved: Moved
+    moved: ProgressCallback
 
     def read(self, size: int = -1) -> bytes:
         """The next part."""
@@ -89,24 +89,24 @@ class _Watched:
         return part
 
     def fileno(self) -> int:
-        """By which its length is told."""
+        """Needed to determine its length."""
         return self.file.fileno()
 
     def seek(self, place: int) -> int:
-        """To its beginning, where it is sent."""
+        """To its beginning, before it is sent."""
         return self.file.seek(place)
 
 
-def followed(client: Client, id: int, *, quiet: bool) -> dict[str, Any]:
-    """The job once it has ended. Whoever breaks off is told that it goes on, and how to find it again."""
-    job: dict[str, Any] = client.get(f"/jobs/{id}").json()
+def followed(client: Client, id: int, *, quiet: bool) -> Json:
+    """The job once it has ended. On an interrupt, a message says that it goes on, and how to find it again."""
+    job: Json = client.get(f"/jobs/{id}").json()
     is_upload = job["kind"] == JobKind.UPLOAD
     size = KILOBYTE if is_upload else 1
     try:
-        with bar(f"job {id}", quiet=quiet, counts=DownloadColumn() if is_upload else MofNCompleteColumn()) as moved:
+        with bar(f"job {id}", quiet=quiet, counts=DownloadColumn() if is_upload else MofNCompleteColumn()) as callback:
             while job["state"] in OPEN:
-                moved(size * job["done"], size * job["total"] if job["done"] else None, _doing(job))
-                sleep(LOOK_EVERY)
+                callback(size * job["done"], size * job["total"] if job["done"] else None, _doing(job))
+                sleep(POLL_SECONDS)
                 job = client.get(f"/jobs/{id}").json()
     except KeyboardInterrupt:
         say(f"Job {id} goes on without you: imu-health jobs show {id} --wait, or imu-health jobs cancel {id}")
@@ -114,7 +114,7 @@ def followed(client: Client, id: int, *, quiet: bool) -> dict[str, Any]:
     return job
 
 
-def _doing(job: dict[str, Any]) -> str:
+def _doing(job: Json) -> str:
     if job["kind"] != JobKind.UPLOAD:
         return f"job {job['id']}"
     again = f", time {job['times'] + 1}" if job["times"] else ""
@@ -122,17 +122,17 @@ def _doing(job: dict[str, Any]) -> str:
 
 
 @contextmanager
-def bar(doing: str, *, quiet: bool, counts: ProgressColumn) -> Iterator[Moved]:
-    """A bar, on a terminal only; yields what moves it on."""
+def bar(doing: str, *, quiet: bool, counts: ProgressColumn) -> Iterator[ProgressCallback]:
+    """A progress bar, on a terminal only; yields the function that moves it."""
     is_shown = not quiet and sys.stderr.isatty() and sys.stdout.isatty()
     columns = (TextColumn("{task.description}"), BarColumn(), counts, TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True, disable=not is_shown) as progress:
         task = progress.add_task(doing, total=None)
 
-        def moved(done: int, total: int | None, now: str) -> None:
+        def move(done: int, total: int | None, now: str) -> None:
             progress.update(task, completed=done, total=total, description=now)
 
-        yield moved
+        yield move
 
 
 COLOURS = {
@@ -156,9 +156,7 @@ Mapping = Annotated[
     Path | None, typer.Option(help="JSON file that says how tables of your own layout are read: imu-mapping/1.")
 ]
 Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
-Check = Annotated[
-    bool, typer.Option("--check", help="Only a check: judged and kept, and the next calibration is due as before.")
-]
+Check = Annotated[bool, typer.Option("--check", help="Check only: judged and stored, does not change the due date.")]
 
 
 def upload_files(
@@ -177,36 +175,35 @@ def upload_files(
     if supersedes and len(files) > 1:
         raise typer.BadParameter("one corrected file stands for one session", param_hint="--supersedes")
     read_by = None if mapping is None else mapping.read_text(encoding="utf-8")
-    given = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
-    stated = {name: text for name, text in given.items() if text}
-    show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
-    with connect(server, language=spoken()) as client:
-        sending = Sending(client, stated, wait=wait, quiet=as_json)
-        for_each(files, lambda file: _uploaded(sending, file), show, "uploading", quiet=as_json or are_large(files))
+    fields = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
+    stated = {name: text for name, text in fields.items() if text}
+    show: Callable[[Json], None] = print_json if as_json else _print_line
+    with connect(server, language=output_language()) as client:
+        sending = Uploader(client, stated, wait=wait, quiet=as_json)
+        for_each(files, lambda file: _verdict_of(sending, file), show, "uploading", quiet=as_json or are_large(files))
 
 
-def _uploaded(sending: Sending, file: Path) -> dict[str, Any]:
-    """The answer with the verdict that the session has once it is diagnosed; the job of a large file where nobody waits
-    for it."""
-    answer, client = sending.sent(file), sending.client
-    if sending.wait and client.is_diagnosed(answer["id"]):
+def _verdict_of(uploader: Uploader, file: Path) -> Json:
+    """The answer, with the verdict after the diagnosis; the job of a large file without waiting."""
+    answer, client = uploader.sent(file), uploader.client
+    if uploader.wait and client.is_diagnosed(answer["id"]):
         session = client.get(f"/sessions/{answer['id']}").json()
         answer |= {name: session[name] for name in answer if name in session}
     return answer
 
 
-def _print_line(answer: dict[str, Any]) -> None:
+def _print_line(answer: Json) -> None:
     """``BA-017  3f9a0c5be1d24786aa10  Fit, but the zero of A2 …  …``"""
     if "verdict" not in answer:
         screen().print(f"[bold]{escape(answer['subject'])}[/] was received: job {answer['id']} works on it")
         return
     verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
-    line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(said(answer['reason']))}"
+    line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(translated(answer['reason']))}"
     screen().print(line, soft_wrap=True)
 
 
-def coloured(word: str, is_reference: bool = False, as_said: str = "") -> str:
-    """A verdict as the pages word it, with their colour; ``as_said`` where it is told with its reservations."""
+def coloured(word: str, is_reference: bool = False, sentence: str = "") -> str:
+    """A verdict in the words and colours of the pages; ``sentence``: with its reservations."""
     verdict = Verdict(word)
     shown: Condition = condition_of(verdict, is_reference=is_reference)
-    return f"[{COLOURS[verdict]}]{escape(said(as_said or shown.word))}[/]"
+    return f"[{COLOURS[verdict]}]{escape(translated(sentence or shown.word))}[/]"

@@ -138,7 +138,7 @@ def step_of(changes: tuple[Change, ...], sensors: int, kind: str) -> Array:
 
 
 @dataclass(frozen=True)
-class Hidden:
+class DemoEffect:
     """One effect in a member's latest session."""
 
     cause: str
@@ -148,7 +148,7 @@ class Hidden:
     """Counted from 0; None for an effect of the stand."""
 
 
-def with_effect(session: CalibrationSession, hidden: Hidden) -> CalibrationSession:
+def with_effect(session: CalibrationSession, hidden: DemoEffect) -> CalibrationSession:
     """The session with the effect in its readings."""
     setting, known = baseline_of(session).setting, cause(hidden.cause)
     assert isinstance(known, Signature)

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
-from service.demo.blocks import Change, Hidden
-from service.flags.records import FlagState
+from service.demo.blocks import Change, DemoEffect
+from service.flags.records import FlagState, Matter
 
 START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
 """Three years before the end."""
@@ -16,7 +16,7 @@ YEARS = 3.0
 
 
 @dataclass(frozen=True)
-class Drift:
+class DemoDrift:
     """A change that grows to its full amount over the three years."""
 
     change: Change
@@ -50,14 +50,15 @@ class Intervention:
 
 
 @dataclass(frozen=True)
-class Handled:
-    """What somebody did about a flag on a sensor that was out of tolerance."""
+class DemoHandling:
+    """What somebody did about a flag on a sensor."""
 
     at: datetime
     sensor: str
     state: FlagState
     who: str
     why: str
+    matter: Matter = Matter.TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class Remark:
 
 
 @dataclass(frozen=True)
-class Member:
+class DemoMember:
     """One unit of the fleet."""
 
     serial: str
@@ -81,14 +82,14 @@ class Member:
     """Years after the start at which it was first measured."""
     left: float = YEARS
     """Years after the start at which it was last measured."""
-    drifts: tuple[Drift, ...] = ()
+    drifts: tuple[DemoDrift, ...] = ()
     jumps: tuple[Jump, ...] = ()
     services: tuple[Intervention, ...] = ()
-    handled: tuple[Handled, ...] = ()
+    handled: tuple[DemoHandling, ...] = ()
     remarks: tuple[Remark, ...] = ()
     noise: dict[int, float] = field(default_factory=dict)
     """Factor on the reading noise of single sessions, by their number from 0; −1 is the last."""
-    hidden: Hidden | None = None
+    hidden: DemoEffect | None = None
     """What the simulation gets wrong about the latest session."""
     programme: str = TWO_AXIS_STAND
     """How it is measured; on a turntable a drift's sensor is the axis of the accelerometers."""
@@ -129,73 +130,79 @@ CUBIC = 4.4e-8
 """(m/s²)⁻² of every accelerometer: a property of their design, 4.2 µg/g³."""
 
 CAST = (
-    Member(
+    DemoMember(
         "BA-101", ACCELEROMETER, "stable; the head's angle scale was off centre in the last session", 14,
-        hidden=Hidden("beta-eccentricity", (60e-6, 25e-6)),
+        hidden=DemoEffect("beta-eccentricity", (60e-6, 25e-6)),
     ),
-    Member(
+    DemoMember(
         "BA-102", ACCELEROMETER, "bias of A5 jumped one day; the axis of A3 crept during the last session", 12,
         jumps=(Jump(Change(4, "bias", 24.0), 1.5),),
-        hidden=Hidden("axis-creep", (5e-8, 3e-8), sensor=2),
+        handled=(
+            DemoHandling(
+                datetime(2026, 11, 13, 10, 0, tzinfo=UTC), "A5", FlagState.RESOLVED, "R. Duarte",
+                "A5 was dropped with its box in May 2025; it has held its zero since.", Matter.JUMP,
+            ),
+        ),
+        hidden=DemoEffect("axis-creep", (5e-8, 3e-8), sensor=2),
     ),
-    Member(
+    DemoMember(
         "BA-103", ACCELEROMETER, "bias of A3 drifts, still within tolerance", 13,
-        drifts=(Drift(Change(2, "bias", 34.0)),),
+        drifts=(DemoDrift(Change(2, "bias", 34.0)),),
         remarks=(Remark(datetime(2025, 5, 6, 12, 0, tzinfo=UTC), "Moved to the other hangar by road.", "K. Ito"),),
     ),
-    Member(
+    DemoMember(
         "BA-104", ACCELEROMETER, "scale factor of A5 drifts up to its tolerance", 14,
-        drifts=(Drift(Change(4, "scale", 104.0)),),
+        drifts=(DemoDrift(Change(4, "scale", 104.0)),),
     ),
-    Member(
+    DemoMember(
         "BA-105", ACCELEROMETER, "axis of A2 creeps just over its tolerance", 13,
-        drifts=(Drift(Change(1, "axis", 23.0), power=1.5),),
+        drifts=(DemoDrift(Change(1, "axis", 23.0), power=1.5),),
     ),
-    Member(
+    DemoMember(
         "BA-106", ACCELEROMETER, "A6 fails: bias and scale factor run away", 15,
-        drifts=(Drift(Change(5, "bias", 170.0), power=4.0), Drift(Change(5, "scale", -150.0), power=4.0)),
+        drifts=(DemoDrift(Change(5, "bias", 170.0), power=4.0), DemoDrift(Change(5, "scale", -150.0), power=4.0)),
         handled=(
-            Handled(
+            DemoHandling(
                 datetime(2026, 11, 13, 9, 0, tzinfo=UTC), "A6", FlagState.ACKNOWLEDGED, "K. Ito",
                 "Taken out of service; a replacement of A6 is ordered.",
             ),
         ),
     ),
-    Member(
+    DemoMember(
         "BA-107", ACCELEROMETER, "A4 wore out and was replaced; a new reference since", 15,
-        drifts=(Drift(Change(3, "bias", 150.0), power=1.5, ends=1.6),),
+        drifts=(DemoDrift(Change(3, "bias", 150.0), power=1.5, ends=1.6),),
         services=(_replaced(3, datetime(2025, 6, 20, 9, 0, tzinfo=UTC)),),
         handled=(
-            Handled(
+            DemoHandling(
                 datetime(2025, 12, 1, 9, 0, tzinfo=UTC), "A4", FlagState.RESOLVED, "M. Okafor",
                 "A4 was worn and is replaced; the sessions since agree.",
             ),
         ),
     ),
-    Member("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 12, noise={-1: 60.0}),
-    Member(
+    DemoMember("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 12, noise={-1: 60.0}),
+    DemoMember(
         "BA-109", ACCELEROMETER, "amplifiers of A1 and A4 drifted and were adjusted; measured as found and as left", 11,
         drifts=tuple(
-            Drift(Change(sensor, "scale", gain * YEARS / UNTIL_ADJUSTED), ends=UNTIL_ADJUSTED)
+            DemoDrift(Change(sensor, "scale", gain * YEARS / UNTIL_ADJUSTED), ends=UNTIL_ADJUSTED)
             for sensor, gain in GAINS.items()
         ),
         services=(_adjusted(),),
     ),
-    Member(
+    DemoMember(
         "BA-110", ACCELEROMETER, "joined the fleet last year; A4 sticks since the last session", 6, joined=1.7,
-        hidden=Hidden("hysteresis", (3.5e-4,), sensor=3),
+        hidden=DemoEffect("hysteresis", (3.5e-4,), sensor=3),
     ),
-    Member("BG-201", GYROSCOPE, "stable, but not measured for longer than it may be", 12, left=1.8),
-    Member(
+    DemoMember("BG-201", GYROSCOPE, "stable, but not measured for longer than it may be", 12, left=1.8),
+    DemoMember(
         "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 13,
-        drifts=(Drift(Change(1, "bias", 0.024)),),
+        drifts=(DemoDrift(Change(1, "bias", 0.024)),),
     ),
-    Member(
+    DemoMember(
         "BA-111", ACCELEROMETER, "new, stable on the stand; its last flight shows that A2 moved since", 5, joined=2.1,
         flown=Change(1, "bias", 120.0),
     ),
-    Member(
+    DemoMember(
         "RT-301", GYROSCOPE, "aligned on a turntable before use; the zero of x drifts up to its tolerance", 9,
-        drifts=(Drift(Change(0, "bias", 48.5)),), programme=ROTATION_ALIGNMENT,
+        drifts=(DemoDrift(Change(0, "bias", 48.5)),), programme=ROTATION_ALIGNMENT,
     ),
 )  # fmt: skip

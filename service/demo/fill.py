@@ -5,10 +5,10 @@ from datetime import timedelta
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.blocks import unit_type
-from service.demo.cast import CAST, START, Handled, Intervention, Member, Remark
+from service.demo.cast import CAST, START, DemoHandling, DemoMember, Intervention, Remark
 from service.demo.history import files_of
 from service.flags.changes import acknowledge_flag, resolve_flag
-from service.flags.records import FlagState, Matter
+from service.flags.records import FlagState
 from service.flags.store import Flags
 from service.fleet.store import Fleet
 from service.kit.arriving_files import DEMONSTRATION
@@ -24,7 +24,7 @@ from service.uploads.receive import upload
 
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""
-Done = Intervention | Handled | Remark
+Done = Intervention | DemoHandling | Remark
 """What people do between sessions."""
 FILES = sum(member.files for member in CAST)
 """Sessions of the whole fleet."""
@@ -46,7 +46,7 @@ def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) 
         _upload_member(storage, member, coverage_factor, advance)
 
 
-def _upload_member(storage: Storage, member: Member, coverage_factor: float, advance: Callable[[], None]) -> None:
+def _upload_member(storage: Storage, member: DemoMember, coverage_factor: float, advance: Callable[[], None]) -> None:
     """One unit's life: sessions in order, and what people did in between."""
     waiting: list[Done] = [*member.services, *member.handled, *member.remarks]
     waiting.sort(key=lambda done: done.at)
@@ -72,15 +72,15 @@ def _do(storage: Storage, serial: str, done: Done) -> None:
         case Intervention():
             new = NewService(done.kind, done.at, done.note, done.who, done.sensor)
             record_service(storage, serial, new, done.at)
-        case Handled():
+        case DemoHandling():
             _handle(storage, serial, done)
         case Remark():
             add_note(storage, serial, done.text, at=done.at, who=done.who, now=done.at)
 
 
-def _handle(storage: Storage, serial: str, done: Handled) -> None:
-    """The open flag on the sensor's tolerance."""
+def _handle(storage: Storage, serial: str, done: DemoHandling) -> None:
+    """The open flag on the matter of the sensor."""
     with storage.database.reading() as store:
         opened = {flag.key: flag.id for flag in Flags(store).open_of(Units(store).key(serial))}
     act = acknowledge_flag if done.state is FlagState.ACKNOWLEDGED else resolve_flag
-    act(storage, opened[(Matter.TOLERANCE.value, done.sensor)], done.who, done.why, done.at)
+    act(storage, opened[(done.matter.value, done.sensor)], done.who, done.why, done.at)

@@ -35,7 +35,18 @@ from service.demo.blocks import (
     step_of,
     with_effect,
 )
-from service.demo.cast import CAST, CUBIC, ECCENTRIC_STAND, ECCENTRICITY, END, START, WAVE, WAVY_STAND, YEARS, Member
+from service.demo.cast import (
+    CAST,
+    CUBIC,
+    ECCENTRIC_STAND,
+    ECCENTRICITY,
+    END,
+    START,
+    WAVE,
+    WAVY_STAND,
+    YEARS,
+    DemoMember,
+)
 from service.demo.other_programmes import alignment, recording, turntable_truth
 from service.kit.measures import YEAR
 
@@ -79,7 +90,7 @@ class DemoFile:
     at: datetime
 
 
-def files_of(member: Member) -> Iterator[DemoFile]:
+def files_of(member: DemoMember) -> Iterator[DemoFile]:
     """The member's sessions in order; the same bytes every time."""
     rng = np.random.default_rng([SEED, CAST.index(member)])
     if member.programme == ROTATION_ALIGNMENT:
@@ -102,7 +113,7 @@ def files_of(member: Member) -> Iterator[DemoFile]:
         yield _file(replace(flight, unit_type=TYPE_NAME[member.kind], notes=NOTES), at + FLOWN_AFTER)
 
 
-def _alignments(member: Member, rng: np.random.Generator) -> Iterator[DemoFile]:
+def _alignments(member: DemoMember, rng: np.random.Generator) -> Iterator[DemoFile]:
     """Alignments before use, of a block that wanders a little and drifts as its story says."""
     dates = _dates(member, rng)
     wander = np.cumsum(0.5 * rng.standard_normal((len(dates), 3)), axis=0)
@@ -120,7 +131,7 @@ def _file(session: CalibrationSession, at: datetime) -> DemoFile:
     return DemoFile(f"{session.unit}-{at:%Y-%m-%d}.json", _content(dated), at)
 
 
-def _dates(member: Member, rng: np.random.Generator) -> list[datetime]:
+def _dates(member: DemoMember, rng: np.random.Generator) -> list[datetime]:
     """Irregular dates from the member's first day to the last, by day, in working hours."""
     first = START + member.joined * YEAR
     last = END if member.left == YEARS else START + member.left * YEAR
@@ -136,7 +147,7 @@ def _dates(member: Member, rng: np.random.Generator) -> list[datetime]:
     return dates
 
 
-def _stage(member: Member, at: datetime) -> str | None:
+def _stage(member: DemoMember, at: datetime) -> str | None:
     """As found before a service that is measured around, as left after it."""
     stages = dict.fromkeys((s.at - AROUND_SERVICE for s in member.services if s.measured), AS_FOUND)
     stages |= dict.fromkeys((s.at + AROUND_SERVICE for s in member.services if s.measured), AS_LEFT)
@@ -150,7 +161,7 @@ def _walk(kind: str, dates: list[datetime], rng: np.random.Generator) -> Array:
     return np.asarray(np.cumsum(np.sqrt(years)[:, None, None] * steps, axis=0))
 
 
-def _changes(member: Member, at: datetime) -> tuple[Change, ...]:
+def _changes(member: DemoMember, at: datetime) -> tuple[Change, ...]:
     """What has drifted and what was done to the unit up to a time."""
     years = (at - START) / YEAR
     drifted = tuple(
@@ -161,13 +172,13 @@ def _changes(member: Member, at: datetime) -> tuple[Change, ...]:
     return drifted + jumped + tuple(c for service in member.services if service.at <= at for c in service.changes)
 
 
-def _roughness(member: Member, number: int) -> float:
+def _roughness(member: DemoMember, number: int) -> float:
     """Factor on the reading noise of one session."""
     return member.noise.get(number, member.noise.get(number - member.sessions, 1.0))
 
 
 def _measured(
-    member: Member, at: datetime, truth: SensorParameters, noise: float, rng: np.random.Generator
+    member: DemoMember, at: datetime, truth: SensorParameters, noise: float, rng: np.random.Generator
 ) -> CalibrationSession:
     """The member on one of the stands."""
     stand, positions = STANDS[rng.integers(len(STANDS))], POSITIONS[rng.integers(len(POSITIONS))]

@@ -6,8 +6,8 @@ import numpy as np
 
 from estimator.alignment.simulate import (
     Imperfections,
-    Programme,
     Truth,
+    TurntableProgramme,
     simulate_alignment,
     simulate_rate_table,
     triads,
@@ -19,7 +19,7 @@ from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSessio
 from estimator.simulate import orientation_schedule
 from service.demo.blocks import MICRO_G, SITE, sensors_of
 
-STOPS = Programme(dwell=200.0, row=1.0)
+STOPS = TurntableProgramme(dwell=200.0, row=1.0)
 """Seconds: 200 at rest a stop, one a row."""
 START = 2.0
 """s in which the table comes up to its rate: whole rows."""

@@ -1,17 +1,18 @@
 """Diagnoses: what the simulation gets wrong about a session, and the acceptance of a named cause."""
 
 import json
-from typing import Any
 
 from fastapi import APIRouter, Response
 from fastapi.responses import JSONResponse
 
+from estimator.json_object import Json
 from estimator.message import with_messages
 from service.errors import NotFoundError
 from service.models.api import DiagnosisDocument, ModelDocument, NewModelSchema, PendingDiagnosis, model_document
 from service.models.records import NewModel
-from service.people.dependencies import StorageOf
+from service.records.dependencies import ReceptionOf
 from service.records.models import accept_model
+from service.records.recalibrate import recompute_beside
 from service.web.dependencies import Now
 from service.web.fields import SessionId
 from service.web.problem_document import errors
@@ -20,7 +21,7 @@ from service.work.dependencies import ReaderOf
 router = APIRouter(prefix="/sessions", tags=["diagnosis"])
 RETRY_AFTER = "2"
 """Seconds: what the diagnosis of a larger session takes."""
-PENDING: dict[int | str, dict[str, Any]] = {
+PENDING: dict[int | str, Json] = {
     202: {"model": PendingDiagnosis, "description": "Still being made; ask again after Retry-After seconds."}
 }
 """How OpenAPI describes the answer while a diagnosis is being made."""
@@ -39,7 +40,11 @@ def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocum
 
 
 @router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 409, 422))
-def accept_cause(id: SessionId, new: NewModelSchema, storage: StorageOf, reader: ReaderOf, now: Now) -> ModelDocument:
-    """Accept a named cause: from the next session on it is part of the model of the unit, unit type or stand."""
-    accepted = accept_model(storage, reader.made(id), NewModel(**new.model_dump()), now)
+def accept_cause(
+    id: SessionId, new: NewModelSchema, reception: ReceptionOf, reader: ReaderOf, now: Now
+) -> ModelDocument:
+    """Accept a named cause: from the next session on it is part of the model of the unit, unit type or stand; with
+    `again` of the stored sessions too, which are computed again: `GET /models/{id}` follows it."""
+    accepted = accept_model(reception.storage, reader.made(id), NewModel(**new.model_dump()), now)
+    recompute_beside(reception, now)
     return model_document(accepted)

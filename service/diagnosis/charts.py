@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import altair as alt
 import numpy as np
 
 from estimator.diagnosis.results import Course
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.results import Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER
@@ -99,7 +99,9 @@ def _panel(sides: Sides, column: int, across: Across, measure: Measure) -> Panel
     shown = [_rms(side, column, measure) for side in (sides.before, sides.after) if side is not None]
     return Panel(
         title=sides.sensors[column].name,
-        description=say("rms {shown}{thin}{label}", shown=" → ".join(shown), thin=THIN, label=measure.label),
+        description=say(
+            "rms {values}{thin_space}{label}", values=" → ".join(shown), thin_space=THIN, label=measure.label
+        ),
         condition=None,
         datasets={DATA_FORM: _points(sides, column, across, measure)},
     )
@@ -110,7 +112,7 @@ def _rms(side: Residuals, column: int, measure: Measure) -> str:
     return scatter_in_words(float(np.sqrt(np.mean(value**2))) if len(value) else 0.0, measure)
 
 
-def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list[dict[str, Any]]:
+def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list[Json]:
     both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
     flipped = sides.before.flipped
     return [
@@ -129,7 +131,7 @@ def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list
     ]
 
 
-def _spec(across: Across, measure: Measure, largest: float, *, wider: bool) -> dict[str, Any]:
+def _spec(across: Across, measure: Measure, largest: float, *, wider: bool) -> Json:
     domain = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
     axis, scale = alt.Axis(**ticks(across.name)), alt.Scale(domain=domain, nice=False, zero=False)
     x = alt.X("x:Q", title=across.title, axis=axis, scale=scale)
@@ -222,10 +224,10 @@ def _course_panel(component: str, value: np.ndarray, residuals: Residuals, acros
     return Panel(
         title=component,
         description=say(
-            "{component}, up to {reach}{thin}{label}",
+            "{component}, up to {reach}{thin_space}{label}",
             component=component_in_words(component),
             reach=number(reach, decimals(reach)),
-            thin=THIN,
+            thin_space=THIN,
             label=measure.label,
         ),
         condition=None,
@@ -233,7 +235,7 @@ def _course_panel(component: str, value: np.ndarray, residuals: Residuals, acros
     )
 
 
-def _course_points(value: np.ndarray, residuals: Residuals, across: Across) -> list[dict[str, Any]]:
+def _course_points(value: np.ndarray, residuals: Residuals, across: Across) -> list[Json]:
     flipped = residuals.flipped
     return [
         {
@@ -247,17 +249,17 @@ def _course_points(value: np.ndarray, residuals: Residuals, across: Across) -> l
     ]
 
 
-def _filled(across: Across, measure: Measure, largest: float, *, is_joined: bool) -> dict[str, Any]:
+def _filled(across: Across, measure: Measure, largest: float, *, is_joined: bool) -> Json:
     left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
     low, high = padded(-largest, largest)
     blanks = {LEFT: left, RIGHT: right, LOW: low, HIGH: high, UNIT: measure.label}
     spec = _course_spec(across.name, across.title, is_joined=is_joined)
-    found: dict[str, Any] = filled(spec, {**blanks, CHANGE: say("off by, {label}", label=measure.label)})
+    found: Json = filled(spec, {**blanks, CHANGE: say("off by, {label}", label=measure.label)})
     return found
 
 
 @cache
-def _course_spec(name: str, title: str, *, is_joined: bool) -> dict[str, Any]:
+def _course_spec(name: str, title: str, *, is_joined: bool) -> Json:
     """With blanks for the unit and the ranges; ``is_joined``: neighbours are joined by a line."""
     x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
     y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LOW, HIGH]))

@@ -32,7 +32,7 @@ class GainRow:
 
 
 @dataclass(frozen=True)
-class Moved:
+class MovedParameterLine:
     """How far one sensor's parameters moved because the causes are in the model."""
 
     sensor: str
@@ -54,7 +54,7 @@ class GainView:
     earlier_rows: tuple[GainRow, ...]
     """The earlier session, with the size found in this one; empty where the causes cannot have acted there."""
     earlier_at: datetime | None
-    moved: tuple[Moved, ...]
+    moved: tuple[MovedParameterLine, ...]
     """Sensors of which anything moved."""
     verdict_before: Condition
     verdict_after: Condition | None
@@ -121,7 +121,7 @@ def _rms(before: Score, after: Score, kind: str, *, several: bool) -> GainRow:
     who = say(" of {kind}s", kind=kind) if several else ""
     return GainRow(
         "rms",
-        say("error of prediction{who}, {label}", who=who, label=measure.label),
+        say("error of prediction{sensors}, {label}", sensors=who, label=measure.label),
         *(number(x * measure.factor, 3) for x in own),
     )
 
@@ -141,8 +141,8 @@ def _has_moved(before: SensorCalibration, after: SensorCalibration) -> bool:
     return any(shifts)
 
 
-def _moved(before: SensorCalibration, after: SensorCalibration) -> Moved:
-    return Moved(
+def _moved(before: SensorCalibration, after: SensorCalibration) -> MovedParameterLine:
+    return MovedParameterLine(
         sensor=after.name,
         scale=_relative(before.scale, after.scale, after.kind),
         bias=_change(before.bias, after.bias, after.kind),

@@ -1,4 +1,4 @@
-"""The page of a diagnosis, *What the simulation gets wrong*, and its forms."""
+"""The page of a diagnosis and its forms."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from service.diagnosis.charts import MOST_PANELS, Sides, diagnosis_charts
 from service.diagnosis.gain import GainView, gain_view
 from service.diagnosis.records import Diagnosed, DiagnosisReport, StoredDiagnosis
 from service.diagnosis.sections import PENDING, TONES, CourseView, SharedView, course_views, shared_views
-from service.diagnosis.words.causes import cause_on
+from service.diagnosis.words.causes import cause_on, weighty_first
 from service.diagnosis.words.diagnosis import (
     HEADLINES,
     BlindCauses,
@@ -27,11 +27,14 @@ from service.diagnosis.words.diagnosis import (
     what_to_do,
 )
 from service.diagnosis.words.findings import FindingView, evidence, finding_view, where_of, who_of
+from service.diagnosis.words.gain import gain_in_words
 from service.models.records import ModelRevision, NewModel, Scope
 from service.models.rules import in_force
 from service.models.store import Models
 from service.people.dependencies import SEE_OTHER, By, Key, StorageOf
+from service.records.dependencies import ReceptionOf
 from service.records.models import accept_model, withdraw_model
+from service.records.recalibrate import recompute_beside
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.charts import ChartSet, noise_of
 from service.sessions.lines import ResidualTable, residual_table
@@ -43,7 +46,7 @@ from service.web.dependencies import Now, Reading
 from service.web.fields import NO_NUL
 from service.web.render import render
 from service.work.dependencies import ReaderOf
-from service.work.readers import GLANCE
+from service.work.readers import PAGE_PATIENCE
 
 WAIT = "A large session takes some seconds; this page reads itself again."
 CLAIM = "conditional-pass"
@@ -92,6 +95,8 @@ class EvidenceView:
     left_out: int
     """Sensors that are not drawn."""
     residuals: ResidualTable
+    gains: tuple[str, ...]
+    """What every finding in turn gains for its sensors, in one sentence."""
     gain: GainView | None
     """None where no cause is named."""
     seen: tuple[SeenCause, ...]
@@ -117,6 +122,8 @@ class DiagnosisPage:
     revisions: tuple[RevisionView, ...]
     scopes: tuple[tuple[str, str], ...]
     made: str
+    gain: str
+    """What all causes that are named gain, in one sentence."""
 
 
 def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
@@ -132,6 +139,7 @@ def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
         revisions=tuple(_revision(r, session, report.revisions) for r in report.revisions if r.withdraws is None),
         scopes=_scopes(session),
         made="",
+        gain="",
     )
     return pending if made is None else _made(pending, report, made)
 
@@ -146,6 +154,7 @@ def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis
         follow=None,
         evidence=None if found is None else _evidence(report, made, found),
         made=say("Made by estimator {estimator_version}", estimator_version=made.estimator_version),
+        gain=made.gain_in_words,
     )
 
 
@@ -164,7 +173,7 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
     return EvidenceView(
         wrong_errors=errors_of(found) if is_named or found.structures else (),
         findings=_findings(report, found),
-        shared=shared_views(found.findings, after),
+        shared=shared_views(weighty_first(found.findings), after),
         structures=tuple(map(_structure, found.structures)),
         courses=course_views(found.structures, before),
         charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None, noise), named),
@@ -172,6 +181,7 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
         beta=before.beta is not None,
         left_out=max(0, len(after.sensors) - MOST_PANELS),
         residuals=residual_table(replace(after, residuals=before)),
+        gains=tuple(gain_in_words(found.gain, f.sensors) for f in found.findings),
         gain=gain_view(found.gain, report.calibration, after, *verdicts) if is_named else None,
         seen=seen_causes(found.limits, {sensor.kind for sensor in after.sensors}),
         blind=blind_causes(found.limits),
@@ -182,7 +192,9 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
 def _findings(report: DiagnosisReport, found: Diagnosed) -> tuple[FindingView, ...]:
     revisions, is_stated = in_force(report.revisions), found.calibration.fit.noise == "stated" and not found.noise
     is_claim = is_stated and report.session.programme in CALIBRATIONS  # an alignment takes its turns' own scatter
-    return tuple(finding_view(f, revisions, found.findings, by_stated_noise=is_claim) for f in found.findings)
+    return tuple(
+        finding_view(f, revisions, found.findings, by_stated_noise=is_claim) for f in weighty_first(found.findings)
+    )
 
 
 def _structure(structure: Structure) -> StructureView:
@@ -232,14 +244,14 @@ router = APIRouter(include_in_schema=False)
 @router.get("/sessions/{id}/diagnosis")
 def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) -> HTMLResponse:
     """What the simulation gets wrong about the session."""
-    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, patience=GLANCE)))
+    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, patience=PAGE_PATIENCE)))
     return render(request, "diagnosis.html", page)
 
 
 @router.post("/sessions/{id}/diagnosis/accept")
 def accept(
     id: Key,
-    storage: StorageOf,
+    reception: ReceptionOf,
     reader: ReaderOf,
     now: Now,
     *,
@@ -247,10 +259,12 @@ def accept(
     scope: Annotated[Scope, Form()],
     by: By,
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+    again: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
-    """Accepts a named cause, and shows the models that concern the session."""
-    accept_model(storage, reader.made(id), NewModel(cause, scope, by, note), now)
-    return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
+    """Accepts a named cause, and shows what it gains and, where stored sessions are computed again, what moves."""
+    made = accept_model(reception.storage, reader.made(id), NewModel(cause, scope, by, note, again=again), now)
+    recompute_beside(reception, now)
+    return RedirectResponse(f"/models/{made.id}", SEE_OTHER)
 
 
 @router.post("/sessions/{id}/diagnosis/withdraw/{revision}")

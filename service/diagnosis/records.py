@@ -59,6 +59,8 @@ class StoredDiagnosis:
     created_at: datetime
     reservations: tuple[Reservation, ...] = ()
     """What the session's verdict is said with."""
+    gain_in_words: str = ""
+    """What the named causes gain, in one sentence; empty where none is named."""
 
 
 @dataclass(frozen=True)

@@ -36,13 +36,19 @@ class DiagnosisLine:
 
     tone: str
     text: str
+    gain: str = ""
+    """What naming it gains, in one sentence."""
 
 
 def diagnosis_line(found: DiagnosisSummary | None, failed: str = "") -> DiagnosisLine:
     """What is known; None while it is still being examined, or where that ``failed``."""
     if found is None and failed:
         return DiagnosisLine(TONES[DiagnosisState.FAILED], session_failed(failed))
-    return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)
+    return (
+        DiagnosisLine("none", PENDING)
+        if found is None
+        else DiagnosisLine(TONES[found.state], found.summary, found.gain)
+    )
 
 
 @dataclass(frozen=True)
@@ -90,7 +96,7 @@ def _shared(shared: Shared, kinds: Mapping[str, str], residuals: Residuals, name
         sensor=shared.drawn_for,
         chart=shared_chart(shared, kind, residuals, name),
         table=ResidualTable(
-            heads=tuple(say("{c}, {label}", c=head, label=measure.label) for head in heads),
+            heads=tuple(say("{heading}, {label}", heading=head, label=measure.label) for head in heads),
             beta=residuals.beta is not None,
             rows=rows_of(columns * measure.factor, residuals),
         ),
@@ -106,7 +112,8 @@ def _view(course: Course, residuals: Residuals, name: str) -> CourseView:
         charts=course_charts(course, residuals, name),
         table=ResidualTable(
             heads=tuple(
-                say("{c}, {label}", c=c, label=m.label) for c, m in zip(course.components, measures, strict=True)
+                say("{heading}, {label}", heading=c, label=m.label)
+                for c, m in zip(course.components, measures, strict=True)
             ),
             beta=residuals.beta is not None,
             rows=rows_of(shown, residuals),

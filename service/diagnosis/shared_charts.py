@@ -1,11 +1,10 @@
 """The course that several sensors share, with what all of them together read."""
 
-from typing import Any
-
 import altair as alt
 import numpy as np
 
 from estimator.diagnosis.results import Shared
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.results import Residuals
 from service.kit.measures import COVERAGE, THIN, decimals, deviation_measure, number
@@ -49,7 +48,7 @@ def shared_chart(shared: Shared, kind: str, residuals: Residuals, name: str) -> 
     )
 
 
-def _spec(across: Across, unit: str, reach: float) -> dict[str, Any]:
+def _spec(across: Across, unit: str, reach: float) -> Json:
     domain = padded(float(np.min(across.values)), float(np.max(across.values)))
     scale = alt.Scale(domain=domain, nice=False, zero=False)
     x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks(across.name)), scale=scale)

@@ -2,11 +2,11 @@
 
 import json
 import zlib
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
 from sqlalchemy import delete, select, update
 
+from estimator.json_object import Json
 from service.diagnosis.records import Diagnosed, StoredDiagnosis
 from service.diagnosis.tables import DiagnosisRow
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE
@@ -18,9 +18,9 @@ from service.sessions.tables import SessionRow
 from service.storage.queries import Queries
 
 
-def inapplicable_to_dict(unit: str) -> dict[str, Any]:
+def inapplicable_to_dict(unit: str) -> Json:
     """imu-diagnosis/1 of a session of a programme in which no causes are looked for."""
-    empty: dict[str, Any] = {"findings": [], "unexplained": False, "structures": [], "limits": [], "noise": []}
+    empty: Json = {"findings": [], "unexplained": False, "structures": [], "limits": [], "noise": []}
     unmade = dict.fromkeys(("gain", "calibration", "residuals_before"))
     return {"format": "imu-diagnosis/1", "unit": unit, **empty, **unmade, "notes": [NOT_APPLICABLE]}
 
@@ -49,6 +49,7 @@ class Diagnoses(Queries):
             model_revision=found.model_revision,
             state=found.state,
             summary=found.summary,
+            gain_in_words=found.gain_in_words or None,
             document=None if found.document is None else zlib.compress(found.document.encode()),
             verdict_after=found.verdict_after,
             estimator_version=found.estimator_version,
@@ -81,13 +82,24 @@ class Diagnoses(Queries):
             estimator_version=row.estimator_version,
             created_at=row.created_at,
             reservations=reservations_from_list(row.session_id, row.reservations) or (),
+            gain_in_words=row.gain_in_words or "",
         )
+
+    def with_findings(self, sessions: Iterable[str]) -> dict[str, Diagnosed]:
+        """What was named in those of some sessions in which anything was, in one query."""
+        query = select(DiagnosisRow.session_id, DiagnosisRow.document).where(
+            DiagnosisRow.session_id.in_(tuple(sessions)),
+            DiagnosisRow.state.in_((DiagnosisState.NAMED, DiagnosisState.UNDECIDED)),
+            DiagnosisRow.document.is_not(None),
+        )
+        read = {id: read_diagnosis(zlib.decompress(held).decode()) for id, held in self._session.execute(query) if held}
+        return {id: found for id, found in read.items() if found is not None and found.findings}
 
     def summary(self, session: str) -> DiagnosisSummary | None:
         """The diagnosis of a session in one line; None while it is still to be made."""
-        query = select(DiagnosisRow.state, DiagnosisRow.summary).where(DiagnosisRow.session_id == session)
-        row = self._session.execute(query).one_or_none()
-        return None if row is None else DiagnosisSummary(DiagnosisState(row[0]), row[1])
+        line = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words)
+        row = self._session.execute(select(*line).where(DiagnosisRow.session_id == session)).one_or_none()
+        return None if row is None else DiagnosisSummary(DiagnosisState(row[0]), row[1], row[2] or "")
 
     def has_failed(self, session: str) -> bool:
         """Whether a session could not be diagnosed."""

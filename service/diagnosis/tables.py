@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import IS_FAILED, Sentence, only_where
 from service.storage.tables import Base
 
@@ -19,10 +20,12 @@ class DiagnosisRow(Base):
     model_revision: Mapped[int]
     state: Mapped[str] = mapped_column(String(20))
     summary: Mapped[str] = mapped_column(Sentence)
+    gain_in_words: Mapped[str | None] = mapped_column(Sentence)
+    """NULL where no cause is named, and of earlier releases."""
     document: Mapped[bytes | None]
     verdict_after: Mapped[str | None] = mapped_column(String(20))
     estimator_version: Mapped[str] = mapped_column(String(40))
     created_at: Mapped[datetime]
     reservations: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
     """NULL where there are none, so that units with one are found."""
-    tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    tells: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))

@@ -65,7 +65,7 @@ class Handling(BaseModel):
 router = APIRouter(prefix="/flags", tags=["flags"])
 WantedState = Annotated[FlagState | None, Query(description="Only flags in this state.")]
 
-ASSIGNED = "Only flags of this login or name; `me`: of whoever asks; `nobody`: of nobody in particular."
+ASSIGNED = "Only flags assigned to this login or name; `me`: to whoever asks; `nobody`: to nobody."
 
 
 def flag_page(store: Store, wanted: FlagQuery, window: Window) -> FlagPage:

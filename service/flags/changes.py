@@ -19,8 +19,8 @@ from service.storage.audit import Audit
 from service.storage.queries import Store
 from service.units.store import Units
 
-UNKNOWN = "is the login or the name of no account that may sign in; leave it empty for nobody"
-SEVERAL = "is the name of several accounts; say the login"
+UNKNOWN = "no account with this login or name may sign in; leave it empty for nobody"
+SEVERAL = "several accounts have this name; give the login"
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def assign_flag(storage: Storage, id: int, said: Assignment, now: datetime) -> F
         unit, assignee = Units(store).hold(Flags(store).unit_of(id)), assignee_of(store, said.to)
         flag = Flags(store).get(id)
         if flag.state is FlagState.RESOLVED:
-            raise ConflictError(say("Flag {id} is resolved already, so nobody has to look after it.", id=id))
+            raise ConflictError(say("Flag {id} is already resolved: it cannot be assigned.", id=id))
         _put(store, flag, unit, assignee, said=said, now=now)
         return Flags(store).get(id)
 
@@ -77,7 +77,7 @@ def _put(store: Store, flag: Flag, unit: int, assignee: Assignee, *, said: Assig
     if Flags(store).assignee_of(flag.id) == assignee:
         return False
     Flags(store).put(flag.id, now, assignee=assignee.name, assignee_login=assignee.login)
-    text = say("To {name}.", name=assignee.name) if assignee.name else "To nobody in particular."
+    text = say("To {name}.", name=assignee.name) if assignee.name else "To nobody."
     Notices(store).add(
         unit, NoticeKind.ASSIGNED, now, said.who, joined(" ", filter(None, (text, said.why))), flag=flag.id
     )
@@ -116,13 +116,13 @@ def bring_flags(storage: Storage, ids: Collection[int], state: FlagState, who: s
         for id in sorted(units, key=lambda id: (units[id], id)):
             unit = Units(store).hold(units[id])
             if Flags(store).get(id).state in POSSIBLE[state]:
-                _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
+                _keep(store, FlagHandling(id, unit, state, who=who, why=why, at=now))
                 changed += 1
         return changed
 
 
 @dataclass(frozen=True)
-class Handled:
+class FlagHandling:
     """What somebody says of one flag."""
 
     id: int
@@ -140,16 +140,16 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
         if flag.state not in POSSIBLE[state]:
             raise ConflictError(
                 say(
-                    "Flag {id} is {value} already, so it cannot be {value2} now.",
+                    "Flag {id} is already {state}: it cannot be {new_state} now.",
                     id=id,
-                    value=flag.state.value,
-                    value2=state.value,
+                    state=flag.state.value,
+                    new_state=state.value,
                 )
             )
-        return _keep(store, Handled(id, unit, state, who=who, why=why, at=now))
+        return _keep(store, FlagHandling(id, unit, state, who=who, why=why, at=now))
 
 
-def _keep(store: Store, said: Handled) -> Flag:
+def _keep(store: Store, said: FlagHandling) -> Flag:
     Flags(store).put(said.id, said.at, state=said.state)
     Notices(store).add(said.unit, DONE[said.state], said.at, said.who, said.why, flag=said.id)
     Fleet(store).count_flags(said.unit)
@@ -192,9 +192,9 @@ def fault_of(url: str, hosts: tuple[str, ...]) -> str:
     wanted = host if parsed.port is None else f"{host}:{parsed.port}"
     if wanted.lower() not in {allowed.lower() for allowed in hosts}:
         return say(
-            "leads to {wanted}, which this service may not call; whoever runs it can allow it with "
+            "leads to {host}, which this service may not call; whoever runs it can allow it with "
             "IMU_HEALTH_WEBHOOK_HOSTS",
-            wanted=wanted,
+            host=wanted,
         )
     return ""
 

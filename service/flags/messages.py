@@ -1,4 +1,4 @@
-"""Work beside the requests: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
+"""Background work: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
 
 An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent
 again under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the
@@ -99,7 +99,7 @@ class Outbox:
             Webhooks(store).put(outgoing.delivery, state, outcome, at)
 
 
-class Turns:
+class DeliveryTurns:
     """Receivers that are being sent to: each in a turn of its own, so that a slow one keeps none of the others."""
 
     def __init__(self, outbox: Outbox, guard: Guard, http: httpx.AsyncClient) -> None:
@@ -136,10 +136,10 @@ class Turns:
 
 
 @asynccontextmanager
-async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[Turns]:
+async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[DeliveryTurns]:
     """Turns, which are cancelled at the end."""
     async with httpx.AsyncClient(timeout=TIMEOUT, follow_redirects=False, trust_env=False) as http:
-        turns = Turns(outbox, guard, http)
+        turns = DeliveryTurns(outbox, guard, http)
         try:
             yield turns
         finally:

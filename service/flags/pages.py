@@ -1,7 +1,7 @@
 """The pages of flags and their forms."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 from urllib.parse import quote
 
@@ -13,18 +13,19 @@ from estimator.message import say, uncapitalised
 from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, bring_flags, resolve_flag
 from service.flags.records import Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.store import Flags
-from service.flags.view import ME, ORDERS, PAGE_SIZE, FlagsAsked, FlagsView, active_names, assignee_meant, choices_of
+from service.flags.view import ME, FlagsView, active_names, assignee_meant, choices_of
 from service.flags.view import STATES as CHOICES
 from service.groups.words import place_in_words
 from service.models.records import Scope
 from service.pages.saved import Saved, saved
 from service.people.admission import PersonOf
-from service.people.dependencies import SEE_OTHER, By, Number, Perhaps, StorageOf, Why
+from service.people.dependencies import SEE_OTHER, By, Number, OptionalText, StorageOf, Why
 from service.people.view_store import SavedViews
 from service.people.views import ListPage
 from service.sessions.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
 from service.web.dependencies import Now, Reading
 from service.web.fields import NO_NUL
+from service.web.list_view import Shown
 from service.web.render import render
 
 MATTERS = {
@@ -97,16 +98,12 @@ class FlagCard:
 class FlagsPage:
     """Everything the page of all open flags shows."""
 
-    cards: tuple[FlagCard, ...]
-    earlier: str
-    """Address of the page before this one; empty where it is the first."""
-    later: str
-    """Address of the next page; empty where it is the last."""
     view: FlagsView
+    shown: Shown[Flag]
+    cards: tuple[FlagCard, ...]
     matters: Mapping[str, str]
     states: Mapping[str, str]
     """What the list can be narrowed to, in words."""
-    orders: Mapping[str, str]
     assigned: Mapping[str, str]
     """Whose flags can be asked for: what stands in the address, and the name or words."""
     people: tuple[str, ...]
@@ -118,18 +115,14 @@ class FlagsPage:
 def flags_page(
     found: Sequence[Flag], view: FlagsView, assigned: Mapping[str, str], people: Sequence[str], kept: Saved
 ) -> FlagsPage:
-    """One page of open flags; one more than fit on it says that there are others in the direction of reading."""
-    backwards, others = bool(view.before), len(found) > PAGE_SIZE
-    shown = found[-PAGE_SIZE:] if backwards else found[:PAGE_SIZE]
-    is_first, is_last = (not others, False) if backwards else (not view.after, not others)
+    """One page of open flags."""
+    shown = Shown.of(view, found, lambda flag: flag.id)
     return FlagsPage(
-        cards=flag_cards(shown),
-        earlier="" if is_first or not shown else view.url(before=shown[0].id, after=""),
-        later="" if is_last or not shown else view.url(after=shown[-1].id, before=""),
         view=view,
+        shown=shown,
+        cards=flag_cards(shown.entries),
         matters={matter.value: word for matter, word in MATTERS.items()},
         states=CHOICES,
-        orders=ORDERS,
         assigned=assigned,
         people=tuple(people),
         saved=kept,
@@ -161,18 +154,17 @@ def _heading(flag: Flag) -> str:
 router = APIRouter(prefix="/flags", include_in_schema=False)
 Chosen = Annotated[list[Annotated[int, Field(ge=1, le=2_000_000_000)]], Form(min_length=1, max_length=200)]
 """Flags that were ticked."""
-Asking = Annotated[FlagsAsked, Query()]
+Asking = Annotated[FlagsView, Query()]
 """The view that a form was sent from, and that comes back."""
 To = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
 """Login or name; empty for nobody."""
 
 
 @router.get("")
-def show_flags(request: Request, store: Reading, person: PersonOf, asked: Asking) -> HTMLResponse:
+def show_flags(request: Request, store: Reading, person: PersonOf, view: Asking) -> HTMLResponse:
     """The open flags of the fleet, newest first, or those of them that the address asks for."""
-    view = FlagsView.of(asked)
     if view.assigned == ME and not person.login:
-        view = replace(view, assigned="")
+        view = view.model_copy(update={"assigned": ""})
     found = Flags(store).page(view.query(assignee_meant(store, view.assigned, person)))
     kept = saved(SavedViews(store).of(person.login, ListPage.FLAGS), view, ListPage.FLAGS, person)
     assigned = choices_of(Flags(store).assignees(), is_signed_in=bool(person.login))
@@ -181,35 +173,37 @@ def show_flags(request: Request, store: Reading, person: PersonOf, asked: Asking
 
 @router.post("/assign")
 def assign_chosen(
-    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "", asked: Asking
+    flag: Chosen, by: By, storage: StorageOf, now: Now, *, to: To = "", why: OptionalText = "", view: Asking
 ) -> RedirectResponse:
     """Several are given to somebody."""
     assign_flags(storage, flag, Assignment(to, by, why), now)
-    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+    return RedirectResponse(view.url(), SEE_OTHER)
 
 
 @router.post("/{id}/assign")
-def assign(id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: Perhaps = "") -> RedirectResponse:
+def assign(
+    id: Number, by: By, storage: StorageOf, now: Now, *, to: To = "", why: OptionalText = ""
+) -> RedirectResponse:
     """One is given to somebody."""
     return _back(assign_flag(storage, id, Assignment(to, by, why), now))
 
 
 @router.post("/acknowledge")
 def acknowledge_chosen(
-    flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, to: To = "", asked: Asking
+    flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, to: To = "", view: Asking
 ) -> RedirectResponse:
     """Somebody looks after several; where the form names whom, they are given to them."""
     if to.strip():
         assign_flags(storage, flag, Assignment(to, by), now)
     bring_flags(storage, flag, FlagState.ACKNOWLEDGED, by, why, now)
-    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+    return RedirectResponse(view.url(), SEE_OTHER)
 
 
 @router.post("/resolve")
-def resolve_chosen(flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, asked: Asking) -> RedirectResponse:
+def resolve_chosen(flag: Chosen, by: By, why: Why, storage: StorageOf, now: Now, *, view: Asking) -> RedirectResponse:
     """Several matters are settled."""
     bring_flags(storage, flag, FlagState.RESOLVED, by, why, now)
-    return RedirectResponse(FlagsView.of(asked).url(), SEE_OTHER)
+    return RedirectResponse(view.url(), SEE_OTHER)
 
 
 @router.post("/{id}/acknowledge")

@@ -1,20 +1,24 @@
 """Flags and what happened to them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 
-from sqlalchemy import ColumnElement, Row, and_, bindparam, case, insert, literal, or_, select, update
+from sqlalchemy import ColumnElement, Row, ScalarSelect, and_, bindparam, case, insert, literal, or_, select, update
 from sqlalchemy.orm import aliased
 
 from estimator.message import say
 from service.errors import NotFoundError
 from service.flags.records import AT_FAULT, Assignee, Concern, Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.tables import DeliveryRow, FlagRow, NoticeRow, WebhookRow
+from service.kit.listing import ListQuery
 from service.models.records import Scope
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
+from service.sessions.tables import SessionRow
+from service.stands.tables import StandRow
+from service.storage.listing import Key, Listing
 from service.storage.queries import Queries
 from service.units.tables import UnitRow
 
@@ -45,7 +49,7 @@ class Notices(Queries):
         told = select(literal(notice), WebhookRow.id, literal("waiting"), literal(0), literal(""))
         new = insert(DeliveryRow).from_select(columns, told.where(WebhookRow.removed_at.is_(None)))
         deliveries = self._session.scalars(new.returning(DeliveryRow.id)).all()
-        WorkQueue(self._store, WorkKind.MESSAGE).ask_once(map(str, sorted(deliveries)), at)
+        WorkQueue(self._store, WorkKind.MESSAGE).enqueue_once(map(str, sorted(deliveries)), at)
 
 
 def notice_of(row: NoticeRow, serial: str) -> Notice:
@@ -63,13 +67,11 @@ def notice_of(row: NoticeRow, serial: str) -> Notice:
 
 
 @dataclass(frozen=True)
-class FlagQuery:
-    """Which flags are wanted."""
+class FlagQuery(ListQuery):
+    """Which flags are wanted, newest first, and after or before which number."""
 
     unit: str | None = None
     state: FlagState | None = None
-    offset: int = 0
-    limit: int = 100
     matter: Matter | None = None
     text: str | None = None
     """Part of the unit's serial number, or of the name of the type or the stand, small and capital letters alike."""
@@ -80,16 +82,6 @@ class FlagQuery:
     """About a stand, whether units, single sessions or all of them together tell of it."""
     assignee: Assignee | None = None
     """Who looks after it, by the account or, where the flag names none, by the name; of nobody none is anybody's."""
-    after: int | None = None
-    """Flags that follow this one in the list."""
-    before: int | None = None
-    """Flags that come before it; of open ones only."""
-    oldest_first: bool = False
-
-    @property
-    def is_falling(self) -> bool:
-        """Whether rows are read from the largest number on; those before a flag are read backwards."""
-        return self.oldest_first == (self.before is not None)
 
 
 IS_OF_UNIT = FlagRow.scope == Scope.UNIT
@@ -98,44 +90,48 @@ IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
 """A number that orders open flags before those that are resolved."""
 
 
-def _wanted(wanted: FlagQuery) -> Iterator[ColumnElement[bool]]:
-    if wanted.unit is not None:
-        yield and_(UnitRow.serial == wanted.unit, IS_OF_UNIT)
-    if wanted.unit_type is not None:
-        yield and_(FlagRow.scope == Scope.UNIT_TYPE, FlagRow.subject == wanted.unit_type)
-    if wanted.stand is not None:
-        together = and_(FlagRow.scope == Scope.STAND, FlagRow.subject == wanted.stand)
-        yield or_(and_(FlagRow.matter.in_(AT_FAULT), FlagRow.place == wanted.stand), together)
-    if wanted.text:
-        name = case((IS_OF_UNIT, UnitRow.serial), else_=FlagRow.subject)
-        yield name.icontains(wanted.text, autoescape=True)
-    if wanted.state is not None:
-        yield FlagRow.state == wanted.state
-    if wanted.matter is not None:
-        yield FlagRow.matter == wanted.matter
-    if wanted.assignee is not None:
-        yield _is_of(wanted.assignee)
-    place = wanted.after or wanted.before
-    if place is not None:
-        yield _beyond(wanted, place)
-    if wanted.unresolved:
-        yield FlagRow.state != FlagState.RESOLVED
-
-
-def _beyond(wanted: FlagQuery, place: int) -> ColumnElement[bool]:
-    """Whether a flag lies beyond another one, in the direction of reading."""
-    further = FlagRow.id < place if wanted.is_falling else FlagRow.id > place
-    if wanted.unresolved:
-        return further
+def _is_resolved(number: int) -> ScalarSelect[int]:
     known = aliased(FlagRow)
-    state = select(case((known.state == FlagState.RESOLVED, 1), else_=0)).where(known.id == place).scalar_subquery()
-    return or_(state < IS_RESOLVED, (state == IS_RESOLVED) & further)
+    return select(case((known.state == FlagState.RESOLVED, 1), else_=0)).where(known.id == number).scalar_subquery()
+
+
+def _is_on(serial: str) -> ColumnElement[bool]:
+    own = select(UnitRow.id).where(UnitRow.serial == serial).scalar_subquery()
+    return and_(FlagRow.unit_id == own, IS_OF_UNIT)
+
+
+def _is_about(stand: str) -> ColumnElement[bool]:
+    together = and_(FlagRow.scope == Scope.STAND, FlagRow.subject == stand)
+    return or_(and_(FlagRow.matter.in_(AT_FAULT), FlagRow.place == stand), together)
+
+
+def _has(text: str) -> ColumnElement[bool]:
+    serial = select(UnitRow.serial).where(UnitRow.id == FlagRow.unit_id).scalar_subquery()
+    return case((IS_OF_UNIT, serial), else_=FlagRow.subject).icontains(text, autoescape=True)
 
 
 def _is_of(assignee: Assignee) -> ColumnElement[bool]:
     """Whether a flag is somebody's. An account may be renamed, so its login tells; where a flag has none, the name."""
     by_name = and_(FlagRow.assignee == assignee.name, FlagRow.assignee_login == "")
     return or_(FlagRow.assignee_login == assignee.login, by_name) if assignee.login else by_name
+
+
+NEWEST = (Key(FlagRow.id, is_falling=True, known=int),)
+OPEN_FIRST = (Key(IS_RESOLVED, stays=True, known=_is_resolved), *NEWEST)
+FLAGS: Listing[FlagQuery] = Listing(
+    name=FlagRow.id,
+    keys=lambda wanted: NEWEST if wanted.unresolved else OPEN_FIRST,
+    conditions={
+        "unit": _is_on,
+        "unit_type": lambda name: and_(FlagRow.scope == Scope.UNIT_TYPE, FlagRow.subject == name),
+        "stand": _is_about,
+        "text": _has,
+        "state": lambda state: FlagRow.state == state,
+        "matter": lambda matter: FlagRow.matter == matter,
+        "assignee": _is_of,
+        "unresolved": lambda _: FlagRow.state != FlagState.RESOLVED,
+    },
+)
 
 
 class Flags(Queries):
@@ -145,6 +141,13 @@ class Flags(Queries):
         """The flags of a unit that are not resolved, without their lives."""
         found = self._session.execute(_OPEN_OF, {"unit": unit})
         return tuple(_flag(row, serial) for row, serial in found)
+
+    def open_stands_of(self, unit: int) -> tuple[str, ...]:
+        """Stands that a unit was ever measured on, and that have an open flag for what sessions found on them."""
+        on = select(StandRow.name).join(SessionRow, SessionRow.stand_id == StandRow.id)
+        own = (FlagRow.matter == Matter.STAND, FlagRow.scope == Scope.STAND, FlagRow.state != FlagState.RESOLVED)
+        query = select(FlagRow.place).where(*own, FlagRow.place.in_(on.where(SessionRow.unit_id == unit)))
+        return tuple(self._session.scalars(query.distinct()))
 
     def open_about(self, *matters: Matter) -> tuple[Flag, ...]:
         """All flags on some matters that are not resolved, without their lives."""
@@ -183,20 +186,16 @@ class Flags(Queries):
 
     def page(self, wanted: FlagQuery) -> tuple[Flag, ...]:
         """Flags with their lives, open ones first, newest first unless asked otherwise, in one query."""
-        number = FlagRow.id.desc() if wanted.is_falling else FlagRow.id.asc()
-        chosen = select(FlagRow.id).order_by(*(() if wanted.unresolved else (IS_RESOLVED,)), number)
-        if wanted.unit is not None or wanted.text:
-            chosen = chosen.join(UnitRow, UnitRow.id == FlagRow.unit_id)
-        ids = chosen.where(*_wanted(wanted)).offset(wanted.offset).limit(wanted.limit).subquery()
+        page = FLAGS.page(self._session, select(FlagRow.id), wanted)
+        ids = page.cut(select(FlagRow.id)).subquery()
         query = (
             select(FlagRow, UnitRow.serial, NoticeRow)
             .join(ids, ids.c.id == FlagRow.id)
             .join(UnitRow, UnitRow.id == FlagRow.unit_id)
             .join(NoticeRow, NoticeRow.flag_id == FlagRow.id)
-            .order_by(IS_RESOLVED, number, NoticeRow.id)
         )
-        found = _with_lives(self._session.execute(query))
-        return found if wanted.before is None else found[::-1]
+        rows = self._session.execute(page.ordered(query).order_by(NoticeRow.id))
+        return page.forward(_with_lives(rows))
 
     def assignee_of(self, id: int) -> Assignee:
         """Who looks after a flag."""

@@ -1,9 +1,9 @@
 """Which flags a visitor asked to see: it stands in the address."""
 
 from collections import Counter
-from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
-from pydantic import BaseModel
+from pydantic import AfterValidator, Field
 
 from estimator.errors import Problem
 from service.errors import RefusedError
@@ -12,7 +12,7 @@ from service.flags.store import FlagQuery, Flags
 from service.kit.person import Person
 from service.people.store import Accounts
 from service.storage.queries import Store
-from service.web.list_view import Asked, ListView, known_order
+from service.web.list_view import Asked, ListView, Words, one_of
 
 ME, OF_NOBODY = "me", "nobody"
 """What may stand in an address instead of a name."""
@@ -43,69 +43,38 @@ def _me(person: Person) -> Assignee:
     return Assignee(person.name, person.login)
 
 
-PAGE_SIZE = 50
-"""Flags on a page: as many as anybody ticks one by one."""
 STATES = {FlagState.RAISED.value: "Not acknowledged", FlagState.ACKNOWLEDGED.value: "Acknowledged"}
 """Choices, in words."""
 NEWEST, OLDEST = "newest", "oldest"
-ORDERS = {NEWEST: "newest first", OLDEST: "oldest first"}
 MINE, NOBODYS = "Assigned to me", "Assigned to nobody"
-NAMES = {
-    "text": "q", "matter": "matter", "state": "state", "assigned": "assigned", "sort": "sort", "after": "after",
-    "before": "before",
-}  # fmt: skip
-"""Fields of a view as they are called in an address."""
-
-PLAIN = {"sort": NEWEST}
-"""What an address need not say."""
-FIRST = {"after": "", "before": ""}
-"""What leads to the first page."""
 
 
-class FlagsAsked(BaseModel):
-    """An address as it came."""
-
-    q: Asked = ""
-    matter: Asked = ""
-    state: Asked = ""
-    assigned: Asked = ""
-    sort: Asked = ""
-    after: Asked = ""
-    before: Asked = ""
+def _number(asked: str) -> str:
+    """A flag's number; empty where it is none."""
+    return asked if asked.isascii() and asked.isdecimal() and 0 < int(asked) <= 2_000_000_000 else ""
 
 
-@dataclass(frozen=True)
+def _forward(asked: str) -> str:
+    """Each order is named; none is another backwards."""
+    return asked.removeprefix("-")
+
+
+FlagNumber = Annotated[Asked, AfterValidator(_number)]
+
+
 class FlagsView(ListView):
     """Flags that are open."""
 
     PATH = "/flags"
-    NAMES = NAMES
-    PLAIN = PLAIN
-    FIRST = FIRST
-    ORDERS = ORDERS
-    sort: str = NEWEST
-    text: str = ""
-    matter: str = ""
-    state: str = ""
-    assigned: str = ""
+    ORDERS: ClassVar = {NEWEST: "newest first", OLDEST: "oldest first"}
+    q: Words = ""
+    matter: Annotated[Asked, one_of(set(Matter))] = ""
+    state: Annotated[Asked, one_of(STATES)] = ""
+    assigned: Asked = ""
     """A name or a login, `me` or `nobody`."""
-    after: str = ""
-    """The flag that this page follows."""
-    before: str = ""
-    """The flag that it comes before."""
-
-    @classmethod
-    def of(cls, asked: FlagsAsked) -> "FlagsView":
-        """The view of an address; what it asks that nobody knows is left out."""
-        return cls(
-            sort=known_order(asked.sort.removeprefix("-"), ORDERS, NEWEST),
-            text=asked.q.strip(),
-            matter=asked.matter if asked.matter in set(Matter) else "",
-            state=asked.state if asked.state in STATES else "",
-            assigned=asked.assigned,
-            after=_number(asked.after),
-            before="" if _number(asked.after) else _number(asked.before),
-        )
+    sort: Annotated[Asked, AfterValidator(_forward), Field(validate_default=True)] = ""
+    after: FlagNumber = ""
+    before: FlagNumber = ""
 
     def doing(self, what: str) -> str:
         """Where the form of ticked flags is sent, so that this view comes back."""
@@ -115,14 +84,14 @@ class FlagsView(ListView):
         """What the store is asked: one flag more than fit on the page, which says whether there are others."""
         return FlagQuery(
             state=FlagState(self.state) if self.state else None,
-            limit=PAGE_SIZE + 1,
+            limit=self.PAGE_SIZE + 1,
             matter=Matter(self.matter) if self.matter else None,
-            text=self.text or None,
+            text=self.q or None,
             unresolved=True,
             assignee=assignee,
             after=int(self.after) if self.after else None,
             before=int(self.before) if self.before else None,
-            oldest_first=self.sort == OLDEST,
+            backwards=self.sort == OLDEST,
         )
 
 
@@ -130,8 +99,3 @@ def choices_of(assignees: tuple[Assignee, ...], *, is_signed_in: bool) -> dict[s
     """Whose flags can be asked for, in words."""
     own = {ME: MINE} if is_signed_in else {}
     return own | {OF_NOBODY: NOBODYS} | {one.login or one.name: one.name for one in assignees}
-
-
-def _number(asked: str) -> str:
-    """A flag's number; empty where it is none."""
-    return asked if asked.isascii() and asked.isdecimal() and 0 < int(asked) <= 2_000_000_000 else ""

@@ -1,4 +1,4 @@
-"""Flow: how the units of a type drift, or how stands stand, made again beside the requests that changed a record."""
+"""Flow: how the units of a type drift, or how stands stand, made again in the background after a change of records."""
 
 from datetime import datetime
 
@@ -40,7 +40,7 @@ def summarise_all(storage: Storage, now: datetime) -> int:
 def ask_for_summaries(store: Store, serial: str, now: datetime) -> None:
     """After a change of a unit's records: of its type and of the stands that it was measured on."""
     shared = (group.place for group in Groups(store).of_unit(serial) if group.level is not Level.UNIT)
-    WorkQueue(store, WorkKind.SUMMARY).ask_each(shared, now)
+    WorkQueue(store, WorkKind.SUMMARY).enqueue_each(shared, now)
 
 
 def _type(storage: Storage, group: Group, now: datetime) -> None:

@@ -8,12 +8,29 @@ from pydantic import computed_field
 
 from service.fleet.records import Tally
 from service.kit.answer import Hidden, answer
+from service.kit.measures import HARD, THIN, number
 from service.kit.moments import epoch_ms
 from service.outlook.records import UnitOutlook
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
+from service.sessions.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
 from service.types.records import UnitType
-from service.units.records import NOBODY, Customer
+from service.units.records import NO_CUSTOMER, Customer
+
+
+@dataclass(frozen=True)
+class ToleranceUsed:
+    """Of a tolerance T: by the deviation d, and by its expanded uncertainty."""
+
+    deviation: float
+    """|d|/T; beyond 1 the parameter is out of tolerance, probably where U reaches back to it."""
+    expanded: float
+    """U/T."""
+
+    @property
+    def words(self) -> str:
+        """``83 ± 71 %``."""
+        return f"{number(100 * self.deviation, 0)}{HARD}±{HARD}{number(100 * self.expanded, 0)}{THIN}%"
 
 
 @answer
@@ -47,6 +64,8 @@ class UnitSummary:
     """1 − (|d| + U)/T of it: 1 is spotless, 0 the edge of pass, negative beyond."""
     diagnosis: str = ""
     """What the simulation gets wrong about the latest session; empty if nothing."""
+    gain: Hidden[str] = ""
+    """What naming it gains, in one sentence."""
     flags: int = 0
     """How many flags are open."""
     due: datetime | None = None
@@ -57,12 +76,23 @@ class UnitSummary:
     """Production lot, where it is recorded."""
     reservations: Hidden[Reservations] = ()
     """What the verdict is said with."""
-    customer: Hidden[Customer] = NOBODY
+    customer: Hidden[Customer] = NO_CUSTOMER
     """For whom it is calibrated."""
     is_undated: Hidden[bool] = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
+    deviation: Hidden[float | None] = None
+    """|d|/T of the parameter that the verdict hangs on."""
     failed: Hidden[str] = ""
     """Why what follows from its latest records could not be worked out; empty where it was, or still is."""
+
+    @property
+    def used(self) -> ToleranceUsed | None:
+        """How much of its tolerance the worst parameter uses; None where that was not judged."""
+        if self.margin is None or self.verdict in (None, Verdict.UNDECIDABLE):
+            return None
+        whole = 1 - self.margin
+        deviation = whole if self.deviation is None else self.deviation
+        return ToleranceUsed(deviation, whole - deviation)
 
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
@@ -75,6 +105,20 @@ class UnitSummary:
     def due_ms(self) -> int | None:
         """`due` in milliseconds since 1970."""
         return None if self.due is None else epoch_ms(self.due)
+
+
+@dataclass(frozen=True)
+class ConditionCount:
+    """How many units are in one condition."""
+
+    condition: Condition
+    count: int
+    reserved: int
+    """Of how many of them the verdict is said with a reservation."""
+
+    def without(self, other: "ConditionCount") -> "ConditionCount":
+        """The same without those that another condition counts."""
+        return ConditionCount(self.condition, self.count - other.count, self.reserved - other.reserved)
 
 
 @answer
@@ -96,6 +140,19 @@ class FleetCondition:
     """How many should have been calibrated by now; 0 where that was not asked."""
     references: int = 0
     """Of how many the latest session is a reference, which nothing was held against."""
+    reserved_references: Hidden[int] = 0
+    """Of how many of these it is said with a reservation."""
+
+    @property
+    def counts(self) -> tuple[ConditionCount, ...]:
+        """Units by condition, worst first: every unit once."""
+        found = [
+            ConditionCount(condition_of(verdict), count, self.reserved.get(verdict, 0))
+            for verdict, count in sorted(self.verdicts.items(), key=lambda item: -item[0].severity)
+        ]
+        own = ConditionCount(REFERENCE, self.references, self.reserved_references)
+        judged = (one.without(own) if one.condition is UNDECIDED else one for one in found)
+        return (*judged, own) if own.count else tuple(judged)
 
     @classmethod
     def of(cls, tallies: Sequence[Tally], of_groups: int = 0) -> "FleetCondition":
@@ -108,6 +165,7 @@ class FleetCondition:
             flags=sum(tally.flags for tally in tallies) + of_groups,
             reserved={verdict: sum(tally.reserved for tally in own) for verdict, own in counts.items()},
             references=sum(tally.units for tally in tallies if tally.is_reference),
+            reserved_references=sum(tally.reserved for tally in tallies if tally.is_reference),
         )
 
 

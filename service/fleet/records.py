@@ -1,14 +1,11 @@
-"""Which units are wanted and in which order, what the fleet page announces, and whether a unit may be used."""
+"""Which units are wanted and in which order, and what the fleet page announces."""
 
 from dataclasses import dataclass
-from datetime import date, datetime
+from datetime import datetime
 from enum import StrEnum
 
-from pydantic import computed_field
-
-from estimator.message import joined
 from service.groups.records import FoundTogether
-from service.kit.answer import answer
+from service.kit.listing import ListQuery
 from service.sessions.decision import Verdict
 from service.sessions.states import Questioned
 from service.stands.records import StandCondition
@@ -28,14 +25,12 @@ class Order(StrEnum):
 
 
 @dataclass(frozen=True)
-class FleetQuery:
-    """Which units are wanted."""
+class FleetQuery(ListQuery):
+    """Which units are wanted, and after or before which serial number."""
 
     verdict: Verdict | None = None
     text: str | None = None
     """Part of the serial number or of the type's name, small and capital letters alike."""
-    offset: int = 0
-    limit: int = 100
     reserved: bool | None = None
     """Whether the verdict is said with a reservation; None where either will do."""
     due_before: datetime | None = None
@@ -47,14 +42,11 @@ class FleetQuery:
     lot: str | None = None
     flagged: bool = False
     """Only units with an open flag."""
+    reference: bool | None = None
+    """Whether the latest session is a reference; None where either will do."""
     unfit: bool = False
     """Only units that somebody must act on: unfit, probably unfit, or undecided."""
     order: Order = Order.CONDITION
-    backwards: bool = False
-    after: str | None = None
-    """The unit that the list goes on after; one that is not there begins the list anew."""
-    before: str | None = None
-    """The unit that it ends before."""
 
 
 @dataclass(frozen=True)
@@ -108,40 +100,3 @@ class Announced:
     """What sessions show together: of stands before types before units."""
     groups: int
     """How many groups show something, those that are not named too."""
-
-
-@answer
-@dataclass(frozen=True)
-class Usable:
-    """Whether a unit may be used now, and why."""
-
-    usable: bool
-    """In doubt it is false."""
-    why: str
-    """In one sentence."""
-    reasons: tuple[str, ...]
-    """Everything that speaks against it; empty where it may be used."""
-    reservations: tuple[str, ...]
-    """What must be known although it does not forbid the use."""
-    until: datetime | None
-    """The next calibration is due then, UTC."""
-    verdict: Verdict | None
-    """Of the session that the answer rests on."""
-    session: str | None
-    """The latest judged one; null where there is none since the last service."""
-    correction: str | None
-    """Id of the session whose correction firmware applies; null where no session calibrates every sensor."""
-    as_of: datetime
-    """When it was asked, UTC."""
-
-    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
-    @property
-    def reservation(self) -> str:
-        """The same as one text; empty where there is none."""
-        return joined(" ", self.reservations)
-
-    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
-    @property
-    def next_calibration(self) -> date | None:
-        """The day of it."""
-        return None if self.until is None else self.until.date()

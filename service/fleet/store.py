@@ -26,7 +26,7 @@ from service.flags.tables import FlagRow
 from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
 from service.fleet.records import NOT_KNOWN, FleetChoices, FleetQuery, Tally
 from service.fleet.tables import ConditionRow, FleetTallyRow
-from service.fleet.wanted_store import Summaries, beyond, keys, matching
+from service.fleet.wanted_store import UNITS
 from service.models.records import Scope
 from service.outlook.store import outlook_of
 from service.outlook.tables import OutlookRow
@@ -39,7 +39,7 @@ from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.store import is_waiting, session_record, session_rows
-from service.sessions.tables import SessionRow
+from service.sessions.tables import DecisionRow, SessionRow
 from service.stands.tables import StandRow
 from service.storage.columns import RESOLVED
 from service.storage.queries import Queries
@@ -127,25 +127,10 @@ class Fleet(Queries):
 
     def units(self, wanted: FleetQuery) -> tuple[UnitSummary, ...]:
         """The wanted units, worst first; one more query where the list goes on from a unit."""
-        place = self._place(wanted)
-        if place is None:
-            wanted = replace(wanted, after=None, before=None)
-        chosen = matching(_summaries().with_only_columns(UnitRow.id, maintain_column_froms=True), wanted)
-        if place is not None:
-            chosen = chosen.where(beyond(wanted, place))
-        ids = chosen.offset(wanted.offset).limit(wanted.limit).subquery()
-        query = _summaries().join(ids, ids.c.id == UnitRow.id).order_by(*(key.order for key in keys(wanted)))
-        found = tuple(_summary(row) for row in self._session.execute(query))
-        return found if wanted.before is None else found[::-1]
-
-    def _place(self, wanted: FleetQuery) -> Sequence[Any] | None:
-        """What a unit that a list goes on from is ordered by."""
-        named = wanted.after if wanted.before is None else wanted.before
-        if named is None:
-            return None
-        columns = [key.column for key in keys(wanted)]
-        query = _summaries().with_only_columns(*columns, maintain_column_froms=True)
-        return self._session.execute(query.where(UnitRow.serial == named)).one_or_none()
+        page = UNITS.page(self._session, _summaries(), wanted)
+        ids = page.cut(_summaries().with_only_columns(UnitRow.id, maintain_column_froms=True)).subquery()
+        query = page.ordered(_summaries().join(ids, ids.c.id == UnitRow.id))
+        return page.forward(_summary(row) for row in self._session.execute(query))
 
     def choices(self) -> FleetChoices:
         """Types, stands and lots that there are, in one query."""
@@ -219,12 +204,24 @@ LAST = (
     SessionRow.worst_parameter,
     SessionRow.margin,
 )
-FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.reservations)
+FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, DiagnosisRow.reservations)
 """What a line of the fleet tells of the latest session and of its diagnosis; the rest is long, and stays unread."""
 
 
 _Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
 """What is still to be made of a unit."""
+Summaries = Select[
+    UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str, Any, *tuple[Any, ...]
+]
+
+
+_WORST = (
+    (DecisionRow.session_id == SessionRow.id)
+    & (DecisionRow.revision == SessionRow.revision)
+    & (DecisionRow.sensor == SessionRow.worst_sensor)
+    & (DecisionRow.parameter == SessionRow.worst_parameter)
+)
+"""What was decided of the parameter that a verdict hangs on."""
 
 
 def _summaries(*, measured: bool = True) -> Summaries:
@@ -240,12 +237,14 @@ def _summaries(*, measured: bool = True) -> Summaries:
             _Outlook.ticket,
             func.coalesce(_Outlook.failed, _Derivation.failed),
             OutlookRow.reason,
+            func.abs(DecisionRow.deviation) / DecisionRow.tolerance,
         )
         .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+        .outerjoin(DecisionRow, _WORST)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
         .outerjoin(_Outlook, (_Outlook.kind == WorkKind.OUTLOOK) & (_Outlook.key == UnitRow.serial))
         .outerjoin(_Derivation, (_Derivation.kind == WorkKind.DERIVATION) & (_Derivation.key == UnitRow.serial))
@@ -294,6 +293,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         worst_parameter=last.worst_parameter,
         margin=last.margin,
         diagnosis=_diagnosis(row[4]),
+        gain="" if row[4] is None else row[4].gain_in_words or "",
         flags=condition.flags,
         due=row[5],
         lot=unit.lot,
@@ -302,6 +302,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         is_undated=row[6] is not None,
         failed=row[7] or "",
         due_reason=row[8] or "",
+        deviation=row[9],
     )
 
 
@@ -316,7 +317,7 @@ def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
         last_at=None,
         verdict=None,
         is_reference=False,
-        reason="No session of this unit is accepted, so nothing is known of it.",
+        reason="No session of this unit is accepted: nothing is known about it.",
         worst_sensor=None,
         worst_parameter=None,
         margin=None,

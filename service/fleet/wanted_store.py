@@ -1,15 +1,6 @@
-"""Units that are asked for: what narrows the list, what orders it, and from which unit on it is read.
+"""Which units a list holds and in which order, and what the fleet page announces above it."""
 
-A page of the list begins after a unit, not after a number of them: it costs the same however far one reads, and what
-changes meanwhile moves nothing (keyset paging).
-"""
-
-from collections.abc import Sequence
-from dataclasses import dataclass
-from datetime import datetime
-from typing import Any, TypeVarTuple
-
-from sqlalchemy import ColumnElement, Select, String, Subquery, and_, case, cast, false, func, literal, or_, select
+from sqlalchemy import ColumnElement, String, Subquery, case, cast, func, literal, select
 
 from service.diagnosis.tables import DiagnosisRow
 from service.fleet.records import Announced, FleetQuery, Order
@@ -25,119 +16,55 @@ from service.sessions.tables import SessionRow
 from service.stands.records import StandCondition
 from service.stands.tables import StandConditionRow, StandRow
 from service.storage.json_text import STORED
+from service.storage.listing import Key, Listing
 from service.storage.queries import Queries, lists
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
-Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str]
-
-Columns = TypeVarTuple("Columns")
-"""Of whatever is asked of units."""
-
-
-def matching(query: Select[*Columns], wanted: FleetQuery) -> Select[*Columns]:
-    """The wanted units only, in the wanted order."""
-    return query.where(*_by_condition(wanted), *_by_date(wanted), *_by_place(wanted)).order_by(
-        *(key.order for key in keys(wanted))
-    )
+BY_SERIAL = Key(UnitRow.serial, stays=True)
+ORDERS = {
+    Order.CONDITION: (Key(ConditionRow.severity, is_falling=True), Key(ConditionRow.margin, nulls_first=False)),
+    Order.DUE: (Key(OutlookRow.due, nulls_first=True),),
+    Order.TYPE: (Key(UnitTypeRow.name),),
+    Order.LAST: (Key(ConditionRow.last_at),),
+}
 
 
-def _by_condition(wanted: FleetQuery) -> list[ColumnElement[bool]]:
+def _is_reserved(is_so: bool) -> ColumnElement[bool]:
     said_with = DiagnosisRow.reservations
-    found: list[ColumnElement[bool]] = []
-    if wanted.verdict is not None:
-        found.append(ConditionRow.severity == wanted.verdict.severity)
-    if wanted.reserved is not None:
-        found.append(said_with.is_not(None) if wanted.reserved else said_with.is_(None))
-    if wanted.unfit:
-        worst = Verdict.UNDECIDABLE.severity
-        found.append((ConditionRow.severity > worst) | ((ConditionRow.severity == worst) & ~SessionRow.is_reference))
-    if wanted.flagged:
-        found.append(ConditionRow.flags > 0)
-    return found
+    return said_with.is_not(None) if is_so else said_with.is_(None)
 
 
-def _by_date(wanted: FleetQuery) -> list[ColumnElement[bool]]:
-    found: list[ColumnElement[bool]] = [OutlookRow.due.is_(None)] if wanted.undated else []
-    return found if wanted.due_before is None else [*found, OutlookRow.due < wanted.due_before]
+def _is_unfit(_: bool) -> ColumnElement[bool]:
+    worst = Verdict.UNDECIDABLE.severity
+    return (ConditionRow.severity > worst) | ((ConditionRow.severity == worst) & ~SessionRow.is_reference)
 
 
-def _by_place(wanted: FleetQuery) -> list[ColumnElement[bool]]:
-    found: list[ColumnElement[bool]] = []
-    if wanted.text:
-        in_serial = UnitRow.serial.icontains(wanted.text, autoescape=True)
-        found.append(in_serial | UnitTypeRow.name.icontains(wanted.text, autoescape=True))
-    if wanted.unit_type is not None:
-        found.append(UnitTypeRow.name == wanted.unit_type)
-    if wanted.stand is not None:
-        found.append(
-            ConditionRow.stand_id == select(StandRow.id).where(StandRow.name == wanted.stand).scalar_subquery()
-        )
-    if wanted.lot is not None:
-        found.append(UnitRow.lot == wanted.lot)
-    return found
+def _has(text: str) -> ColumnElement[bool]:
+    return UnitRow.serial.icontains(text, autoescape=True) | UnitTypeRow.name.icontains(text, autoescape=True)
 
 
-@dataclass(frozen=True)
-class Key:
-    """One of the columns that units are ordered by."""
-
-    column: Any
-    is_falling: bool = False
-    """Whether the largest comes first."""
-    nulls_first: bool | None = None
-    """Where units without it come; None where every unit has it."""
-
-    @property
-    def turned(self) -> "Key":
-        """The same read backwards."""
-        return Key(self.column, not self.is_falling, None if self.nulls_first is None else not self.nulls_first)
-
-    @property
-    def order(self) -> ColumnElement[Any]:
-        """As a query is told it."""
-        order: ColumnElement[Any] = self.column.desc() if self.is_falling else self.column.asc()
-        if self.nulls_first is None:
-            return order
-        return order.nulls_first() if self.nulls_first else order.nulls_last()
-
-    def is_after(self, value: Any) -> ColumnElement[bool]:
-        """Units that come later by this column alone."""
-        if value is None:
-            return self.column.is_not(None) if self.nulls_first else false()
-        later: ColumnElement[bool] = self.column < value if self.is_falling else self.column > value
-        return or_(later, self.column.is_(None)) if self.nulls_first is False else later
-
-    def is_same(self, value: Any) -> ColumnElement[bool]:
-        """Units that are alike by it."""
-        same: ColumnElement[bool] = self.column.is_(None) if value is None else self.column == value
-        return same
+def _is_on(stand: str) -> ColumnElement[bool]:
+    return ConditionRow.stand_id == select(StandRow.id).where(StandRow.name == stand).scalar_subquery()
 
 
-def keys(wanted: FleetQuery) -> tuple[Key, ...]:
-    """What the rows are read by; the last is another for every unit."""
-    down = wanted.backwards
-    by: tuple[Key, ...] = ()
-    if wanted.order is Order.CONDITION:
-        by = (Key(ConditionRow.severity, not down), Key(ConditionRow.margin, down, nulls_first=down))
-    elif wanted.order is Order.DUE:
-        by = (Key(OutlookRow.due, down, nulls_first=not down),)
-    elif wanted.order is Order.TYPE:
-        by = (Key(UnitTypeRow.name, down),)
-    elif wanted.order is Order.LAST:
-        by = (Key(ConditionRow.last_at, down),)
-    found = (*by, Key(UnitRow.serial, down and wanted.order is Order.SERIAL))
-    return found if wanted.before is None else tuple(key.turned for key in found)
-
-
-def beyond(wanted: FleetQuery, place: Sequence[Any]) -> ColumnElement[bool]:
-    """Units that come after the one with these values, or before it."""
-    found: list[ColumnElement[bool]] = []
-    alike: list[ColumnElement[bool]] = []
-    for key, value in zip(keys(wanted), place, strict=True):
-        found.append(and_(*alike, key.is_after(value)))
-        alike.append(key.is_same(value))
-    return or_(*found)
+UNITS: Listing[FleetQuery] = Listing(
+    name=UnitRow.serial,
+    keys=lambda wanted: (*ORDERS[wanted.order], BY_SERIAL) if wanted.order in ORDERS else (Key(UnitRow.serial),),
+    conditions={
+        "verdict": lambda verdict: ConditionRow.severity == verdict.severity,
+        "reserved": _is_reserved,
+        "reference": lambda is_so: SessionRow.is_reference.is_(is_so),
+        "unfit": _is_unfit,
+        "flagged": lambda _: ConditionRow.flags > 0,
+        "undated": lambda _: OutlookRow.due.is_(None),
+        "due_before": lambda due: OutlookRow.due < due,
+        "text": _has,
+        "unit_type": lambda name: UnitTypeRow.name == name,
+        "stand": _is_on,
+        "lot": lambda lot: UnitRow.lot == lot,
+    },
+)
 
 
 WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)

@@ -3,12 +3,13 @@
 import json
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Response
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
+from estimator.json_object import Json
 from estimator.message import with_messages
 from service.errors import NotFoundError
 from service.groups.records import GroupAnswer, Level
@@ -44,19 +45,20 @@ class GroupDocument(BaseModel):
     )
     first: str | None = Field(description="Start of the oldest one; null without any.")
     last: str | None = Field(description="Start of the newest one; null without any.")
-    findings: list[dict[str, Any]] = Field(
+    findings: list[Json] = Field(
         description="Lasting effects: cause, level, subject, sensors (`*`: every one of a kind), amplitude and sigma "
         "in SI, spread between sessions, form (`same`, `varying`, `since`), since, e_value, strength, alternatives, "
         "rivals with what to measure, sentence, advice, and every session's own amplitude."
     )
-    terms: list[dict[str, Any]] = Field(description="Empirical terms, learned where the catalogue ends.")
+    terms: list[Json] = Field(description="Empirical terms, learned where the catalogue ends.")
     unexplained: bool = Field(description="Whether the sessions share structure that no known cause explains.")
-    structures: list[dict[str, Any]] = Field(description="Where that structure lives, and how strong it is.")
-    limits: list[dict[str, Any]] = Field(
+    structures: list[Json] = Field(description="Where that structure lives, and how strong it is.")
+    limits: list[Json] = Field(
         description="Smallest amplitude of each cause that the pool would have found; `one_session`: its latest one."
     )
-    gain: dict[str, Any] | None = Field(
-        description="Prediction of the later sessions with and without the findings; null without findings."
+    gain: Json | None = Field(
+        description="Prediction of the later sessions with and without the findings; null without findings. `before`, "
+        "`after`: rms residual of every sensor in the latest session, SI, by kind and name."
     )
     e_value: float = Field(description="Evidence for anything beside the findings; a name needs 100.")
     notes: list[str] = Field(description="What else is worth knowing.")
@@ -90,7 +92,7 @@ class PendingGroup(BaseModel):
     status: str = Field(description="`pending`: ask again after the seconds in Retry-After.")
 
 
-PENDING: dict[int | str, dict[str, Any]] = {
+PENDING: dict[int | str, Json] = {
     202: {"model": PendingGroup, "description": "Still being made; ask again after Retry-After seconds."}
 }
 """How OpenAPI describes the answer while it is being made."""

@@ -8,13 +8,14 @@ from datetime import datetime
 from functools import cache
 from math import degrees, isfinite
 from statistics import median
-from typing import Any
 
 import altair as alt
 
 from estimator.groups import GroupFinding
 from estimator.groups.layout import EVERY
 from estimator.groups.pictures import ANGLES
+from estimator.groups.results import Picture
+from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.moments import moment
 from service.diagnosis.words.amplitudes import amplitude_measure, part_of
@@ -118,10 +119,12 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
     start = _iso(moment(since)) if since else span[0]
     reach = _reach(finding, element)
     beyond = sum(value > reach for value, _ in _spreads(finding, element))
-    left = say("; {beyond} too unsure to be drawn are in the table", beyond=beyond) if beyond else ""
+    left = say("; {beyond} too uncertain to plot are in the table", beyond=beyond) if beyond else ""
     return Panel(
         title=element.name,
-        description=say("{value} together{left}", value=measured(value, spread, element.measure), left=left),
+        description=say(
+            "{value} together{omitted_rows}", value=measured(value, spread, element.measure), omitted_rows=left
+        ),
         condition=None,
         datasets={
             DATA_FORM: list(_session_points(finding, element)),
@@ -133,7 +136,7 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
     )
 
 
-def _session_points(finding: GroupFinding, element: Element) -> Iterator[dict[str, Any]]:
+def _session_points(finding: GroupFinding, element: Element) -> Iterator[Json]:
     k, factor = element.number, element.measure.factor
     for one in finding.sessions:
         sigma = one.sigma[k]
@@ -151,7 +154,7 @@ def _session_points(finding: GroupFinding, element: Element) -> Iterator[dict[st
 
 
 @cache
-def _forest_spec() -> dict[str, Any]:
+def _forest_spec() -> Json:
     x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
     y_scale = alt.Scale(domain=[LOW, HIGH])
     y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
@@ -179,11 +182,11 @@ def _forest_spec() -> dict[str, Any]:
     )
 
 
-def picture_chart(picture: dict[str, Any], kind: str, name: str) -> ChartSet:
+def picture_chart(picture: Picture, kind: str, name: str) -> ChartSet:
     """The pooled residual against its variable, without the effect and with it."""
     measure, at, largest = _measure_of(picture, kind), _places(picture), _largest(picture)
     low, high = padded(-largest * measure.factor, largest * measure.factor)
-    by_angle = picture["variable"] == BY_ANGLE
+    by_angle = picture.variable == BY_ANGLE
     left, right = (0.0, 360.0) if by_angle else padded(min(at), max(at))
     title = _title(picture)
     blanks = {
@@ -196,62 +199,61 @@ def picture_chart(picture: dict[str, Any], kind: str, name: str) -> ChartSet:
     }
     return ChartSet(
         name=f"{name}-picture",
-        heading="What all sessions leave",
+        heading="Residuals common to all sessions",
         spec=filled(_picture_spec(title, by_angle=by_angle), blanks),
         panels=tuple(_picture_panel(picture, side, at, measure) for side in SIDES),
     )
 
 
-def picture_table(picture: dict[str, Any], kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]:
+def picture_table(picture: Picture, kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]:
     """Head and rows of the same."""
     measure = _measure_of(picture, kind)
     head = (_title(picture), *SIDES)
-    rows = zip(_places(picture), picture["before"], picture["after"], picture["sigma"], strict=True)
+    rows = zip(_places(picture), picture.before, picture.after, picture.sigma, strict=True)
     return head, tuple(
         (number(x), *(measured(v, COVERAGE * sigma, measure) for v in (before, after)))
         for x, before, after, sigma in rows
     )
 
 
-def _title(picture: dict[str, Any]) -> str:
-    variable: str = picture["variable"]
-    return TITLES.get(variable, variable)
+def _title(picture: Picture) -> str:
+    return TITLES.get(picture.variable, picture.variable)
 
 
-def _places(picture: dict[str, Any]) -> list[float]:
-    return [x * FACTORS.get(picture["variable"], 1.0) for x in picture["at"]]
+def _places(picture: Picture) -> list[float]:
+    return [x * FACTORS.get(picture.variable, 1.0) for x in picture.at]
 
 
-def _largest(picture: dict[str, Any]) -> float:
+def _largest(picture: Picture) -> float:
     """|residual| or U of a bin, SI."""
-    values = [abs(v) for side in ("before", "after") for v in picture[side]]
-    return max((*values, *(COVERAGE * sigma for sigma in picture["sigma"])), default=0.0)
+    values = [abs(v) for v in (*picture.before, *picture.after)]
+    return max((*values, *(COVERAGE * sigma for sigma in picture.sigma)), default=0.0)
 
 
-def _measure_of(picture: dict[str, Any], kind: str) -> Measure:
-    if picture["of"] in ANGLES:
+def _measure_of(picture: Picture, kind: str) -> Measure:
+    if picture.of in ANGLES:
         return ARCSEC
     return deviation_measure(kind, "bias", _largest(picture))
 
 
-def _picture_panel(picture: dict[str, Any], side: str, at: Sequence[float], measure: Measure) -> Panel:
-    values = picture["before" if side == SIDES[0] else "after"]
-    outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture["sigma"], strict=True))
+def _picture_panel(picture: Picture, side: str, at: Sequence[float], measure: Measure) -> Panel:
+    values = picture.before if side == SIDES[0] else picture.after
+    outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture.sigma, strict=True))
     return Panel(
-        title=say("{what} {side}", what=WHAT.get(picture["of"], picture["of"]), side=side),
+        title=say("{quantity} {direction}", quantity=WHAT.get(picture.of, picture.of), direction=side),
         description=say("{outside} of {values} outside ±2σ", outside=outside, values=len(values)),
         condition=None,
         datasets={
             DATA_FORM: [
                 {"x": _short(x), "y": _short(v * measure.factor), "band": _short(COVERAGE * s * measure.factor)}
-                for x, v, s in zip(at, values, picture["sigma"], strict=True)
+                for x, v, s in zip(at, values, picture.sigma, strict=True)
             ]
         },
     )
 
 
 @cache
-def _picture_spec(title: str, *, by_angle: bool) -> dict[str, Any]:
+def _picture_spec(title: str, *, by_angle: bool) -> Json:
     axis = alt.Axis(**ticks(BETA)) if by_angle else alt.Axis(tickCount=5)
     x = alt.X("x:Q", title=title, axis=axis, scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
     y_scale = alt.Scale(domain=[LOW, HIGH])

@@ -1,11 +1,11 @@
 """What a group of sessions shows, as a section of the page of its unit, unit type or stand."""
 
 from dataclasses import dataclass
-from typing import Any
 from urllib.parse import quote
 
 from estimator.groups import GroupFinding
 from estimator.groups.pictures import ANGLES
+from estimator.groups.results import Picture
 from estimator.message import say
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.fleet.records import Announced
@@ -110,8 +110,8 @@ def _drawn_effect(finding: GroupFinding, name: str) -> Drawn:
     return _drawn(forest_chart(finding, name), finding.picture, "rad/s" if finding.kind == GYROSCOPE else "", name)
 
 
-def _drawn(forest: ChartSet | None, picture: dict[str, Any] | None, unit: str, name: str) -> Drawn:
+def _drawn(forest: ChartSet | None, picture: Picture | None, unit: str, name: str) -> Drawn:
     if picture is None:
         return Drawn(forest, None, False, (), ())
     kind = GYROSCOPE if unit.startswith("rad/s") else ACCELEROMETER
-    return Drawn(forest, picture_chart(picture, kind, name), picture["of"] in ANGLES, *picture_table(picture, kind))
+    return Drawn(forest, picture_chart(picture, kind, name), picture.of in ANGLES, *picture_table(picture, kind))

@@ -26,6 +26,7 @@ from sqlalchemy.orm import aliased
 
 from estimator.groups import GroupDiagnosis, SessionStatistics
 from estimator.groups.statistics import FORMAT
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
@@ -40,7 +41,7 @@ from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
 from service.storage.json_text import STORED, json_text
 from service.storage.queries import Queries
-from service.types.store import tells_of_stand, tells_of_type
+from service.types.store import counts_for_stand, counts_for_type
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
@@ -79,7 +80,7 @@ class Groups(Queries):
         """A unit by its serial number, a unit type or stand by its name."""
         key = self._session.scalar(select(KEYS[level]).where(CALLED[level] == name))
         if key is None:
-            raise NotFoundError(say("There is no {words} {name}.", words=WORDS[level], name=repr(name)))
+            raise NotFoundError(say("There is no {level} {name}.", level=WORDS[level], name=repr(name)))
         return Group(level, key, name)
 
     def at(self, place: str) -> Group:
@@ -141,7 +142,7 @@ class Groups(Queries):
         query = select(number, row, again, failed.scalar_subquery()).select_from(number.class_).outerjoin(row, stored)
         found = self._session.execute(query.where(CALLED[level] == name)).one_or_none()
         if found is None:
-            raise NotFoundError(say("There is no {words} {name}.", words=WORDS[level], name=repr(name)))
+            raise NotFoundError(say("There is no {level} {name}.", level=WORDS[level], name=repr(name)))
         return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2], found[3] or ""
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
@@ -192,10 +193,10 @@ def _belongs(group: Group) -> ColumnElement[bool]:
         case Level.UNIT:
             return SessionRow.unit_id == group.key
         case Level.TYPE:
-            units = select(UnitRow.id).where(UnitRow.unit_type_id == group.key, tells_of_type(group.key))
+            units = select(UnitRow.id).where(UnitRow.unit_type_id == group.key, counts_for_type(group.key))
             return SessionRow.unit_id.in_(units)
         case Level.STAND:
-            return and_(SessionRow.stand_id == group.key, tells_of_stand(group.key))
+            return and_(SessionRow.stand_id == group.key, counts_for_stand(group.key))
 
 
 def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:
@@ -216,7 +217,7 @@ def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:
 
 MOST_ATTEMPTS = 3
 """Tries at which the program may fail at one session's, or its process die: two could be a machine in need."""
-GIVEN_UP = "The program failed at it: a fault of the program, not of the session. The next version tries again."
+GIVEN_UP = "A fault of the program, not of the session. The next version tries again."
 
 
 class Statistics(Queries):
@@ -267,5 +268,5 @@ class Statistics(Queries):
         self._session.expire_all()
 
 
-def _begun(version: str) -> dict[str, Any]:
+def _begun(version: str) -> Json:
     return {"format": FORMAT, "document": None, "why": "", "attempts": 0, "estimator_version": version}

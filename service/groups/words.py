@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
+from estimator.groups.layout import EVERY
 from estimator.groups.results import EmpiricalTerm, GroupGain, PoolLimit, Rival, SessionAmplitude
 from estimator.message import Message, capitalised, joined, say, say_count, uncapitalised, without_stop
 from estimator.moments import moment
@@ -14,13 +15,14 @@ from service.diagnosis.words.amplitudes import amplitude_measure, amplitudes_of
 from service.diagnosis.words.causes import cause_name, cause_on, percent
 from service.diagnosis.words.diagnosis import size_of
 from service.diagnosis.words.findings import standard_errors
+from service.diagnosis.words.gain import errors_in_words
 from service.groups.records import Group, GroupAnswer, GroupShown
 from service.kit.measures import COVERAGE, HARD, day_of, measured, number
 from service.models.records import SCOPES, ModelRevision, Scope
 
 FAILED = (
-    "The program failed at what these sessions show together: that is a fault of the program, not of the sessions. The "
-    "next version of the program tries again."
+    "The program could not evaluate these sessions together: that is a fault of the program, not of the sessions. The "
+    "next version tries again."
 )
 LONGEST_PLACE = 200
 """Characters that a flag keeps of its place."""
@@ -42,8 +44,8 @@ def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexpla
     if findings:
         return say("{sessions}: {statement}", sessions=over(sessions), statement=joined(" ", map(statement, findings)))
     if unexplained:
-        return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SHARED))
-    return say("{sessions}: {found}", sessions=over(sessions), found=uncapitalised(SOUND))
+        return say("{sessions}: {summary}", sessions=over(sessions), summary=uncapitalised(SHARED))
+    return say("{sessions}: {summary}", sessions=over(sessions), summary=uncapitalised(SOUND))
 
 
 def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained: bool) -> str:
@@ -59,11 +61,11 @@ def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained:
 
 
 def statement(finding: GroupFinding) -> str:
-    """What is wrong, and what it may be instead: ``A2 bends with the cube, unless it is odd quadratic.``"""
+    """What is wrong, and what it may be instead: ``A2 has a cubic nonlinearity; it could also be odd quadratic.``"""
     if not finding.alternatives:
         return finding.sentence
     others = joined(" or ", dict.fromkeys(map(cause_name, finding.alternatives)))
-    return say("{sentence}, unless it is {others}.", sentence=without_stop(finding.sentence), others=others)
+    return say("{sentence}; it could also be {others}.", sentence=without_stop(finding.sentence), others=others)
 
 
 def place_in_words(place: str, subject: str) -> str:
@@ -73,7 +75,7 @@ def place_in_words(place: str, subject: str) -> str:
     if not known:
         return place
     of = say(" ({sensors})", sensors=sensors.removesuffix(")")) if bracket else ""
-    return say("{scope} {subject}: {cause}{of}", scope=scope, subject=subject, cause=cause, of=of)
+    return say("{scope} {subject}: {cause}{sensors}", scope=scope, subject=subject, cause=cause, sensors=of)
 
 
 def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = None) -> str:
@@ -101,8 +103,8 @@ def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
     )
 
 
-READS = "{sensor} reads more by"
-TURNS = {"δα": "the elevation α is more by", "δβ": "the angle β is more by"}
+READS = "{sensor} reads high by"
+TURNS = {"δα": "the elevation α is larger by", "δβ": "the angle β is larger by"}
 """How a line of a term begins, by the angle that it turns."""
 
 
@@ -131,11 +133,13 @@ def term_view(term: EmpiricalTerm, accepted: Sequence[ModelRevision] = ()) -> Te
         lines=tuple(_lines(term)),
         whose=term.subject,
         worth=say(
-            "It removes {explained}{hard}% of what the sessions that took no part in learning it show too much.",
+            "It removes {explained}{nbsp}% of the excess in the sessions not used to learn it.",
             explained=number(100 * term.explained, 0),
-            hard=HARD,
+            nbsp=HARD,
         ),
-        nearest=say("Nearest in the catalogue: {nearest}, {near}.", nearest=cause_name(term.nearest), near=near)
+        nearest=say(
+            "Nearest in the catalogue: {nearest}, {similarity}.", nearest=cause_name(term.nearest), similarity=near
+        )
         if term.nearest
         else "",
         sensors=term.sensors,
@@ -154,7 +158,11 @@ def holds_term(revision: ModelRevision, term: EmpiricalTerm) -> bool:
 def equation_of(term: EmpiricalTerm) -> str:
     """``A3 reads more by (3.1 ± 0.2) µg · sin 3β.``"""
     return joined(
-        " ", (say("{what} {equation}.", what=capitalised(what), equation=equation) for what, equation in _lines(term))
+        " ",
+        (
+            say("{quantity} {equation}.", quantity=capitalised(what), equation=equation)
+            for what, equation in _lines(term)
+        ),
     )
 
 
@@ -166,10 +174,34 @@ def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
         spread = COVERAGE * sigma
         measure = amplitude_measure("", unit, max(abs(value), spread))
         found.setdefault(target, []).append(
-            say("({size}){hard}·{hard}{factor}", size=measured(value, spread, measure), hard=HARD, factor=factor)
+            say(
+                "({size}){nbsp}·{nbsp}{factor}",
+                size=measured(value, spread, measure),
+                nbsp=HARD,
+                factor=factor,
+            )
         )
     for target, parts in found.items():
         yield TURNS.get(target, say(READS, sensor=joined(", ", term.sensors))), joined(" + ", parts)
+
+
+def latest_in_words(shown: GroupShown) -> str:
+    """What the findings take out of the latest session at the sizes that earlier ones fixed; empty where that is not
+    known."""
+    gain = shown.gain
+    if gain is None or gain.before is None or gain.after is None:
+        return ""
+    names = {sensor for f in shown.findings for sensor in f.sensors or (EVERY,)}
+    parts = errors_in_words(gain.before, gain.after, () if EVERY in names else tuple(names))
+    return (
+        say(
+            "In the latest session the error {parts} (sizes as the first {fitted} sessions fixed them).",
+            parts=parts,
+            fitted=gain.fitted,
+        )
+        if parts
+        else ""
+    )
 
 
 def gain_in_words(gain: GroupGain | None) -> str:
@@ -183,9 +215,8 @@ def gain_in_words(gain: GroupGain | None) -> str:
         else say("{log_score} less", log_score=number(-gain.log_score, 1))
     )
     return say(
-        "Sizes fixed on the first {fitted} sessions, tried on the {held_out} that came later: "
-        "their χ² per degree of freedom goes from {before} to {after}, their log score is "
-        "{likelier}.",
+        "Sizes estimated from the first {fitted} sessions, tested on the {held_out} later ones: χ² per degree of "
+        "freedom {before} → {after}, log score {likelier}.",
         fitted=gain.fitted,
         held_out=gain.held_out,
         before=before,
@@ -196,7 +227,7 @@ def gain_in_words(gain: GroupGain | None) -> str:
 
 FORMS = {
     "same": "in all of these sessions",
-    "varying": "in these sessions, but different every time",
+    "varying": "on average in these sessions, with a different size each time",
 }
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
 """A moment as files state it, ISO 8601."""
@@ -204,11 +235,11 @@ BLIND = "–"
 """In place of a size that no number of such sessions shows, and of a date that is not known."""
 
 
-RULE_OUT = "These sessions do not rule the others out. Take the measurement that would, before you act on one of them."
+RULE_OUT = "These sessions do not rule out the other causes. Before you act on one, make the measurement that does."
 
 
 @dataclass(frozen=True)
-class Choice:
+class GroupChoice:
     """What else it could be, and what would tell."""
 
     name: str
@@ -238,9 +269,11 @@ class LastingEffect:
     statement: str
     amplitudes: tuple[str, ...]
     since: str
+    spread: str
+    """From session to session, one standard deviation; empty of one that is always the same."""
     evidence: str
     advice: str
-    choices: tuple[Choice, ...]
+    choices: tuple[GroupChoice, ...]
     rows: tuple[ForestRow, ...]
     """Newest first."""
 
@@ -256,6 +289,8 @@ class GroupView:
     structures: tuple[str, ...]
     """Where structure lives that no cause explains."""
     terms: tuple[TermView, ...]
+    error: str
+    """What the findings take out of the latest session, one number a sensor."""
     gain: str
     notes: tuple[str, ...]
     limits: tuple[tuple[str, str, str], ...]
@@ -265,12 +300,13 @@ class GroupView:
 def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
     """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
     return GroupView(
-        heading=say("What the simulation gets wrong, {sessions}", sessions=uncapitalised(over(shown.sessions))),
+        heading=say("Diagnosis {sessions}", sessions=uncapitalised(over(shown.sessions))),
         summary="" if shown.findings or not shown.sessions else SHARED if shown.structures else SOUND,
         left_out=shown.left_out,
         effects=tuple(_effect(finding, accepted) for finding in shown.findings),
         structures=shown.structures,
         terms=tuple(term_view(term, accepted) for term in shown.terms),
+        error=latest_in_words(shown),
         gain=gain_in_words(shown.gain),
         notes=tuple(map(with_days, shown.notes)),
         limits=tuple(_limit(limit) for limit in shown.limits if limit.amplitude),
@@ -287,11 +323,18 @@ def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> Lasting
         statement=statement(finding),
         amplitudes=tuple(amplitudes_of(finding)),
         since=since_in_words(finding.form, finding.since),
+        spread=_spread(finding) if finding.form == "varying" else "",
         evidence=say("{strength} over all of them", strength=standard_errors(finding.strength)),
         advice=RULE_OUT if finding.alternatives else finding.advice,
         choices=tuple(map(_choice, finding.rivals)),
         rows=tuple(_row(finding, one) for one in reversed(finding.sessions)),
     )
+
+
+def _spread(finding: GroupFinding) -> str:
+    """The largest of its sensors, or of what it acts on."""
+    largest = max(finding.spread, default=0.0)
+    return measured(largest, None, amplitude_measure(finding.cause, finding.units[0], largest))
 
 
 def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
@@ -301,12 +344,12 @@ def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
     return own == theirs and set(finding.sensors) <= set(revision.sensors)
 
 
-def _choice(rival: Rival) -> Choice:
+def _choice(rival: Rival) -> GroupChoice:
     whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
     count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
     sensors = () if "*" in rival.sensors else rival.sensors
-    told = joined("", (rival.measurement, count)) if rival.measurement else "nothing that can be planned"
-    return Choice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
+    told = joined("", (rival.measurement, count)) if rival.measurement else "no planned session can separate them"
+    return GroupChoice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
 
 
 def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
@@ -332,7 +375,7 @@ def with_days(note: str) -> str:
 def since_in_words(form: str, since: str | None) -> str:
     """In which of the sessions an effect is."""
     return FORMS.get(form) or (
-        "since one of these sessions" if since is None else say("since {since}", since=day_in_words(since))
+        "since one of these sessions" if since is None else say("since {date}", date=day_in_words(since))
     )
 
 

@@ -1,14 +1,15 @@
 """Uploads of every accepted format → one checked session. The content decides what a file is, never its name.
 
-Binary formats, and text that is long enough to take time or memory, are read by a process of their own: see `apart`.
+Binary formats, and text long enough to take time or memory, are read in a separate process: see `apart`.
 """
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from estimator.errors import SessionError
+from estimator.json_object import Json
 from estimator.on_demand import function_on_demand
 from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
@@ -25,14 +26,14 @@ else:
     in_force = function_on_demand("service.kit.limits", "in_force")
 
 LONG = 1024 * 1024
-"""Bytes of text that are read here: a tenth of a second at most, and 40 MB. A session of positions has a hundredth."""
+"""Bytes of text above which a file is read in a separate process; below, it takes at most 0.1 s and 40 MB here."""
 
 
 @outside_writing
 def read_upload(content: bytes | Path, filename: str) -> CalibrationSession:
-    """The session that the content, or a file, holds; raises SessionError with every problem, named after the file.
+    """The session in the content or file; SessionError with every problem under the file's name.
 
-    A raw log of more cells than may be held comes as its averaged positions.
+    A raw log with more cells than the limit is returned as its averaged positions.
     """
     if isinstance(content, Path) or _is_apart(content):
         return apart_session(content, filename)
@@ -49,7 +50,7 @@ def read_first_rows(content: bytes | Path, filename: str) -> CalibrationSession:
 @outside_writing
 @contextmanager
 def in_turn(content: bytes | Path) -> Iterator[None]:
-    """Around all that is done with an upload: only so many that are read apart are held in memory at once."""
+    """Holds a reading slot while an upload is processed: the number of large files in memory is limited."""
     if isinstance(content, Path) or _is_apart(content):
         with turn():
             yield
@@ -62,22 +63,22 @@ def _is_apart(content: bytes) -> bool:
 
 
 def apart_session(content: bytes | Path, filename: str, job: str = "session") -> CalibrationSession:
-    """The same, by a process of its own."""
+    """The same, read in a separate process."""
     session = read_apart(job, content, filename)
     assert isinstance(session, CalibrationSession)
     return session
 
 
-def look_at(content: bytes | Path, filename: str) -> dict[str, Any]:
-    """What a table of one's own layout looks like; ``session`` is true of a file that says itself what it is."""
-    seen: dict[str, Any] = read_apart("look", content, filename)
-    return seen
+def look_at(content: bytes | Path, filename: str) -> Json:
+    """Preview of a table of custom layout; ``session`` is true where the file is a session file."""
+    preview: Json = read_apart("look", content, filename)
+    return preview
 
 
 def is_own_layout(content: bytes | Path, filename: str) -> bool:
-    """Whether a file is a table that does not say how it is to be read; what cannot be read is none."""
-    start = content[:1024] if isinstance(content, bytes) else start_of(content, 1024)
-    if start.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[", b""):
+    """Whether a file is a table without a session's metadata; False for a file that cannot be read."""
+    head = content[:1024] if isinstance(content, bytes) else start_of(content, 1024)
+    if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[", b""):
         return False
     try:
         return not look_at(content, filename)["session"]
@@ -92,11 +93,11 @@ def start_of(path: Path, count: int) -> bytes:
 
 
 def read_file(path: Path, *, part: bool = False) -> CalibrationSession:
-    """The same for a file on this machine, where the metadata of a CSV table may stand in a JSON file beside it;
-    ``part``: its first rows, which need not be enough for its programme."""
+    """The session of a local file; the metadata of a CSV table may stand in a JSON file next to it. ``part``: only its
+    first rows, which need not be enough for its programme."""
     with path.open("rb") as file:
-        start = file.read(max(map(len, BINARY)))
+        head = file.read(max(map(len, BINARY)))
     is_long = path.stat().st_size > LARGEST_FILE
-    if is_binary(start) or is_long:
+    if is_binary(head) or is_long:
         return apart_session(path, str(path), "first-rows" if part else "session")
     return read_session(path, part=part)

@@ -1,8 +1,8 @@
-"""Files read by a process of their own, with limits of memory and time: no file can end, freeze or bloat this one.
+"""Files read in a separate process, with limits of memory and time: no file can end, freeze or bloat this one.
 
-One process per program, started when it is first needed, has the readers loaded and does nothing but fork
-(`service.ingest.fork_server`). Each file gets a fork, which takes the bytes through a socket and gives back plain
-arrays: see `service.ingest.exchange`.
+One process per program, started on first use, has the readers loaded and only forks (`service.ingest.fork_server`).
+Each file gets a fork, which receives the bytes through a socket and returns plain arrays: see
+`service.ingest.exchange`.
 """
 
 import atexit
@@ -24,6 +24,7 @@ from typing import Any
 
 from estimator.codec import KEPT
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import BusyError
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
@@ -31,126 +32,126 @@ from service.kit import limits
 from service.kit.limits import Limits, refusal
 
 SENDER: ContextVar[str] = ContextVar("sender", default="")
-"""Of the request at hand; empty beside the requests, where files wait in a queue of their own."""
+"""Sender of the current request; empty outside requests, where files wait in a queue of their own."""
 
-PAUSE = 1.0
-"""Seconds between two words of it: a page looks again every two."""
+PROGRESS_INTERVAL = 1.0
+"""Seconds between two progress reports; a page polls every two."""
 
-Heard = Callable[[int, int], None]
-"""Is told how many bytes were read of the file, after how many times through all of it; ends the reading by raising."""
+ProgressListener = Callable[[int, int], None]
+"""Called with the bytes read in this pass and the number of passes finished; cancels the reading by raising."""
 
-_listener: ContextVar[Heard | None] = ContextVar("listener", default=None)
+_progress_listener: ContextVar[ProgressListener | None] = ContextVar("listener", default=None)
 
 
 @contextmanager
-def heard_by(listener: Heard) -> Iterator[None]:
-    """Around the reading of a file: who hears how far it is."""
-    token = _listener.set(listener)
+def reports_progress_to(new_listener: ProgressListener) -> Iterator[None]:
+    """Reports the progress of reading a file to a listener."""
+    token = _progress_listener.set(new_listener)
     try:
         yield
     finally:
-        _listener.reset(token)
+        _progress_listener.reset(token)
 
 
-def listener() -> Heard | None:
-    """Who hears it."""
-    return _listener.get()
+def progress_listener() -> ProgressListener | None:
+    """The listener of the current reading."""
+    return _progress_listener.get()
 
 
-class Teller:
-    """Of the process that reads; parts may be read in a thread of their own."""
+class ProgressReporter:
+    """Progress of the reading process; parts may be read in a thread of their own."""
 
-    def __init__(self, tell: Heard | None = None) -> None:
-        self._tell, self._lock = tell, Lock()
+    def __init__(self, progress_listener: ProgressListener | None = None) -> None:
+        self._listener, self._lock = progress_listener, Lock()
         self._times, self._last = 0, 0.0
 
-    def at(self, done: int, total: int) -> None:
-        """So many bytes of all are read this time."""
-        if self._tell is None:
+    def report(self, done: int, total: int) -> None:
+        """Reports the bytes read in this pass."""
+        if self._listener is None:
             return
         with self._lock:
             now = monotonic()
-            if self._tell is not None and now - self._last >= PAUSE:
+            if self._listener is not None and now - self._last >= PROGRESS_INTERVAL:
                 self._last = now
-                self._tell(done, self._times)
+                self._listener(done, self._times)
             self._times += done >= total
 
-    def silence(self) -> None:
-        """The answer follows: nothing is told any more."""
+    def stop(self) -> None:
+        """Ends the reports: the answer follows."""
         with self._lock:
-            self._tell = None
+            self._listener = None
 
 
 class _InForce:
-    """The one of this process."""
+    """The reporter of this process."""
 
-    teller = Teller()
+    progress_reporter = ProgressReporter()
 
 
-def teller() -> Teller:
+def progress_reporter() -> ProgressReporter:
     """Of this process."""
-    return _InForce.teller
+    return _InForce.progress_reporter
 
 
-def use(teller: Teller) -> None:
-    """Sets it for this process."""
-    _InForce.teller = teller
+def use(reporter: ProgressReporter) -> None:
+    """Sets the reporter of this process."""
+    _InForce.progress_reporter = reporter
 
 
 SERVER = "service.ingest.fork_server"
 ROOT = str(Path(__file__).parents[2])
-"""Where this package lies, so that the process finds the same."""
+"""Folder of this package, so that the process imports the same code."""
 INHERITED = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH", "TMPDIR", "OPENBLAS_NUM_THREADS")
-"""Of the environment; the rest may hold secrets, which nothing that reads strangers' files needs."""
-FRUGAL = {"POLARS_MAX_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
+"""Environment variables passed on; the rest may hold secrets, which a reader of uploaded files does not need."""
+THREAD_LIMITS = {"POLARS_MAX_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
 """One thread: more take address space, and several files are read at once already."""
-WAITING = 3
-"""Times the computing time that reading may last: the machine may be busy with other things."""
+WALL_CLOCK_FACTOR = 3
+"""Wall-clock limit as a multiple of the limit of computing time: the machine may be busy."""
 SHORTEST = 5
-"""Seconds of computing for the smallest file: the largest table that may be unpacked of it takes four."""
+"""Seconds of computing allowed for the smallest file: the largest table that may be unpacked from it takes four."""
 SLOWEST = 500_000
-"""Bytes of a file for which it may compute a second more, up to the limit in force: a third of a workbook's pace."""
+"""Bytes per extra second of computing, up to the limit in force: a third of the speed of reading a workbook."""
 PACE = 20_000_000
-"""Bytes of a file for which reading may take a second more: a fifth of what a CSV is read at."""
+"""Bytes per extra second of reading a file on disk: a fifth of the speed of reading CSV."""
 GRACE = 5.0
-"""Seconds beyond that before the process is taken for lost, which ends itself at its time."""
+"""Seconds past its limit after which the process, which should have ended itself, is taken for lost."""
 PATIENCE = 10.0
-"""Seconds that a file waits for its turn before its sender is asked to come again."""
+"""Seconds that a file waits for a reading slot before it is rejected with Retry-After."""
 MOST_WAITING = 8
-"""Files that wait for their turn: each holds a thread that answers requests, of which there are 40."""
+"""Files that may wait for a slot: each holds one of the 40 threads that answer requests."""
 LONGEST_LINE = 16 * 1024 * 1024
-"""Bytes of JSON that come back: names, texts and problems; 10,000 columns take a tenth of it."""
-MOMENT = 0.3
-"""Seconds within which a process that is ending has ended."""
+"""Bytes of JSON in an answer: names, texts and problems; 10,000 columns take a tenth of it."""
+ENDING_SECONDS = 0.3
+"""Seconds within which an ending process has ended."""
 SIZE = struct.Struct(">Q")
 READY = b"r"
 END = b"end"
-"""The line after the last part of an answer that comes in parts."""
+"""Line after the last part of an answer in parts."""
 SCANNED = b"scanned "
-"""Begins a line that says how far a file was read."""
-FELL = (OSError, EOFError, *DAMAGED)
-"""What a fork that ends before its answer is seen as."""
+"""Prefix of a line of progress."""
+PROCESS_ENDED = (OSError, EOFError, *DAMAGED)
+"""Raised when a fork ends before its answer."""
 
 
 def read_apart(job: str, content: bytes | Path, filename: str) -> Any:
-    """What the job makes of the content; a SessionError where it cannot be used, BusyError where it must wait."""
+    """Result of the job on the content; SessionError for an unusable file, BusyError where it must wait."""
     most = limits_of_file(content)
-    with turn(), _refused_if_it_fell(filename, most):
-        return _asked_again_if_ended(job, content, filename, most)
+    with turn(), _refused_if_process_ended(filename, most):
+        return _read_again_if_server_ended(job, content, filename, most)
 
 
 def read_parts(job: str, path: Path, filename: str) -> Iterator[Any]:
     """The parts that the job makes of a file, one after another; its process waits until they are taken."""
     most = limits_of_file(path)
-    with turn(), _refused_if_it_fell(filename, most), _server.fork() as child:
-        child.settimeout(most.seconds * WAITING + GRACE)
+    with turn(), _refused_if_process_ended(filename, most), _server.fork() as child:
+        child.settimeout(most.seconds * WALL_CLOCK_FACTOR + GRACE)
         _ask(child, {"job": job, "filename": filename, "limits": asdict(most)}, path)
         while (line := _line(child)) != END:
             yield _answer(child, line, most)
 
 
 def limits_of_file(content: bytes | Path) -> Limits:
-    """Those in force, with less time for a small file and more for a long one."""
+    """The limits in force, with less time for a small file and more for a long one."""
     most = limits.in_force()
     size = content.stat().st_size if isinstance(content, Path) else len(content)
     more = size // PACE if isinstance(content, Path) else 0
@@ -158,18 +159,18 @@ def limits_of_file(content: bytes | Path) -> Limits:
 
 
 @contextmanager
-def _refused_if_it_fell(filename: str, most: Limits) -> Iterator[None]:
-    """The file is refused whose process ended before its answer."""
+def _refused_if_process_ended(filename: str, most: Limits) -> Iterator[None]:
+    """Refuses the file whose process ended before its answer."""
     try:
         yield
-    except FELL as error:
+    except PROCESS_ENDED as error:
         if isinstance(error, SessionError):
             raise
         raise refusal(
             filename,
             say(
-                "cannot be read with {memory} MiB of memory in {seconds} s: it is damaged, or much "
-                "larger inside than outside; write it again, or average or split it",
+                "cannot be read with {memory} MiB of memory in {seconds} s: it is damaged, or expands too much; "
+                "write it again, or average or split it",
                 memory=most.memory // 1024**2,
                 seconds=most.seconds,
             ),
@@ -178,35 +179,39 @@ def _refused_if_it_fell(filename: str, most: Limits) -> Iterator[None]:
 
 @contextmanager
 def turn() -> Iterator[None]:
-    """One of the turns of reading apart, for all that is done with a file: what it holds may be large until then."""
-    with _turns.taken(limits.in_force().at_once):
+    """Holds a slot for reading in a separate process until all work on the file is done: what it holds may be large."""
+    with _slots.taken(limits.in_force().at_once):
         yield
 
 
-def _asked_again_if_ended(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
-    """A file is not to blame where the process that forks was ended from outside: it is read once more."""
+def _read_again_if_server_ended(job: str, content: bytes | Path, filename: str, limit: Limits) -> Any:
+    """Reads once more where the fork server itself was ended from outside: the file is not to blame."""
     try:
-        return _asked(job, content, filename, most)
-    except FELL as error:
+        return _read(job, content, filename, limit)
+    except PROCESS_ENDED as error:
         if isinstance(error, SessionError) or not _server.has_ended():
             raise
-    return _asked(job, content, filename, most)
+    return _read(job, content, filename, limit)
 
 
-def _asked(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
+def _read(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
     with _server.fork() as child:
-        child.settimeout(most.seconds * WAITING + GRACE)
-        hears = listener()
-        _ask(child, {"job": job, "filename": filename, "limits": asdict(most), "tells": hears is not None}, content)
-        return _answer(child, _answer_line(child, hears), most)
+        child.settimeout(most.seconds * WALL_CLOCK_FACTOR + GRACE)
+        listener = progress_listener()
+        _ask(
+            child,
+            {"job": job, "filename": filename, "limits": asdict(most), "reports_progress": listener is not None},
+            content,
+        )
+        return _answer(child, _answer_line(child, listener), most)
 
 
-def _answer_line(child: socket.socket, hears: Heard | None) -> bytes:
-    """The line of the answer; those before it say how far the file was read."""
+def _answer_line(child: socket.socket, progress_listener: ProgressListener | None) -> bytes:
+    """The line of the answer; lines of progress before it go to the listener."""
     while (line := _line(child)).startswith(SCANNED):
         done, times = map(int, line.removeprefix(SCANNED).split())
-        if hears is not None:
-            hears(done, times)
+        if progress_listener is not None:
+            progress_listener(done, times)
     return line
 
 
@@ -216,8 +221,8 @@ def _answer(child: socket.socket, line: bytes, most: Limits) -> Any:
     return unpack(line, most.memory, lambda array: _fill(child, array))
 
 
-def _ask(child: socket.socket, request: dict[str, Any], content: bytes | Path) -> None:
-    """Bytes go with it; a file is opened there."""
+def _ask(child: socket.socket, request: Json, content: bytes | Path) -> None:
+    """Bytes are sent along; a file is opened by the other process."""
     if isinstance(content, Path):
         _send(child, json.dumps(request | {"path": str(content.absolute())}).encode())
     else:
@@ -225,9 +230,9 @@ def _ask(child: socket.socket, request: dict[str, Any], content: bytes | Path) -
         child.sendall(content)
 
 
-def _refused(found: dict[str, Any]) -> FormatError | ScheduleError:
-    kind = ScheduleError if found["schedule"] else FormatError
-    return kind([KEPT.read(Problem, problem) for problem in found["problems"]], found["source"])
+def _refused(document: Json) -> FormatError | ScheduleError:
+    kind = ScheduleError if document["schedule"] else FormatError
+    return kind([KEPT.read(Problem, problem) for problem in document["problems"]], document["source"])
 
 
 def _send(child: socket.socket, line: bytes) -> None:
@@ -242,9 +247,9 @@ def _line(child: socket.socket) -> bytes:
 
 
 def _exactly(child: socket.socket, size: int) -> bytes:
-    found = bytearray(size)
-    _fill_view(child, memoryview(found))
-    return bytes(found)
+    buffer = bytearray(size)
+    _fill_view(child, memoryview(buffer))
+    return bytes(buffer)
 
 
 def _fill(child: socket.socket, array: Array) -> None:
@@ -254,61 +259,61 @@ def _fill(child: socket.socket, array: Array) -> None:
 
 def _fill_view(child: socket.socket, view: memoryview) -> None:
     while view:
-        got = child.recv_into(view)
-        if not got:
+        count = child.recv_into(view)
+        if not count:
             raise EOFError("the process ended before its answer")
-        view = view[got:]
+        view = view[count:]
 
 
 class _Server:
-    """The process that forks, started when it is first needed and again when it is gone."""
+    """The fork server, started on first use and again when it is gone."""
 
     def __init__(self) -> None:
         self._lock = Lock()
         self._process: subprocess.Popen[bytes] | None = None
         self._control: socket.socket | None = None
-        self._owner = 0
+        self._localer = 0
 
     @contextmanager
     def fork(self) -> Iterator[socket.socket]:
         """A connection to a new process."""
-        own, theirs = socket.socketpair()
-        with own:
+        ours, theirs = socket.socketpair()
+        with ours:
             with theirs, self._lock:
                 try:
                     self._pass(theirs)
                 except OSError:  # the process was ended from outside: once more with a new one
                     self.stop()
                     self._pass(theirs)
-            yield own
+            yield ours
 
     def _pass(self, connection: socket.socket) -> None:
-        if self._control is None or self._owner != os.getpid():
+        if self._control is None or self._localer != os.getpid():
             self._start()
         assert self._control is not None
         socket.send_fds(self._control, [READY], [connection.fileno()])
 
     def has_ended(self) -> bool:
-        """Whether it was ended; the last moments of one that is ending are waited for."""
+        """Whether it has ended; waits a moment for one that is ending."""
         if self._process is not None:
             try:
-                self._process.wait(MOMENT)
+                self._process.wait(ENDING_SECONDS)
             except subprocess.TimeoutExpired:
                 return False
         return True
 
     def _start(self) -> None:
-        """Its input is the connection; when that closes, because this process is gone, it ends."""
+        """Its standard input is the connection; it ends when that closes with this process."""
         self.stop()
         self._control, theirs = socket.socketpair()
-        self._owner = os.getpid()
+        self._localer = os.getpid()
         environment = {name: os.environ[name] for name in INHERITED if name in os.environ}
         with theirs:
             self._process = subprocess.Popen(  # noqa: S603 - our own module, with nothing of a request
                 [sys.executable, "-P", "-m", SERVER],
                 stdin=theirs.fileno(),
                 stdout=subprocess.DEVNULL,
-                env=environment | FRUGAL | {"PYTHONPATH": ROOT},
+                env=environment | THREAD_LIMITS | {"PYTHONPATH": ROOT},
             )
         if self._control.recv(1) != READY:
             raise RuntimeError("the process that reads files did not start; see its message above")
@@ -317,7 +322,7 @@ class _Server:
         """Ends it, as the end of this process does in any case."""
         if self._control is not None:
             self._control.close()
-        if self._process is not None and self._owner == os.getpid():
+        if self._process is not None and self._localer == os.getpid():
             try:
                 self._process.wait(GRACE)
             except subprocess.TimeoutExpired:
@@ -326,44 +331,44 @@ class _Server:
         self._process = self._control = None
 
 
-class _Turns:
-    """At most so many files at once, and of one sender one fewer; a few wait for a while, further ones are asked to
-    come again."""
+class _Slots:
+    """Slots for reading files: one fewer for a single sender than in all. A few files wait for a while; further ones
+    are rejected with Retry-After."""
 
     def __init__(self) -> None:
         self._changed = Condition()
         self._busy: Counter[str] = Counter()
         self._waiting: Counter[str] = Counter()
-        self._own = local()
+        self._local = local()
 
     @contextmanager
     def taken(self, at_once: int) -> Iterator[None]:
-        """A turn; a thread that has one needs no other."""
-        if getattr(self._own, "held", False):
+        """A slot; a thread that has one needs no other."""
+        if getattr(self._local, "held", False):
             yield
             return
         sender = SENDER.get()
         with self._changed:
             self._wait(sender, at_once)
             self._busy[sender] += 1
-        self._own.held = True
+        self._local.held = True
         try:
             yield
         finally:
-            self._own.held = False
+            self._local.held = False
             with self._changed:
                 self._busy[sender] -= 1
                 self._changed.notify_all()
 
     def _wait(self, sender: str, at_once: int) -> None:
         def is_free() -> bool:
-            own = max(1, at_once - 1) if sender else at_once
-            return self._busy.total() < at_once and self._busy[sender] < own
+            sender_limit = max(1, at_once - 1) if sender else at_once
+            return self._busy.total() < at_once and self._busy[sender] < sender_limit
 
         if is_free():
             return
-        own = MOST_WAITING // 2 if sender else MOST_WAITING
-        if self._waiting.total() >= MOST_WAITING or self._waiting[sender] >= own:
+        waiting_limit = MOST_WAITING // 2 if sender else MOST_WAITING
+        if self._waiting.total() >= MOST_WAITING or self._waiting[sender] >= waiting_limit:
             raise BusyError(BUSY)
         self._waiting[sender] += 1
         try:
@@ -375,5 +380,5 @@ class _Turns:
 
 BUSY = "Many large files are being read; nothing of this one was stored. Send it again in a few seconds."
 _server = _Server()
-_turns = _Turns()
+_slots = _Slots()
 atexit.register(_server.stop)

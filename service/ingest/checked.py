@@ -15,7 +15,7 @@ from service.ingest.digest import readings_digest
 from service.ingest.names import LONGEST_NAME, fault_of_name, fault_of_serial, plain_name
 
 LONGEST_NOTES = 20_000
-"""Characters of a text that people write: some pages, so that no upload fills the database."""
+"""Characters of notes and operator: some pages, so that no upload fills the database."""
 CLOCK_LEEWAY = timedelta(days=1)
 """How far a date may lie ahead: a stand's clock in another time zone is up to a day ahead."""
 
@@ -28,38 +28,38 @@ class Checked:
     measured_at: datetime
     """UTC; the upload's time when the file does not say."""
     type_name: str
-    """What the unit's type is called after its first session: the file's own word, or a description."""
+    """Name of the unit's type for its first session: from the file, or a description."""
     stand: str | None
-    """That it was measured on."""
+    """Where it was measured."""
 
     @cached_property
     def readings_digest(self) -> str:
-        """Of its readings alone."""
+        """Digest of the readings alone."""
         return readings_digest(self.session)
 
 
 def check(
     content: bytes | Path, filename: str, now: datetime, is_known: Callable[[str], bool] = lambda _: False
 ) -> Checked:
-    """The session that uploaded bytes hold; SessionError with every problem where they cannot be used.
+    """The session in uploaded bytes; SessionError with every problem of an unusable file.
 
-    ``is_known``: whether there is a unit of a serial number: what an earlier version stored under one that is no
-    longer taken goes on under it.
+    ``is_known``: whether a unit of this serial number exists: one stored by an earlier version keeps a number that is
+    no longer accepted.
     """
     session = read_upload(content, filename)
     serial = plain_name(session.unit)
     fault = fault_of_serial(serial)
     if (fault is not None or serial != session.unit) and is_known(session.unit):
         serial, fault = session.unit, None
-    own = [] if fault is None else [Problem("unit", fault)]
-    problems = [*own, *_text_problems(session), *_date_problems(session, now)]
+    serial_problems = [] if fault is None else [Problem("unit", fault)]
+    problems = [*serial_problems, *_text_problems(session), *_date_problems(session, now)]
     if problems:
         raise FormatError(problems, filename)
     return as_checked(session, now, serial)
 
 
 def as_checked(session: CalibrationSession, uploaded_at: datetime, serial: str) -> Checked:
-    """A session that was checked before, as one that is read from the store was, with its unit's serial number."""
+    """A session that was checked before, as one read from the store, with its unit's serial number."""
     session = session if session.unit == serial else replace(session, unit=serial)
     return Checked(
         session=session,
@@ -70,7 +70,7 @@ def as_checked(session: CalibrationSession, uploaded_at: datetime, serial: str) 
 
 
 def dated(session: CalibrationSession, at: datetime) -> CalibrationSession:
-    """A stored session with the moment that it is kept under: what its file says, or when it was received."""
+    """A stored session with the date it is stored under: from its file, or when it was received."""
     return replace(session, started_at=written(at))
 
 
@@ -98,31 +98,36 @@ def _text_problems(session: CalibrationSession) -> list[Problem]:
     names |= {f"sensors[{i}].name": sensor.name for i, sensor in enumerate(session.sensors)}
     names |= {f"sensors[{i}].reading_unit": sensor.reading_unit for i, sensor in enumerate(session.sensors)}
     texts = {"operator": session.operator, "notes": session.notes}
-    found = [(field, fault_of_name(text)) for field, text in names.items()]
-    found += [(field, _fault(text)) for field, text in texts.items()]
-    return [Problem(field, fault) for field, fault in found if fault]
+    faults = [(field, fault_of_name(text)) for field, text in names.items()]
+    faults += [(field, _fault(text)) for field, text in texts.items()]
+    return [Problem(field, fault) for field, fault in faults if fault]
 
 
 def _fault(text: str) -> str | None:
     if len(text) > LONGEST_NOTES:
         return say(
-            "is {text} characters long; at most {longest_notes} are kept", text=len(text), longest_notes=LONGEST_NOTES
+            "is {length} characters long; at most {longest_notes} are kept",
+            length=len(text),
+            longest_notes=LONGEST_NOTES,
         )
     if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
-        return "holds characters that are not text (NUL or half of a pair); remove them"
+        return "contains characters that are not text (NUL or half of a surrogate pair); remove them"
     return None
 
 
 def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:
     try:
-        at = _measured_at(session, now)
+        measured_at = _measured_at(session, now)
     except (ValueError, OverflowError):
         return [Problem("started_at", "is not a date and time; write it like 2026-03-01T09:00:00Z")]
-    if at > now + CLOCK_LEEWAY:
+    if measured_at > now + CLOCK_LEEWAY:
         return [
             Problem(
                 "started_at",
-                say("lies in the future ({at}); check the date or the clock that wrote it", at=f"{at:%Y-%m-%d}"),
+                say(
+                    "is in the future ({date}); check the date or the clock of the recorder",
+                    date=f"{measured_at:%Y-%m-%d}",
+                ),
             )
         ]
     return []

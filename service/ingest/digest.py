@@ -18,11 +18,11 @@ DIGITS = 32
 """Bits of a number that count: far below the noise of any reading, and far above what a format rounds off."""
 
 BLOCK = 100_000
-"""Numbers that are rounded at a time: each takes some ten times its size meanwhile."""
+"""Numbers rounded at a time: each takes about ten times its size meanwhile."""
 
 
 def content_digest(session: CalibrationSession) -> str:
-    """SHA-256 of everything that a session says."""
+    """SHA-256 of everything stated in a session."""
     digest = hashlib.sha256()
     for part in _parts("", session):
         digest.update(part)
@@ -30,8 +30,8 @@ def content_digest(session: CalibrationSession) -> str:
 
 
 def readings_digest(session: CalibrationSession) -> str:
-    """SHA-256 of the readings alone, whatever is written beside them: the same for other names of unit and sensors, for
-    other dates and notes, and for sensors in another order."""
+    """SHA-256 of the readings alone: the same under other names of unit and sensors, other dates and notes, and another
+    order of sensors."""
     columns = (b"".join(_bytes("", column)) for column in session.readings.T)
     return hashlib.sha256(b"".join(sorted(hashlib.sha256(column).digest() for column in columns))).hexdigest()
 
@@ -61,8 +61,8 @@ def _bytes(name: str, value: object) -> Iterator[bytes]:
         array = np.asarray(value)
         yield f"{array.shape}".encode()
         flat = array.reshape(-1)
-        for at in range(0, len(flat), BLOCK):
-            yield _rounded(flat[at : at + BLOCK].astype(float))
+        for start in range(0, len(flat), BLOCK):
+            yield _rounded(flat[start : start + BLOCK].astype(float))
 
 
 def _rounded(array: NDArray[np.float64]) -> bytes:

@@ -1,7 +1,7 @@
-"""A checked session, or named columns, as a line of JSON and plain arrays behind it: what a reading process gives back.
+"""A checked session, or named columns, as a line of JSON followed by plain arrays: the answer of a reading process.
 
-Nothing of it is executed when it is taken in: no pickle, only the classes of a session, and arrays of numbers whose
-size is checked before they are received.
+Nothing in it is executed on receipt: no pickle, only the classes of a session, and numeric arrays whose size is checked
+before they are received.
 """
 
 import json
@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
 
 CLASSES = {cls.__name__: cls for cls in (CalibrationSession, Sensor, Site, Stand, StandErrors)}
-"""That a session consists of."""
+"""Classes a session consists of."""
 DTYPE_KINDS = "fiubU"
 """Numbers, truth values and texts of a fixed width."""
 DAMAGED = (ValueError, TypeError, LookupError, RecursionError)
-"""What an answer raises that a reading process did not write as agreed."""
+"""Raised for an answer that a reading process did not write as agreed."""
 
 Array = NDArray[Any]
 
@@ -41,7 +41,7 @@ def pack(answer: object) -> Packed:
 
 
 def unpack(line: bytes, most_bytes: int, receive: Callable[[Array], None]) -> Any:
-    """The same; ``receive`` fills an array. Raises one of `DAMAGED` where the line is not as agreed."""
+    """The same; ``receive`` fills an array. Raises one of `DAMAGED` for a malformed line."""
     header = json.loads(line)
     forms = [(np.dtype(str(kind)), tuple(map(int, shape))) for kind, shape in header["arrays"]]
     if any(dtype.kind not in DTYPE_KINDS or min(shape, default=0) < 0 for dtype, shape in forms):
@@ -52,7 +52,7 @@ def unpack(line: bytes, most_bytes: int, receive: Callable[[Array], None]) -> An
 
 
 def plain_bytes(array: Array) -> memoryview:
-    """Its bytes, not copied where they lie in order."""
+    """Its bytes, without a copy where the array is contiguous."""
     return np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
 
 
@@ -72,8 +72,8 @@ def _plain(value: object, arrays: list[Array]) -> object:
         arrays.append(value)
         return {"array": len(arrays) - 1}
     if is_dataclass(value):
-        own = {f.name: _plain(getattr(value, f.name), arrays) for f in fields(value)}
-        return {"class": type(value).__name__, "fields": own}
+        members = {f.name: _plain(getattr(value, f.name), arrays) for f in fields(value)}
+        return {"class": type(value).__name__, "fields": members}
     if isinstance(value, Mapping):
         return {"items": {name: _plain(item, arrays) for name, item in value.items()}}
     if isinstance(value, tuple | list):

@@ -1,7 +1,7 @@
-"""The process that has the readers loaded and forks for every file: see `service.ingest.apart`, which starts it.
+"""The process that has the readers loaded and forks for every file; `service.ingest.apart` starts it.
 
-A fork limits itself before it sees a byte of the file: address space, computing time, and an alarm for the time by the
-clock, which the kernel keeps whatever a library does. It starts in milliseconds, because everything is loaded already.
+A fork limits itself before it sees a byte of the file: address space, computing time, and a wall-clock alarm, which the
+kernel keeps whatever a library does. It starts in milliseconds, because everything is loaded already.
 """
 
 import gc
@@ -13,31 +13,30 @@ import socket
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from estimator.codec import KEPT
 from estimator.errors import ScheduleError, SessionError
-from service.ingest import apart as scanned
-from service.ingest import jobs
-from service.ingest.apart import END, READY, SCANNED, SIZE, WAITING
+from estimator.json_object import Json
+from service.ingest import apart, jobs
+from service.ingest.apart import END, READY, SCANNED, SIZE, WALL_CLOCK_FACTOR
 from service.ingest.exchange import Packed, pack, plain_bytes
 from service.kit import limits
 from service.kit.limits import Limits, refusal
 
 STATM = Path("/proc/self/statm")
-"""Sizes of this process in pages, the whole first (Linux)."""
+"""Sizes of this process in pages, the total first (Linux)."""
 MAPS = 4
-"""Times that a file may be mapped: every scan that is open maps it."""
+"""Times that a file may be mapped: every open scan maps it."""
 DATA = 5
-"""Place there of what is private and can be written."""
+"""Index there of the private writable pages."""
 USUAL = 512 * 1024**2
-"""Bytes of address space that the readers take where the platform does not say."""
+"""Bytes of address space assumed for the readers where the platform does not tell."""
 STDIN, STDERR = 0, 2
-"""File descriptors: of the way to the program that asks, and of its messages."""
+"""File descriptors: the connection to the parent program, and its messages."""
 
 
 def main() -> None:
-    """Fork for every connection that is passed in, until the program that asks is gone."""
+    """Forks for every connection that is passed in, until the parent program is gone."""
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks: the kernel takes them away
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the program that asks decides
     gc.collect()
@@ -49,10 +48,10 @@ def main() -> None:
 
 
 def _served(control: socket.socket) -> bool:
-    message, handles, _, _ = socket.recv_fds(control, 1, 1)
+    message, descriptors, _, _ = socket.recv_fds(control, 1, 1)
     if not message:
         return False
-    with socket.socket(fileno=handles[0]) as connection:
+    with socket.socket(fileno=descriptors[0]) as connection:
         if os.fork() == 0:
             _answer_and_end(control, connection)
     return True
@@ -68,7 +67,7 @@ def _answer_and_end(control: socket.socket, connection: socket.socket) -> None:
 
 
 def _quieten_libraries() -> None:
-    """They print what they think of a damaged file; what Python says of a fault of ours is still written."""
+    """Libraries print messages about a damaged file; tracebacks of our own are still written."""
     sys.stderr = os.fdopen(os.dup(STDERR), "w")
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), STDERR)
@@ -80,8 +79,8 @@ def _answer(connection: socket.socket) -> None:
     most = Limits(**request["limits"])
     limits.use(most)
     _limit_this_process(most, _mapped(request))
-    if request.get("tells"):
-        scanned.use(scanned.Teller(lambda done, times: _tell(connection, done, times)))
+    if request.get("reports_progress"):
+        apart.use(apart.ProgressReporter(lambda done, times: _report_progress(connection, done, times)))
     try:
         for packed in _read(connection, request):
             _send(connection, packed)
@@ -91,7 +90,7 @@ def _answer(connection: socket.socket) -> None:
         _send(connection, Packed(_refusal(_too_large(request["filename"], most)), ()))
 
 
-def _read(connection: socket.socket, request: dict[str, Any]) -> Iterator[Packed]:
+def _read(connection: socket.socket, request: Json) -> Iterator[Packed]:
     """The answer, or its parts and their end."""
     content, filename = _content(connection, request), request["filename"]
     if request["job"] in jobs.PARTED and isinstance(content, Path):
@@ -102,8 +101,8 @@ def _read(connection: socket.socket, request: dict[str, Any]) -> Iterator[Packed
         yield pack(jobs.JOBS[request["job"]](content, filename))
 
 
-def _tell(connection: socket.socket, done: int, times: int) -> None:
-    """Nobody waits for the answer where nobody hears this."""
+def _report_progress(connection: socket.socket, done: int, times: int) -> None:
+    """Ends the process where nobody is connected any more."""
     line = SCANNED + f"{done} {times}".encode()
     try:
         connection.sendall(SIZE.pack(len(line)) + line)
@@ -112,13 +111,13 @@ def _tell(connection: socket.socket, done: int, times: int) -> None:
 
 
 def _send(connection: socket.socket, packed: Packed) -> None:
-    scanned.teller().silence()
+    apart.progress_reporter().stop()
     connection.sendall(SIZE.pack(len(packed.line)) + packed.line)
     for array in packed.arrays:
         connection.sendall(plain_bytes(array))
 
 
-def _content(connection: socket.socket, request: dict[str, Any]) -> bytes | Path:
+def _content(connection: socket.socket, request: Json) -> bytes | Path:
     if "path" in request:
         return Path(request["path"])
     return connection.recv(request["size"], socket.MSG_WAITALL) if request["size"] else b""
@@ -130,30 +129,30 @@ def _too_large(filename: str, most: Limits) -> SessionError:
 
 
 def _refusal(error: SessionError) -> bytes:
-    found = KEPT.written(list(error.problems))
+    problems = KEPT.written(list(error.problems))
     schedule = isinstance(error, ScheduleError)
-    return json.dumps({"refused": {"schedule": schedule, "problems": found, "source": error.source}}).encode()
+    return json.dumps({"refused": {"schedule": schedule, "problems": problems, "source": error.source}}).encode()
 
 
-def _mapped(request: dict[str, Any]) -> int:
-    """Bytes of a file that may be mapped: that takes address space, and no memory that could not be taken back."""
+def _mapped(request: Json) -> int:
+    """Bytes of a file that may be mapped: this takes address space, but memory that the kernel can take back."""
     return MAPS * Path(request["path"]).stat().st_size if "path" in request else 0
 
 
 def _limit_this_process(most: Limits, mapped: int) -> None:
-    """Limits that end it, and no way to dump what it holds."""
-    own = _pages()
-    space, data = own[0] + most.memory + mapped, own[DATA] + most.memory
+    """Limits that end it, without a core dump."""
+    pages = _pages()
+    space, data = pages[0] + most.memory + mapped, pages[DATA] + most.memory
     resource.setrlimit(resource.RLIMIT_AS, (space, space))
     resource.setrlimit(resource.RLIMIT_DATA, (data, data))
     resource.setrlimit(resource.RLIMIT_CPU, (most.seconds, most.seconds))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-    signal.setitimer(signal.ITIMER_REAL, most.seconds * WAITING)
+    signal.setitimer(signal.ITIMER_REAL, most.seconds * WALL_CLOCK_FACTOR)
 
 
 def _pages() -> list[int]:
-    """Bytes that this process has before it reads anything: as `STATM` has them."""
+    """Bytes that this process has before it reads anything, in the order of `STATM`."""
     try:
         return [int(pages) * resource.getpagesize() for pages in STATM.read_text().split()]
     except OSError:

@@ -15,7 +15,7 @@ MCAP = b"\x89MCAP0\r\n"
 SQLITE = b"SQLite format 3\x00"
 """SQLite file format, 1.3.1; a rosbag2 may be one."""
 LOGS = (ULOG, MCAP, SQLITE)
-"""Of flight controllers and robots."""
+"""Logs of flight controllers and robots."""
 BINARY = (PARQUET, XLSX, HDF5, MAT)
 """Session files and tables."""
 

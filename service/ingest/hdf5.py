@@ -1,7 +1,7 @@
 """HDF5: group `readings` with one dataset a column; the metadata as JSON in the root's text attribute `imu-session`.
 
 Only plain datasets inside the file are followed: links to other files, and data kept in them, are refused. The library
-loops for ever or falls over on some damaged files, so it is only ever used in a process of its own.
+hangs or crashes on some damaged files, so it is only used in a separate process.
 """
 
 from collections.abc import Iterator
@@ -16,12 +16,12 @@ from service.ingest.metadata import KEY, with_metadata
 from service.kit.limits import check_table, refusal
 
 GROUP = "readings"
-"""That holds one dataset a column."""
+"""Group with one dataset a column."""
 MOST_LABELS = 200_000
-"""Texts of one column: each is an object of its own in memory."""
+"""Texts of one column: each is a Python object in memory."""
 PLAIN = "must be a one-dimensional dataset of numbers or text inside the file"
 DAMAGED = (OSError, RuntimeError, TypeError, LookupError, ArithmeticError, UnicodeError, AttributeError)
-"""What h5py raises on files cut off or written over; also ValueError, which a SessionError is too."""
+"""Raised by h5py for truncated or overwritten files; also ValueError, which SessionError is too."""
 
 
 def read_hdf5(content: bytes, filename: str) -> dict[str, object]:
@@ -37,7 +37,7 @@ def read_hdf5(content: bytes, filename: str) -> dict[str, object]:
 
 
 def has_metadata(content: bytes, filename: str) -> bool:
-    """Whether the file says itself that it is a session."""
+    """Whether the file has a session's metadata."""
     with _damage_refused(filename), h5py.File(BytesIO(content), "r") as file:
         return KEY in file.attrs
 
@@ -72,12 +72,12 @@ def _damage_refused(filename: str) -> Iterator[None]:
 
 
 def _dataset(group: h5py.Group, name: str, filename: str) -> h5py.Dataset:
-    """The column of this name, when it is a plain one."""
+    """The column of this name; only plain datasets."""
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-        raise refusal(filename, say("is a link; {plain}", plain=PLAIN), name)
+        raise refusal(filename, say("is a link; {advice}", advice=PLAIN), name)
     item = group[name]
     if not isinstance(item, h5py.Dataset) or item.ndim != 1 or item.is_virtual or item.external:
-        raise refusal(filename, say("is not a plain column; {plain}", plain=PLAIN), name)
+        raise refusal(filename, say("is not a plain column; {advice}", advice=PLAIN), name)
     return item
 
 
@@ -86,7 +86,7 @@ def _values(name: str, column: h5py.Dataset, filename: str) -> object:
     if column.dtype.kind in "fiu":
         return np.asarray(column[()])
     if h5py.check_string_dtype(column.dtype) is None:
-        raise refusal(filename, say("is of type {dtype}; {plain}", dtype=column.dtype, plain=PLAIN), name)
+        raise refusal(filename, say("is of type {dtype}; {advice}", dtype=column.dtype, advice=PLAIN), name)
     if column.size > MOST_LABELS:
         raise refusal(
             filename,

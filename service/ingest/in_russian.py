@@ -1,6 +1,6 @@
 """The words of a session's workbook in Russian: sheets, keys, headings and choices, one for each English word.
 
-A workbook is written and read with the same words, so that a Russian one that comes back filled in is the session that
+A workbook is written and read with the same words, so a Russian one that is filled in and returned is the session that
 an English one would be.
 """
 
@@ -13,6 +13,7 @@ SHEETS = {"session": "сеанс", "readings": "показания", "example": 
 STEPS = {
     "format": "формат", "unit": "прибор", "unit_type": "тип прибора", "block": "блок", "programme": "программа",
     "started_at": "начало", "operator": "оператор", "notes": "примечания", "stage": "этап",
+    "powered_on_at": "включение", "time_since_power_on_s": "время от включения, с",
     "origin": "происхождение", "site": "место", "stand": "стенд", "mounting": "установка", "sensors": "датчики",
     "count_time_s": "время счёта, с",
     "counter": "счётчик", "sample_rate_hz": "частота отсчётов, Гц", "direction_sigma_deg": "сигма направлений, °",
@@ -25,7 +26,7 @@ STEPS = {
     "bias_repeatability_m_s2": "повторяемость нуля, м/с²", "bias_repeatability_rad_s": "повторяемость нуля, рад/с",
     "position_m": "положение датчика, м",
 }  # fmt: skip
-"""Steps of a key: ``stand.alpha_deg`` is ``стенд.угол наклона α, °``."""
+"""Parts of a key: ``stand.alpha_deg`` is ``стенд.угол наклона α, °``."""
 COLUMNS = {
     "run": "прогон", "beta_deg": "β, °", "time_s": "время, с", "temperature_c": "температура, °C",
     "vibration_m_s2": "вибрация, м/с²", "turn_angle_deg": "угол стола, °", "turn_rate_deg_s": "скорость стола, °/с",
@@ -42,7 +43,7 @@ VALUES = {
 CHOSEN = ("block", "kind", "programme", "stage", "origin", "counter", "run")
 """Keys and columns whose values are words of a list."""
 ERROR, ERROR_IN_RUSSIAN = "_se", ", СКО"
-"""After a sensor's name: the column of its standard errors."""
+"""Suffix of a sensor's name: the column of its standard errors."""
 IN_ENGLISH = {text: word for words in (SHEETS, COLUMNS, VALUES) for word, text in words.items()}
 STEPS_IN_ENGLISH = {text: word for word, text in STEPS.items()}
 
@@ -53,7 +54,7 @@ def key_in_russian(key: str) -> str:
 
 
 def key_in_english(key: str) -> str:
-    """The key that a Russian one stands for; what is no Russian key stays as it is."""
+    """The English key of a Russian one; any other key unchanged."""
     return _by_step(key, STEPS_IN_ENGLISH)
 
 
@@ -63,7 +64,7 @@ def _by_step(key: str, words: dict[str, str]) -> str:
 
 
 def heading_in_russian(name: str, sensors: Iterable[str]) -> str:
-    """Of a column; sensors keep their names."""
+    """Heading of a column; sensors keep their names."""
     base = name.removesuffix(ERROR)
     if base != name and base in sensors:
         return base + ERROR_IN_RUSSIAN
@@ -71,18 +72,18 @@ def heading_in_russian(name: str, sensors: Iterable[str]) -> str:
 
 
 def heading_in_english(text: str) -> str:
-    """The column that a Russian heading stands for; any other heading stays as it is."""
-    bare = text.strip()
-    if bare.endswith(ERROR_IN_RUSSIAN):
-        return bare.removesuffix(ERROR_IN_RUSSIAN) + ERROR
-    return IN_ENGLISH.get(bare, text)
+    """The column under a Russian heading; any other heading unchanged."""
+    heading = text.strip()
+    if heading.endswith(ERROR_IN_RUSSIAN):
+        return heading.removesuffix(ERROR_IN_RUSSIAN) + ERROR
+    return IN_ENGLISH.get(heading, text)
 
 
 def value_in_russian(name: str, value: Value) -> Value | str:
-    """A choice of a key's or a column's list."""
+    """The Russian word of a choice."""
     return VALUES.get(value, value) if name in CHOSEN and isinstance(value, str) else value
 
 
 def value_in_english(name: str, value: Value) -> Value | str:
-    """The choice that a Russian word stands for."""
+    """The choice under a Russian word."""
     return IN_ENGLISH.get(value.strip(), value) if name in CHOSEN and isinstance(value, str) else value

@@ -1,4 +1,4 @@
-"""What a reading process can be asked for, by name. Only that process loads the libraries of the formats."""
+"""Jobs of a reading process, by name. Only that process loads the libraries of the formats."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,7 +15,7 @@ from service.ingest.layout.look import look
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import document_of
 from service.ingest.logs import log_of
-from service.ingest.long_log import UNREADABLE, Rows, averaged_if_long, numbers, rows_of
+from service.ingest.long_log import UNREADABLE, TableScan, averaged_if_long, numbers, rows_of
 from service.ingest.metadata import with_metadata
 from service.ingest.parquet import columns_of
 from service.kit.limits import check_table, in_force, refusal
@@ -25,7 +25,7 @@ HEAD = 100
 
 
 def recording(path: Path, filename: str) -> Iterator[object]:
-    """The session of the first rows, then (R, sensors) readings, some rows at a time; what is missing is NaN."""
+    """The session of the first rows, then (R, sensors) readings, some rows at a time; a missing reading is NaN."""
     rows = rows_of(path, filename)
     if rows is None:
         raise refusal(filename, "is neither CSV with # lines nor Parquet")
@@ -37,25 +37,27 @@ def recording(path: Path, filename: str) -> Iterator[object]:
         yield frame.to_numpy()
 
 
-def _head(rows: Rows, filename: str) -> CalibrationSession:
+def _head(rows: TableScan, filename: str) -> CalibrationSession:
     try:
-        first = next(rows.stretches(rows.names), pl.DataFrame()).head(HEAD)
+        frame = next(rows.stretches(rows.names), pl.DataFrame()).head(HEAD)
     except UNREADABLE as error:
         raise refusal(filename, say("cannot be read as a table: {error}", error=str(error)[:200]), "table") from error
-    first = first.with_columns(numbers(column) for column in first if column.dtype == pl.String)
-    document = with_metadata(rows.metadata, columns_of(first, filename), filename)
+    frame = frame.with_columns(numbers(column) for column in frame if column.dtype == pl.String)
+    document = with_metadata(rows.metadata, columns_of(frame, filename), filename)
     return read_session(document, name=filename, part=True)
 
 
-def _frames(rows: Rows, names: list[str], filename: str) -> Iterator[pl.DataFrame]:
-    """Numbers alone."""
-    columns, most, at = len(rows.names), in_force().log_cells, 0
+def _frames(rows: TableScan, names: list[str], filename: str) -> Iterator[pl.DataFrame]:
+    """Readings alone."""
+    columns, limit, rows_read = len(rows.names), in_force().log_cells, 0
     try:
         for frame in rows.stretches(names):
-            at += len(frame)
-            if at * columns > most:
+            rows_read += len(frame)
+            if rows_read * columns > limit:
                 raise refusal(
-                    filename, say("has more than {most} cells, the most of a recording; split it", most=most), "table"
+                    filename,
+                    say("has more than {limit} cells, the limit for a recording; split it", limit=limit),
+                    "table",
                 )
             yield frame.cast(pl.Float64)
     except UNREADABLE as error:
@@ -63,12 +65,12 @@ def _frames(rows: Rows, names: list[str], filename: str) -> Iterator[pl.DataFram
 
 
 Content = bytes | Path
-"""Of a file, or where it lies."""
+"""Of a file, or its path."""
 Reader = Callable[[bytes, str], dict[str, object]]
 
 NO_MAPPING = (
-    "is a log, which does not say which unit it is of or where it was: choose it on the upload page, or send it with a "
-    "mapping, which POST /api/v1/layouts/preview proposes"
+    "is a log, which does not state its unit or place: choose it on the upload page, or send it with a mapping, which "
+    "POST /api/v1/layouts/preview proposes"
 )
 
 READERS: tuple[tuple[bytes, Reader], ...] = (
@@ -89,7 +91,7 @@ def session(content: Content, filename: str) -> object:
 
 
 def first_rows(content: Content, filename: str) -> object:
-    """The first rows of a session, checked but for whether they are enough for its programme."""
+    """The first rows of a session, checked except for whether they are enough for its programme."""
     return _read(_whole(content, filename) if isinstance(content, Path) else content, filename, part=True)
 
 
@@ -111,14 +113,14 @@ def _read(content: bytes, filename: str, *, part: bool = False) -> object:
 
 
 def _whole(path: Path, filename: str) -> bytes:
-    size, most = path.stat().st_size, in_force().whole
-    if size > most:
+    size, limit = path.stat().st_size, in_force().whole
+    if size > limit:
         raise refusal(
             filename,
             say(
-                "has {size} bytes; but for raw logs (sample_rate_hz) at most {most} can be read",
+                "has {size} bytes; but for raw logs (sample_rate_hz) at most {limit} can be read",
                 size=f"{size:,}",
-                most=f"{most:,}",
+                limit=f"{limit:,}",
             ),
         )
     return path.read_bytes()
@@ -126,12 +128,12 @@ def _whole(path: Path, filename: str) -> bytes:
 
 def mat_matrices(content: Content, filename: str) -> object:
     """All variables of a MAT file, with up to three rows or columns."""
-    held = _whole(content, filename) if isinstance(content, Path) else content
-    return mat.variables(held, filename, most_rows=3)
+    whole = _whole(content, filename) if isinstance(content, Path) else content
+    return mat.variables(whole, filename, most_rows=3)
 
 
 def look_at(content: Content, filename: str) -> object:
-    """What a table of one's own layout looks like."""
+    """Preview of a table of custom layout."""
     return look(_whole(content, filename) if isinstance(content, Path) else content, filename)
 
 
@@ -141,6 +143,6 @@ JOBS: dict[str, Callable[[Content, str], object]] = {
     "look": look_at,
     "mat-matrices": mat_matrices,
 }
-"""Name → what does it."""
+"""Name → function."""
 PARTED: dict[str, Callable[[Path, str], Iterator[object]]] = {"recording": recording}
-"""The same for answers that come in parts."""
+"""The same for answers in parts."""

@@ -1,4 +1,4 @@
-"""A raw log of more cells than may be held, as CSV or Parquet: averaged while it is scanned."""
+"""A raw log with more cells than the limit, as CSV or Parquet: averaged while it is scanned."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -18,7 +18,7 @@ from estimator.reading import Extent, read_session
 from estimator.reading.csv_text import cell_of
 from estimator.reading.keys import COLUMNS
 from estimator.session import CALIBRATIONS, Array, CalibrationSession
-from service.ingest.apart import teller
+from service.ingest.apart import progress_reporter
 from service.ingest.formats import PARQUET, may_be_log
 from service.ingest.metadata import KEY, with_metadata
 from service.ingest.parquet import columns_of
@@ -26,46 +26,46 @@ from service.kit.limits import check_table, in_force, refusal
 
 LONGEST_HEADER = 1024 * 1024
 """Bytes of # lines, and of the header, before the rows of a CSV file."""
-STRETCH = 2 * 1024 * 1024
+CHUNK_BYTES = 2 * 1024 * 1024
 """Bytes of a CSV that are read at a time: far more than a line, and its numbers are not much larger."""
-CHUNK = 250_000
-"""Cells of a Parquet file that are asked for at a time: some megabytes."""
-SEEN = 1_000
-"""Rows by which it is decided whether a column of a CSV holds numbers."""
+CHUNK_CELLS = 250_000
+"""CellKind of a Parquet file that are read at a time: some megabytes."""
+SAMPLE_ROWS = 1_000
+"""Rows from which it is decided whether a column of a CSV is numeric."""
 SEPARATORS = ",;\t"
-"""Of columns; the one that the header has most of is taken."""
+"""Of columns; the most frequent in the header is taken."""
 UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError)
-"""What polars raises for damaged files."""
+"""Raised by polars for damaged files."""
 START = 4096
-"""Bytes by which a file is told: blank lines may come first."""
+"""Bytes from which the format is recognised: blank lines may come first."""
 PARQUET_DAMAGED = "is damaged or not a readable Parquet file; write it again"
 
 
-class Rows(Protocol):
-    """A table, and how to go through it."""
+class TableScan(Protocol):
+    """A table that can be read in several passes."""
 
     @property
     def metadata(self) -> str:
-        """The JSON text that stands beside the table."""
+        """The JSON text that accompanies the table."""
 
     @property
     def names(self) -> Sequence[str]:
         """Of all columns."""
 
     def count(self, most: int) -> int:
-        """Rows; more than ``most`` may be left uncounted."""
+        """Number of rows; counting may stop above ``most``."""
 
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
-        """Some columns, some rows at a time; polars' errors where the table is not as it should be."""
+        """Some columns, some rows at a time; polars' errors for a malformed table."""
 
 
-def rows_of(path: Path, filename: str) -> Rows | None:
-    """The table of a CSV or Parquet file; None of any other."""
+def rows_of(path: Path, filename: str) -> TableScan | None:
+    """The table of a CSV or Parquet file; None for any other."""
     with path.open("rb") as file:
-        start = file.read(START)
-    if not may_be_log(start):
+        head = file.read(START)
+    if not may_be_log(head):
         return None
-    return parquet_rows(path, filename) if start.startswith(PARQUET) else csv_rows(path, filename)
+    return parquet_rows(path, filename) if head.startswith(PARQUET) else csv_rows(path, filename)
 
 
 @dataclass(frozen=True)
@@ -78,21 +78,21 @@ class ParquetRows:
     names: Sequence[str]
 
     def count(self, most: int) -> int:
-        """As the file says."""
+        """As stated in the file."""
         return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
 
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
-        """One slice after another, for which only the row groups are unpacked that it lies in."""
-        table, at = pl.scan_parquet(self.path).select(names), 0
-        rows, whole, size = max(CHUNK // len(self.names), 1), max(self.count(0), 1), self.path.stat().st_size
-        while len(frame := table.slice(at, rows).collect()):
+        """One slice after another; only the row groups of the slice are unpacked."""
+        table, rows_read = pl.scan_parquet(self.path).select(names), 0
+        rows, total, size = max(CHUNK_CELLS // len(self.names), 1), max(self.count(0), 1), self.path.stat().st_size
+        while len(frame := table.slice(rows_read, rows).collect()):
             yield frame
-            at += len(frame)
-            teller().at(size * at // whole, size)
+            rows_read += len(frame)
+            progress_reporter().report(size * rows_read // total, size)
 
 
 def parquet_rows(path: Path, filename: str) -> ParquetRows:
-    """The table of a Parquet file; FormatError where it is none."""
+    """The table of a Parquet file; FormatError where there is none."""
     try:
         metadata = pl.read_parquet_metadata(path).get(KEY)
         names = pl.scan_parquet(path).collect_schema().names()
@@ -116,10 +116,10 @@ class CsvRows:
     begins: int
     """Byte of the first row."""
     texts: frozenset[str] = frozenset()
-    """Columns that do not hold numbers."""
+    """Columns that are not numeric."""
 
     def count(self, most: int) -> int:
-        """By the ends of lines."""
+        """By line ends."""
         rows = 0
         for text in self._stretches():
             rows += text.count(b"\n") + (not text.endswith(b"\n"))
@@ -128,20 +128,20 @@ class CsvRows:
         return rows
 
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
-        """One of the file after another; a column that should hold numbers and does not comes as texts."""
+        """One part of the file after another; a column that should be numeric and is not comes as texts."""
         size, done = self.path.stat().st_size, self.begins
         for text in self._stretches():
             yield self._read(text, names)
             done += len(text)
-            teller().at(done, size)
+            progress_reporter().report(done, size)
 
     def _read(self, text: bytes, names: Sequence[str]) -> pl.DataFrame:
-        """Whole lines; numbers with blanks around them take the longer way, and what is wrong with others is kept."""
+        """Whole lines; numbers with blanks around them are parsed separately, and invalid ones are kept as texts."""
         try:
             return self._as(text, names, self.texts)
         except pl.exceptions.ComputeError:
-            written = self._as(text, names, frozenset(names))
-            return written.select(numbers(written[name]) if name not in self.texts else name for name in names)
+            texts_only = self._as(text, names, frozenset(names))
+            return texts_only.select(numbers(texts_only[name]) if name not in self.texts else name for name in names)
 
     def _as(self, text: bytes, names: Sequence[str], texts: frozenset[str]) -> pl.DataFrame:
         kinds = {name: pl.String if name in texts else pl.Float64 for name in self.names}
@@ -152,16 +152,16 @@ class CsvRows:
         """Whole lines, some megabytes at a time."""
         with self.path.open("rb") as file:
             file.seek(self.begins)
-            while text := file.read(STRETCH):
-                yield text if text.endswith(b"\n") else text + file.readline(STRETCH)
+            while text := file.read(CHUNK_BYTES):
+                yield text if text.endswith(b"\n") else text + file.readline(CHUNK_BYTES)
 
 
 def csv_rows(path: Path, filename: str) -> CsvRows:
     """The table of a CSV file; FormatError where it has none."""
     with path.open("rb") as file:
-        start = file.read(LONGEST_HEADER).removeprefix(b"\xef\xbb\xbf")
-        marked = 3 if file.seek(0) == 0 and file.read(3) == b"\xef\xbb\xbf" else 0
-    lines = start.split(b"\n")[:-1]
+        head = file.read(LONGEST_HEADER).removeprefix(b"\xef\xbb\xbf")
+        mark_bytes = 3 if file.seek(0) == 0 and file.read(3) == b"\xef\xbb\xbf" else 0
+    lines = head.split(b"\n")[:-1]
     leading = list(takewhile(lambda line: line.startswith(b"#") or not line.strip(), lines))
     if len(leading) == len(lines):
         raise refusal(filename, "has no table after its # lines", "table")
@@ -172,22 +172,22 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
         names = [name.strip().strip('"') for name in header.decode().split(separator)]
     except UnicodeDecodeError as error:
         raise refusal(
-            filename, say("is not UTF-8 text (byte {start}); save it as UTF-8", start=error.start + 1)
+            filename, say("is not UTF-8 text (byte {position}); save it as UTF-8", position=error.start + 1)
         ) from error
     if len(set(names)) < len(names) or not all(names):
         raise refusal(filename, "has columns without a name or of the same name; names must differ", "table")
-    begins = marked + sum(len(line) + 1 for line in lines[: len(leading) + 1])
+    begins = mark_bytes + sum(len(line) + 1 for line in lines[: len(leading) + 1])
     rows = CsvRows(path, metadata, names, separator, begins, frozenset(names))
     try:
-        first = next(rows.stretches(names), pl.DataFrame()).head(SEEN)
+        sample = next(rows.stretches(names), pl.DataFrame()).head(SAMPLE_ROWS)
     except UNREADABLE as error:
         raise refusal(filename, say("cannot be read as a table: {error}", error=error), "table") from error
-    texts = frozenset(name for name in first.columns if numbers(first[name]).dtype == pl.String)
+    texts = frozenset(name for name in sample.columns if numbers(sample[name]).dtype == pl.String)
     return CsvRows(path, metadata, names, separator, begins, texts)
 
 
 def numbers(texts: pl.Series) -> pl.Series:
-    """As numbers where all are, else as they are."""
+    """As numbers where all are numeric, else unchanged."""
     stripped = texts.str.strip_chars()
     stripped = stripped.set(stripped == "", None)
     numbers = stripped.cast(pl.Float64, strict=False)
@@ -195,19 +195,19 @@ def numbers(texts: pl.Series) -> pl.Series:
 
 
 LABEL, SETTINGS = "position", ("beta_deg", "run")
-"""Columns that say where the block stood."""
+"""Columns of the block's orientation."""
 
 
 def averaged_if_long(path: Path, filename: str) -> CalibrationSession | None:
-    """The averaged positions of a long raw log in a file; None of any other file, which is read whole."""
+    """The averaged positions of a long raw log in a file; None for any other file, which is read whole."""
     rows = rows_of(path, filename)
     if rows is None:
         return None
-    most, columns = in_force(), len(rows.names)
+    limits, columns = in_force(), len(rows.names)
     document = with_metadata(rows.metadata, {}, filename)
     if document.get("sample_rate_hz") is None or document.get("programme") not in CALIBRATIONS:
         return None
-    if rows.count(most.cells // columns) * columns <= most.cells:
+    if rows.count(limits.cells // columns) * columns <= limits.cells:
         return None
     check_table(filename, 1, columns)
     try:
@@ -219,12 +219,12 @@ def averaged_if_long(path: Path, filename: str) -> CalibrationSession | None:
 
 @dataclass
 class _Codes:
-    """Names of positions or runs as numbers, by first appearance; -1 of none."""
+    """Names of positions or runs as numbers, by first appearance; -1 for none."""
 
     known: dict[str, int] = field(default_factory=dict)
 
     def of(self, series: pl.Series) -> Array:
-        """(r,) numbers as they are, names numbered."""
+        """(r,) numbers unchanged, names numbered."""
         if series.dtype.is_numeric():
             return series.cast(pl.Float64).fill_null(-1).to_numpy()
         names = series.cast(pl.String).fill_null("").str.strip_chars()
@@ -237,22 +237,22 @@ class _Codes:
 
 @dataclass(frozen=True)
 class _Scan:
-    """One log, gone through as often as its averages need it."""
+    """One log, scanned as often as its averages need it."""
 
-    rows: Rows
+    rows: TableScan
     document: Mapping[str, object]
     """Without its table."""
     filename: str
 
     def parts(self) -> Iterator[CalibrationSession]:
-        """Some rows at a time, checked as those of any session."""
-        codes, at = _Codes(), 0
+        """Some rows at a time, checked like those of any session."""
+        codes, offset = _Codes(), 0
         for frame in self._frames(self._needed()):
-            yield self._checked(self._table(frame, codes), at)
-            at += len(frame)
+            yield self._checked(self._table(frame, codes), offset)
+            offset += len(frame)
 
     def labels(self) -> Callable[[], Iterator[Array]] | None:
-        """What labels the rows: a position, else the settings of a stand, else nothing."""
+        """Labels of the rows: a position, else the settings of a stand, else none."""
         names = [LABEL] if LABEL in self.rows.names else [name for name in SETTINGS if name in self.rows.names]
         return (lambda: self._settings(names)) if names else None
 
@@ -262,7 +262,7 @@ class _Scan:
             yield np.column_stack([code.of(frame[name]) for code, name in zip(codes, names, strict=True)])
 
     def check_names(self) -> None:
-        """Raises for what is wrong with the first rows, columns that belong to nothing among it."""
+        """Checks the first rows, with every column: raises for columns that belong to nothing."""
         for frame in self._frames(self.rows.names):
             self._checked(self._table(frame.head(1), _Codes()), 0)
             return
@@ -278,21 +278,21 @@ class _Scan:
         return table
 
     def _needed(self) -> list[str]:
-        """Columns that say something of a session; others are looked at once, by their names."""
+        """Columns of a session; others are checked once, by their names."""
         sensors = self.document.get("sensors")
-        own = [one.get("name") for one in sensors if isinstance(one, dict)] if isinstance(sensors, list) else []
-        known = {*COLUMNS, *own, *(f"{name}_se" for name in own)}
+        names = [one.get("name") for one in sensors if isinstance(one, dict)] if isinstance(sensors, list) else []
+        known = {*COLUMNS, *names, *(f"{name}_se" for name in names)}
         return [name for name in self.rows.names if name in known]
 
     def _frames(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
-        columns, most, at = len(self.rows.names), in_force().log_cells, 0
+        columns, limit, rows_read = len(self.rows.names), in_force().log_cells, 0
         try:
             for frame in ahead(self.rows.stretches(names)):
-                at += len(frame)
-                if at * columns > most:
+                rows_read += len(frame)
+                if rows_read * columns > limit:
                     raise refusal(
                         self.filename,
-                        say("has more than {most} cells, the most of a raw log; split it", most=most),
+                        say("has more than {most} cells, the limit for a raw log; split it", most=limit),
                         "table",
                     )
                 if len(frame):
@@ -302,21 +302,21 @@ class _Scan:
                 self.filename, say("cannot be read to its end: {error}", error=str(error)[:200]), "table"
             ) from error
 
-    def _checked(self, table: Mapping[str, object], at: int) -> CalibrationSession:
-        """The rows from ``at`` on; every problem names its row of the whole log."""
+    def _checked(self, table: Mapping[str, object], offset: int) -> CalibrationSession:
+        """The rows from ``offset`` on; every problem names its row of the whole log."""
         try:
             return read_session({**self.document, "table": table}, name=self.filename, most=Extent(), part=True)
         except FormatError as fault:
-            found = [Problem(one.field, one.message, one.row and one.row + at) for one in fault.problems]
-            raise FormatError(found, self.filename) from fault
+            problems = [Problem(one.field, one.message, one.row and one.row + offset) for one in fault.problems]
+            raise FormatError(problems, self.filename) from fault
 
 
 def ahead(frames: Iterator[pl.DataFrame]) -> Iterator[pl.DataFrame]:
-    """The same, the next of them being read while one is worked on."""
+    """The same, reading the next frame while one is processed."""
     with ThreadPoolExecutor(1) as reader:
-        coming = reader.submit(next, frames, None)
-        while (frame := coming.result()) is not None:
-            coming = reader.submit(next, frames, None)
+        pending = reader.submit(next, frames, None)
+        while (frame := pending.result()) is not None:
+            pending = reader.submit(next, frames, None)
             yield frame
 
 

@@ -1,7 +1,7 @@
 """MATLAB files up to version 7: one variable a column, text as a char matrix; the metadata in `imu_session`.
 
-Structures, cells and objects may declare any size with a few bytes: they are named, never read. The library falls over
-on some damaged files, so it is only ever used in a process of its own.
+Structures, cells and objects may declare any size in a few bytes: they are named in a problem, never read. The library
+crashes on some damaged files, so it is only used in a separate process.
 """
 
 import zlib
@@ -19,21 +19,21 @@ from service.ingest.metadata import with_metadata
 from service.kit.limits import check_table, in_force, refusal
 
 VERSION = b"MATLAB 5.0 MAT-file"
-"""First bytes of one that is read: level 5, not the HDF5 of version 7.3."""
+"""First bytes of a file that is read: level 5, not the HDF5 of version 7.3."""
 LEVEL_5 = 1
-"""How scipy numbers MAT files up to version 7."""
+"""Scipy's number for MAT files up to version 7."""
 VARIABLE = "imu_session"
-"""The variable that holds the session."""
+"""Variable with the session's metadata."""
 HEADER = 128
 """Bytes before the first variable (MAT-File Format, level 5)."""
 COMPRESSED = 15
-"""Type of an element that holds another one deflated (miCOMPRESSED)."""
+"""Type of an element with another one deflated inside (miCOMPRESSED)."""
 NUMERIC = ("double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
 """Classes whose values are numbers."""
 PLAIN = ("char", *NUMERIC)
 """Classes whose values are text or numbers."""
 DAMAGED = (OSError, ValueError, TypeError, LookupError, ArithmeticError, zlib.error, MatReadError)
-"""What scipy raises on files cut off or written over at various places."""
+"""Raised by scipy for truncated or overwritten files."""
 
 MOST_TEXT = 1_000_000
 """Characters of text beside the table's cells: the metadata, and the labels of its rows."""
@@ -58,18 +58,20 @@ def read_mat(content: bytes, filename: str) -> dict[str, object]:
 def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.ndarray[Any, Any]]:
     """All variables (rows, columns) by name, in the file's own units.
 
-    FormatError where one is neither text nor numbers, or has more than so many rows and columns.
+    FormatError for one that is neither text nor numbers, or has more than ``most_rows`` rows and columns.
     """
     if not content.startswith(VERSION):
         raise refusal(filename, "is of a MATLAB version that is not read; save it with save(…, '-v7')")
-    most = in_force().unpacked
-    if _unpacked_size(content, most) > most:
-        raise refusal(filename, say("unpacks to more than {most} MiB; average or split the log", most=most // 1024**2))
+    limit = in_force().unpacked
+    if _unpacked_size(content, limit) > limit:
+        raise refusal(
+            filename, say("unpacks to more than {limit} MiB; average or split the log", limit=limit // 1024**2)
+        )
     try:
         declared = _declared(content)
         _check_declared(declared, filename, most_rows)
-        found = loadmat(BytesIO(content))  # type: ignore[arg-type]  # stubs lack file-likes
-        return {name: np.asarray(found[name]) for name, _, _ in declared}
+        values = loadmat(BytesIO(content))  # type: ignore[arg-type]  # stubs lack file-likes
+        return {name: np.asarray(values[name]) for name, _, _ in declared}
     except DAMAGED as error:
         if isinstance(error, FormatError):
             raise
@@ -79,12 +81,12 @@ def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.
 def _declared(content: bytes) -> list[Declared]:
     if matfile_version(BytesIO(content))[0] != LEVEL_5:  # type: ignore[arg-type]  # stubs lack file-likes
         raise ValueError("the header says another version than 5")
-    found = whosmat(BytesIO(content), chars_as_strings=False)  # type: ignore[arg-type]  # stubs lack file-likes
-    return [(name, shape, kind) for name, shape, kind in found]
+    variables_ = whosmat(BytesIO(content), chars_as_strings=False)  # type: ignore[arg-type]  # stubs lack file-likes
+    return [(name, shape, kind) for name, shape, kind in variables_]
 
 
 def _check_declared(declared: list[Declared], filename: str, most_rows: int) -> None:
-    """Raises where a variable is no column, or all of them are too many cells."""
+    """Raises for a variable that is not a column, and for too many cells in all."""
     names = [name for name, _, _ in declared]
     for name, shape, kind in declared:
         if kind not in PLAIN or names.count(name) > 1:
@@ -98,11 +100,13 @@ def _check_declared(declared: list[Declared], filename: str, most_rows: int) -> 
                 filename, say("has the shape {shape}; a column is a vector, or a char matrix", shape=tuple(shape)), name
             )
     check_table(filename, 0, len(declared))
-    cells, most = sum(prod(shape) for _, shape, _ in declared), in_force().cells
-    if cells > most + MOST_TEXT:
+    cell_count, limit = sum(prod(shape) for _, shape, _ in declared), in_force().cells
+    if cell_count > limit + MOST_TEXT:
         raise refusal(
             filename,
-            say("has {cells} cells; at most {most} can be read, so average or split it", cells=cells, most=most),
+            say(
+                "has {cells} cells; at most {limit} can be read, so average or split it", cells=cell_count, limit=limit
+            ),
             "table",
         )
 
@@ -115,15 +119,15 @@ def cells(column: np.ndarray[Any, Any]) -> Any:
 
 
 def _unpacked_size(content: bytes, most: int) -> int:
-    """Bytes of all compressed variables once unpacked, counted no further than the limit."""
+    """Bytes of all compressed variables once unpacked; counting stops above the limit."""
     order: Literal["little", "big"] = "little" if content[126:128] == b"IM" else "big"
-    at, total = HEADER, 0
-    while at + 8 <= len(content) and total <= most:
-        kind = int.from_bytes(content[at : at + 4], order)
-        size = int.from_bytes(content[at + 4 : at + 8], order)
+    offset, total = HEADER, 0
+    while offset + 8 <= len(content) and total <= most:
+        kind = int.from_bytes(content[offset : offset + 4], order)
+        size = int.from_bytes(content[offset + 4 : offset + 8], order)
         if kind == COMPRESSED:
-            total += _inflated(content[at + 8 : at + 8 + size], most)
-        at += 8 + size
+            total += _inflated(content[offset + 8 : offset + 8 + size], most)
+        offset += 8 + size
     return total
 
 

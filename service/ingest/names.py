@@ -1,20 +1,20 @@
-"""Names of units, types and stands: written once, found in addresses, lists and on labels ever after."""
+"""Names of units, types and stands, which appear in addresses, lists and on labels."""
 
 import unicodedata
 
 from estimator.message import say
 
 LONGEST_NAME = 200
-"""Characters of a name that the store keeps: the width of its columns."""
-UNSEEN = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
-"""Kinds of characters that nobody sees: control, direction of writing, no width, half of a pair, private, unassigned,
-and ends of lines."""
-STEPS = ("", ".", "..")
-"""Between slashes: what browsers take out of an address."""
+"""Characters of a name: the width of its columns in the store."""
+INVISIBLE = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
+"""Categories of invisible characters: control, format (direction, zero width), surrogate, private, unassigned, line
+ends."""
+DOT_SEGMENTS = ("", ".", "..")
+"""Between slashes: what browsers remove from an address."""
 
 
 def plain_name(text: str) -> str:
-    """A name as it is kept: composed (NFC), without space around it, one space for several."""
+    """A name as it is stored: composed (NFC), trimmed, with single spaces."""
     return " ".join(unicodedata.normalize("NFC", text).split())
 
 
@@ -22,15 +22,15 @@ def fault_of_name(text: str) -> str | None:
     """What is wrong with a name; None where nothing is."""
     if len(text) > LONGEST_NAME:
         return say(
-            "is {text} characters long; at most {longest_name} are kept", text=len(text), longest_name=LONGEST_NAME
+            "is {length} characters long; at most {longest_name} are kept", length=len(text), longest_name=LONGEST_NAME
         )
-    if any(unicodedata.category(c) in UNSEEN for c in text):
-        return "holds characters that nobody sees, such as control characters or marks of direction; remove them"
-    if text and any(part in STEPS for part in text.split("/")):
-        return "cannot stand in an address: it is or holds . or .. or nothing between slashes; write it otherwise"
+    if any(unicodedata.category(c) in INVISIBLE for c in text):
+        return "contains invisible characters, such as control characters or direction marks; remove them"
+    if text and any(part in DOT_SEGMENTS for part in text.split("/")):
+        return "cannot be part of an address: it has ., .. or nothing between slashes; change it"
     return None
 
 
 def fault_of_serial(text: str) -> str | None:
-    """The same of a serial number, which cannot be left out."""
+    """The same of a serial number, which is required."""
     return fault_of_name(text) if text else "is empty; write the unit's serial number"

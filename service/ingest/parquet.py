@@ -24,7 +24,7 @@ def read_parquet(content: bytes, filename: str) -> dict[str, object]:
 
 
 def has_metadata(content: bytes) -> bool:
-    """Whether a file that can be read says itself that it is a session."""
+    """Whether a readable file has a session's metadata."""
     try:
         return KEY in pl.read_parquet_metadata(BytesIO(content))
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError):
@@ -51,10 +51,10 @@ def columns_of(frame: pl.DataFrame, filename: str) -> dict[str, object]:
 
 
 def _check_type(name: str, dtype: pl.DataType, filename: str) -> None:
-    """Raises for what is no column of a table, before it is unpacked."""
+    """Raises for a type that is no column of a table, before it is unpacked."""
     labels = (pl.String, pl.Categorical, pl.Enum, pl.Boolean)
     if not (dtype.is_numeric() or dtype in labels or isinstance(dtype, pl.Enum | pl.Categorical)):
-        raise refusal(filename, say("is of type {dtype}; a column holds numbers or text", dtype=dtype), name)
+        raise refusal(filename, say("is of type {dtype}; a column contains numbers or text", dtype=dtype), name)
 
 
 def _cells(series: pl.Series, filename: str) -> object:
@@ -66,5 +66,5 @@ def _cells(series: pl.Series, filename: str) -> object:
     if series.dtype in (pl.Categorical, pl.Enum):
         series = series.cast(pl.String)
     if (series.str.len_bytes().sum() or 0) > MOST_TEXT:
-        raise refusal(filename, "holds far too much text; labels should be short", series.name)
+        raise refusal(filename, "contains far too much text; labels should be short", series.name)
     return series.to_list()

@@ -1,4 +1,4 @@
-"""What the fields and columns of a session file hold, in a line each, for people who fill one in."""
+"""Hints for the fields and columns of a session file, one line each, for people who fill one in."""
 
 from estimator.message import say
 
@@ -6,12 +6,14 @@ NEEDED_HERE = "Needed."
 KEY_HINTS = {
     "format": "Leave as it is.",
     "unit": "Serial number of the unit.",
-    "unit_type": "What units of this build are called.",
+    "unit_type": "Name of the unit type.",
     "block": "Kind of the sensors: accelerometer or gyroscope.",
     "programme": "How it was measured.",
     "started_at": "When the first row was measured, with its zone: 2026-03-01T09:00:00Z, or with +03:00 for Moscow.",
-    "stage": "as-found before the unit was worked on, as-left after it; empty otherwise.",
-    "origin": "simulated where no hardware was measured; empty otherwise.",
+    "powered_on_at": "When the unit was switched on, in the same way; empty where nobody knows.",
+    "time_since_power_on_s": "Seconds from switching on to the first row, where the moment itself is not given.",
+    "stage": "as-found before work on the unit, as-left after it; empty otherwise.",
+    "origin": "simulated if no hardware was measured; empty otherwise.",
     "operator": "Who measured.",
     "notes": "Anything worth knowing.",
     "latitude_deg": "Latitude of the stand, degrees.",
@@ -37,12 +39,12 @@ KEY_HINTS = {
     "nominal_scale": "Nominal scale factor: reading unit per m/s² (gyroscopes: per rad/s, or pulses per rad).",
     "nominal_offset": "Reading at zero input, in the reading unit.",
     "reading_unit": "Unit of the readings, such as V, mA or count.",
-    "bias_repeatability_m_s2": "Scatter of the zero from position to position, one sigma, m/s².",
-    "bias_repeatability_rad_s": "Scatter of the zero from position to position, one sigma, rad/s.",
-    "position_m": "Where the sensor sits: three numbers in metres, block axes.",
-    "direction_sigma_deg": "How well the stated directions are known, one sigma, degrees.",
+    "bias_repeatability_m_s2": "Scatter of the bias from position to position, one sigma, m/s².",
+    "bias_repeatability_rad_s": "Scatter of the bias from position to position, one sigma, rad/s.",
+    "position_m": "Position of the sensor: three numbers in metres, block axes.",
+    "direction_sigma_deg": "Uncertainty of the stated directions, one sigma, degrees.",
 }
-"""By the whole key, or by its last step."""
+"""By the whole key, or by its last part."""
 COLUMN_HINTS = {
     "run": "direct, or flipped with the block turned by 180° about the platform's Z axis.",
     "beta_deg": "Turn of the head, degrees.",
@@ -52,17 +54,17 @@ COLUMN_HINTS = {
     "turn_angle_deg": "Angle of the turntable at the end of the row, degrees.",
     "turn_rate_deg_s": "Rate of the table during the row, degrees a second.",
     "position": "Which position the row belongs to: a whole number or a name.",
-    "direction_x": "Roughly known direction of up in block axes; empty where unknown.",
-    "direction_y": "Roughly known direction of up in block axes; empty where unknown.",
-    "direction_z": "Roughly known direction of up in block axes; empty where unknown.",
+    "direction_x": "Approximate upward direction in block axes; empty if unknown.",
+    "direction_y": "Approximate upward direction in block axes; empty if unknown.",
+    "direction_z": "Approximate upward direction in block axes; empty if unknown.",
 }
 
 
 def reading_hint(sensor: str, unit: str) -> str:
-    """Of a sensor's column."""
+    """Hint of a sensor's column."""
     return say("Reading of {sensor}, {unit}: the mean at this position.", sensor=sensor, unit=unit)
 
 
 def standard_error_hint(sensor: str, unit: str) -> str:
-    """Of the column of its standard errors."""
+    """Hint of the column of its standard errors."""
     return say("Standard error of the mean reading of {sensor}, {unit}. May stay empty.", sensor=sensor, unit=unit)

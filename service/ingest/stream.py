@@ -1,6 +1,5 @@
-"""A recording of any length, some rows at a time: Parquet and CSV are scanned by a process of their own, within the
-limits of any file; other formats are read whole.
-"""
+"""A recording of any length, some rows at a time: Parquet and CSV are scanned in a separate process, within the limits
+of any file; other formats are read whole."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,17 +14,17 @@ from service.ingest.apart import read_parts
 from service.ingest.formats import may_be_log
 
 START = 4096
-"""Bytes by which a file is told: blank lines may come first."""
+"""Bytes from which the format is recognised: blank lines may come first."""
 
 
 @dataclass(frozen=True)
 class Recording:
-    """What a recording is, and its readings as they come."""
+    """The metadata of a recording, and its readings as they arrive."""
 
     head: CalibrationSession
     """The session of its first rows."""
     chunks: Iterator[NDArray[np.float64]]
-    """(R, sensors) in the order measured; what is missing is NaN."""
+    """(R, sensors) in the order measured; a missing reading is NaN."""
 
 
 def open_recording(path: Path) -> Recording:
@@ -38,5 +37,5 @@ def open_recording(path: Path) -> Recording:
 
 
 def session_in(path: Path) -> CalibrationSession:
-    """The session in a file; nothing of a long one comes into this process before it is checked."""
+    """The session in a file; a long one is checked before any of it comes into this process."""
     return read_upload(path if path.stat().st_size > LONG else path.read_bytes(), str(path))

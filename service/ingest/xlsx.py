@@ -25,28 +25,28 @@ from service.kit.limits import check_table, in_force, refusal
 MOST_MEMBERS = 1000
 """Parts of a workbook: an ordinary one has some twenty."""
 MOST_TEXT = 64 * 1024 * 1024
-"""Characters that all cells of shared text hold together."""
+"""Characters of all cells of shared text together."""
 CHUNK = 64 * 1024
 """Bytes that are unpacked at a time."""
 PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".emf", ".bin", ".vml")
-"""Parts that are no XML; nothing but their size matters."""
+"""Parts that are not XML; only their size matters."""
 DAMAGED = (
     BadZipFile, OSError, ValueError, RuntimeError, LookupError, EOFError, UnicodeError, zlib.error, expat.ExpatError,
 )  # fmt: skip
-"""What damaged archives raise; RuntimeError where a member is encrypted or of an unknown compression."""
+"""Raised for damaged archives; RuntimeError where a member is encrypted or of an unknown compression."""
 
 
 class TooMuchError(Exception):
-    """A part that holds more than the limit; says of what."""
+    """A part exceeds the limit; its message names what."""
 
 
 def check_workbook(content: bytes, filename: str) -> None:
-    """Raises FormatError for a workbook that is damaged, or that holds more than the limits."""
+    """Raises FormatError for a workbook that is damaged, or exceeds the limits."""
     lengths: list[int] = []
     shared: Counter[int] = Counter()
     extents: list[tuple[int, int]] = []
     try:
-        _look_through(content, lengths, shared, extents)
+        _check_members(content, lengths, shared, extents)
     except TooMuchError as error:
         raise refusal(filename, say("{error}; average or split it", error=error)) from error
     except DAMAGED as error:
@@ -54,29 +54,29 @@ def check_workbook(content: bytes, filename: str) -> None:
     for rows, columns in extents:
         check_table(filename, rows, columns)
     if sum(count * lengths[place] for place, count in shared.items() if place < len(lengths)) > MOST_TEXT:
-        raise refusal(filename, "holds far too much text; labels should be short")
+        raise refusal(filename, "contains far too much text; labels should be short")
 
 
-def _look_through(content: bytes, lengths: list[int], shared: Counter[int], extents: list[tuple[int, int]]) -> None:
+def _check_members(content: bytes, lengths: list[int], shared: Counter[int], extents: list[tuple[int, int]]) -> None:
     left = in_force().unpacked
     with ZipFile(BytesIO(content)) as archive:
         members = archive.infolist()
         if len(members) > MOST_MEMBERS:
-            raise TooMuchError(say("has {members} parts, where a workbook has some twenty", members=len(members)))
+            raise TooMuchError(say("has {members} parts; a workbook has about twenty", members=len(members)))
         for member in members:
-            part = _Part(lengths, shared)
+            part = _XmlPart(lengths, shared)
             left -= _streamed(archive, member, part, left)
             extents.append((part.rows, part.columns))
 
 
-def _streamed(archive: ZipFile, member: ZipInfo, part: "_Part", left: int) -> int:
+def _streamed(archive: ZipFile, member: ZipInfo, part: "_XmlPart", limit: int) -> int:
     """Bytes that the member unpacks to."""
     is_xml = PurePosixPath(member.filename.lower()).suffix not in PICTURES
     total = 0
     with archive.open(member) as stream:
         while chunk := stream.read(CHUNK):
             total += len(chunk)
-            if total > left:
+            if total > limit:
                 raise TooMuchError(say("unpacks to more than {unpacked} MiB", unpacked=in_force().unpacked // 1024**2))
             if is_xml:
                 part.parser.Parse(chunk, False)
@@ -85,8 +85,8 @@ def _streamed(archive: ZipFile, member: ZipInfo, part: "_Part", left: int) -> in
     return total
 
 
-class _Part:
-    """One XML part: how far its cells reach, and how long shared texts are and how often each is used."""
+class _XmlPart:
+    """One XML part: the extent of its cells, the lengths of shared texts and how often each is used."""
 
     def __init__(self, lengths: list[int], shared: Counter[int]) -> None:
         self.rows = self.columns = 0
@@ -137,19 +137,19 @@ class _Part:
         raise ValueError("a workbook declares no document type")
 
     def _reach(self) -> None:
-        """Takes in the cell at hand; ends the reading where that is too far already."""
+        """Extends to the current cell; ends the reading where that exceeds the limits."""
         self.rows, self.columns = max(self.rows, self._row), max(self.columns, self._column)
-        most = self._most
-        if self.rows > most.rows or self.columns > most.columns or self.rows * self.columns > most.cells:
+        limits = self._most
+        if self.rows > limits.rows or self.columns > limits.columns or self.rows * self.columns > limits.cells:
             raise TooMuchError(
                 say(
-                    "has {rows} rows × {columns} columns in a sheet; at most {cells} cells, {rows2} rows and "
-                    "{columns2} columns can be read",
+                    "has {rows} rows × {columns} columns in a sheet; at most {cell_limit} cells, {row_limit} rows and "
+                    "{column_limit} columns can be read",
                     rows=self.rows,
                     columns=self.columns,
-                    cells=most.cells,
-                    rows2=most.rows,
-                    columns2=most.columns,
+                    cell_limit=limits.cells,
+                    row_limit=limits.rows,
+                    column_limit=limits.columns,
                 )
             )
 
@@ -168,13 +168,13 @@ def _row(place: str) -> int:
 
 
 BOOLEANS = ("true", "false")
-"""How the library writes a cell that is true or false, which as a number would be 1 or 0."""
+"""How the library writes a boolean cell, which as a number would be 1 or 0."""
 DType = Literal["string", "float"]
 Cell = float | str | None
 Names = tuple[str, str]
-"""Of the two sheets that a session needs, as a workbook has them."""
+"""Of the two sheets of a session, as named in a workbook."""
 SHEETS = ("session", "readings")
-"""What they are called in English."""
+"""Their English names."""
 
 
 def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
@@ -183,7 +183,7 @@ def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
 
 
 def read_with_places(content: bytes, filename: str) -> tuple[dict[str, object], Where]:
-    """The same, and which cell a field and row stand in."""
+    """The same, with a function from field and row to the cell."""
     check_workbook(content, filename)
     names, session, readings = _sheets(content, filename)
     problems = Problems(filename, in_force().extent)
@@ -232,9 +232,9 @@ def sheet_names(content: bytes, filename: str) -> tuple[str, ...]:
 
 
 def session_sheets(names: Sequence[str]) -> Names | None:
-    """The two sheets of a session among those of a workbook, in English or Russian; None of any other workbook."""
-    found = {IN_ENGLISH.get(name.strip(), name): name for name in reversed(names)}
-    return (found["session"], found["readings"]) if found.keys() >= set(SHEETS) else None
+    """The two sheets of a session among those of a workbook, in English or Russian; None for any other workbook."""
+    by_english = {IN_ENGLISH.get(name.strip(), name): name for name in reversed(names)}
+    return (by_english["session"], by_english["readings"]) if by_english.keys() >= set(SHEETS) else None
 
 
 def _sheets(content: bytes, filename: str) -> tuple[Names, list[tuple[str, Cell]], tuple[list[str], list[Column]]]:
@@ -287,7 +287,7 @@ def _column(name: str, numbers: pl.Series, texts: pl.Series) -> Column:
 
 
 def _load(book: fastexcel.ExcelReader, sheet: str, dtype: DType) -> pl.DataFrame:
-    """The cells of a sheet, every one as this type or null."""
+    """The cells of a sheet, each as this type or null."""
     return book.load_sheet(sheet, header_row=None, dtypes=dtype).to_polars()
 
 
@@ -296,5 +296,5 @@ def _cells(numbers: pl.Series, texts: pl.Series) -> Column:
     is_number = numbers.is_not_null() & ~texts.is_in(BOOLEANS).fill_null(False)
     if is_number.all():
         return numbers.to_numpy()
-    known = numbers.to_list()
-    return [known[j] if sure else text for j, (sure, text) in enumerate(zip(is_number, texts, strict=True))]
+    values = numbers.to_list()
+    return [values[j] if is_sure else text for j, (is_sure, text) in enumerate(zip(is_number, texts, strict=True))]

@@ -1,4 +1,4 @@
-"""Long work is asked for, followed and cancelled."""
+"""Requests, progress and cancellation of long jobs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,16 +21,16 @@ from service.storage.queries import Store
 from service.storage.waiting import drop_waiting
 
 MOST_OPEN = 100
-"""Jobs that wait or are at work: more than a crew asks for in a day."""
+"""Jobs that are waiting or running: more than a crew requests in a day."""
 STORING = "The file is read and is being stored. Withdraw its session instead, once it is there."
 REPORTS = ("xlsx", "pdf")
 """Forms of a report that takes long."""
 
 
 def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:
-    """Keeps what is asked for; where the same is still to be done it is that job.
+    """Creates a job, or returns the open job for the same work.
 
-    RefusedError where no unit is meant, BusyError where too many jobs wait already.
+    RefusedError where no unit is concerned, BusyError where too many jobs wait.
     """
     with storage.database.writing() as store:
         known = Jobs(store).like(new)
@@ -44,22 +44,22 @@ def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:
 
 
 def require_room(store: Store) -> None:
-    """BusyError where too many jobs wait already."""
+    """BusyError where too many jobs wait."""
     if Jobs(store).open_count() >= MOST_OPEN:
         raise BusyError(say("{most_open} jobs wait already. Cancel one, or ask again later.", most_open=MOST_OPEN))
 
 
-def tell_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
-    """Keeps as a job that the units of a changed model are computed again."""
+def add_model_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
+    """Adds a job for the recomputation of units under a changed model."""
     if units:
-        own = NewJob(
+        new = NewJob(
             JobKind.MODEL, changed.accepted_by, scope=changed.scope, subject=changed.subject, revision=changed.id
         )
-        Jobs(store).add(own, units, now)
+        Jobs(store).add(new, units, now)
 
 
 def _pieces(store: Store, new: NewJob) -> int:
-    """How many pieces it has."""
+    """Number of pieces."""
     if new.kind is JobKind.REPORT:
         return 1
     units = Jobs(store).units(new.scope, new.subject)
@@ -72,12 +72,12 @@ def _pieces(store: Store, new: NewJob) -> int:
 
 
 def may_cancel(job: Job, person: Person) -> bool:
-    """Whoever asked for it, and engineers."""
+    """Whoever requested it, and engineers."""
     return person.may(Role.ENGINEER) or bool(job.account and job.account == person.login)
 
 
 def cancel_job(storage: Storage, id: int, person: Person, who: str, now: datetime) -> Job:
-    """Stops it between two pieces: what is whole stays. ConflictError where it has ended."""
+    """Stops it between two pieces: finished pieces stay. ConflictError where it has ended."""
     with storage.database.writing() as store:
         job = Jobs(store).get(id)
         if not may_cancel(job, person):
@@ -91,12 +91,12 @@ def cancel_job(storage: Storage, id: int, person: Person, who: str, now: datetim
         Audit(store).write(now, who, "cancel job", job.subject or "fleet", {"job": id, "done": job.done})
         cancelled = Jobs(store).get(id)
     if job.sent is not None:
-        drop_waiting(storage.files, job.sent)
+        drop_waiting(storage.files, job.sent.place)
     return cancelled
 
 
 def file_of(files: Files, job: Job) -> bytes:
-    """What a job made; ConflictError where it made none or keeps it no longer."""
+    """The file made by a job; ConflictError where there is none any more."""
     if job.made is None:
         raise ConflictError(
             say("Job {id} has no file to give out: it is {state}, or its time is over.", id=job.id, state=job.state)
@@ -104,39 +104,39 @@ def file_of(files: Files, job: Job) -> bytes:
     return read_made(files, job.id, job.made.sha256)
 
 
-def drop_outlived(storage: Storage, now: datetime) -> None:
-    """Removes the files of jobs that were kept for their time."""
+def drop_expired(storage: Storage, now: datetime) -> None:
+    """Removes files of jobs whose retention time is over."""
     with storage.database.reading() as store:
-        outlived = Jobs(store).outlived(now)
-    for id in outlived:
+        expired = Jobs(store).outlived(now)
+    for id in expired:
         drop_made(storage.files, id)
         with storage.database.writing() as store:
             Jobs(store).forget_file(id)
 
 
 def retry_failed(storage: Storage, now: datetime, who: str) -> int:
-    """Everything that failed and that is still wanted; returns how much that is."""
+    """Retries everything that failed and is still wanted; returns the number of pieces."""
     with storage.database.writing() as store:
-        count = Failures(store).try_again() + Failures(store).ask_anew(now)
+        count = Failures(store).try_again() + Failures(store).request_given_up(now)
         Audit(store).write(now, who, "retry", "failed work", {"pieces": count})
     return count
 
 
-def _nothing(*_: object) -> None:
-    """Nobody follows it."""
+def _no_op(*_: object) -> None:
+    """No-op."""
 
 
 @dataclass(frozen=True)
-class Course:
-    """Of one upload. Whatever raises here stops it, and nothing of it is stored."""
+class UploadHooks:
+    """Hooks of one upload. An exception raised by a hook stops it, and nothing is stored."""
 
-    keeping: Callable[[], None] = _nothing
-    """Its readings are good, and its bytes are kept next."""
-    stored: Callable[[Store, Receipt], None] = _nothing
-    """Within the transaction that stores."""
-    refused: Callable[[Store, int], None] = _nothing
+    keeping: Callable[[], None] = _no_op
+    """Before its bytes are stored, when its readings are valid."""
+    stored: Callable[[Store, Receipt], None] = _no_op
+    """Within the transaction that stores it."""
+    refused: Callable[[Store, int], None] = _no_op
     """Within the transaction that records the refusal, with its number."""
 
 
-UNFOLLOWED = Course()
-"""Whoever sent it waits for the answer."""
+NO_HOOKS = UploadHooks()
+"""Of an upload whose sender waits for the answer."""

@@ -1,4 +1,4 @@
-"""Long work that somebody asked for: how far it has come, what it could not do, and what it made."""
+"""Long jobs: progress, failures and results."""
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -7,11 +7,11 @@ from enum import StrEnum
 from pydantic import computed_field
 
 from service.kit.answer import Hidden, answer
-from service.kit.arriving_files import Sent
 from service.models.records import Scope
+from service.sessions.sent import Sent
 
 KEPT = timedelta(days=7)
-"""That a report stays to be downloaded: a week's leave; it is made anew at any time."""
+"""Retention of a report: a week's leave; it can be made again at any time."""
 
 
 class JobKind(StrEnum):
@@ -20,15 +20,15 @@ class JobKind(StrEnum):
     RECALIBRATION = "recalibration"
     """Stored sessions computed again under the models in force, unit by unit."""
     MODEL = "model"
-    """The sessions that a change of a model concerns, computed again; several processes are at them."""
+    """The sessions concerned by a change of a model, computed again by several processes."""
     REPORT = "report"
     """The fleet's condition as a workbook or on paper."""
     UPLOAD = "upload"
-    """A long file that was received whole: read, calibrated, judged and stored."""
+    """A long file that was received completely: read, calibrated, judged and stored."""
 
 
 class JobState(StrEnum):
-    """How far it has come."""
+    """State of a job."""
 
     WAITING = "waiting"
     RUNNING = "running"
@@ -38,23 +38,23 @@ class JobState(StrEnum):
 
 
 OPEN = (JobState.WAITING, JobState.RUNNING)
-"""Nobody has ended it, nor it itself."""
+"""Not ended or cancelled."""
 
 
 KILOBYTE = 1000
-"""Bytes: what has been read of a long file is counted in these."""
+"""Bytes per unit of progress of a long file."""
 
 
 @dataclass(frozen=True)
 class NewJob:
-    """What somebody asks for."""
+    """A requested job."""
 
     kind: JobKind
     who: str
     account: str = ""
-    """Login of who asks; empty where nobody signs in."""
+    """Login of the requester; empty where there are no accounts."""
     scope: Scope | None = None
-    """Whether one unit, one unit type or one stand is meant; None for the whole fleet."""
+    """One unit, one unit type or one stand; None for the whole fleet."""
     subject: str = ""
     """Its name; empty for the whole fleet."""
     form: str = ""
@@ -62,9 +62,9 @@ class NewJob:
     language: str = ""
     """Of a report."""
     revision: int = 0
-    """Of the model that changed."""
+    """Of the changed model."""
     sent: Sent | None = None
-    """The file that is taken in; ``subject`` is its name."""
+    """The uploaded file; ``subject`` is its name."""
 
 
 @answer
@@ -79,8 +79,8 @@ class JobFailure:
 
 
 @dataclass(frozen=True)
-class Piece:
-    """What became of one piece of a recalibration."""
+class RecalibrationPiece:
+    """Result of one piece of a recalibration."""
 
     recomputed: int = 0
     verdicts: int = 0
@@ -136,7 +136,7 @@ class Job:
     total: int
     """Pieces in all."""
     cursor: Hidden[int]
-    """The last piece that is whole, so that whoever takes it up again begins behind it."""
+    """The last finished piece, after which work resumes."""
     recomputed: int
     """Sessions that have another calibration since."""
     verdicts: int
@@ -150,9 +150,9 @@ class Job:
     made: Made | None
     """What it made, at `/jobs/{id}/file`."""
     sent: Hidden[Sent | None] = None
-    """The file that is taken in: of its ``total`` kilobytes ``done`` were read, after ``cursor`` times through all."""
+    """The uploaded file: ``done`` of its ``total`` kilobytes were read in this pass, after ``cursor`` passes."""
     is_storing: Hidden[bool] = False
-    """Whether that file is read and being stored, so that nobody cancels it any more."""
+    """Whether that file is being stored and can no longer be cancelled."""
     session: str = ""
     """Of an upload: the session that it became; empty while it is none."""
     refusal: Hidden[int | None] = None
@@ -177,9 +177,9 @@ class Job:
 
 
 UNDER_WAY = "j"
-"""Begins the number of an upload that a job still works on."""
+"""Prefix of the identifier of an upload that is still a job."""
 
 
 def under_way(job: int) -> str:
-    """The name of an upload that a job works on."""
+    """Identifier of an upload that is still a job."""
     return f"{UNDER_WAY}{job}"

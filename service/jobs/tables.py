@@ -1,4 +1,4 @@
-"""The tables of long work, and of derivations that failed."""
+"""The table of long jobs."""
 
 from datetime import datetime
 from typing import Any
@@ -6,12 +6,13 @@ from typing import Any
 from sqlalchemy import JSON, Index, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import BYTES, IS_AT_WORK, IS_FAILED, only_where
 from service.storage.tables import Base
 
 
 class JobRow(Base):
-    """One job: what it is, how far it has come, and what it made; the queue knows who is at it."""
+    """One job: its work, progress and result; its lease is in the queue."""
 
     __tablename__ = "jobs"
     __table_args__ = (
@@ -43,10 +44,10 @@ class JobRow(Base):
     size: Mapped[int] = mapped_column(BYTES)
     sha256: Mapped[str] = mapped_column(String(64))
     kept_until: Mapped[datetime | None]
-    """Of the file that it made; None where there is none, or no longer."""
-    sent: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
-    """Of an upload: the file that waits, as `Sent`; its hash is in ``sha256``."""
+    """Of its file; NULL where there is none any more."""
+    sent: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
+    """Of an upload: the received file, as `Sent`; its hash is in ``sha256``."""
     is_storing: Mapped[bool] = mapped_column(server_default=false())
-    """Of an upload: whoever has its lease stores it."""
+    """Of an upload: the holder of its lease is storing it."""
     session: Mapped[str] = mapped_column(String(20), server_default="")
     refusal: Mapped[int | None]

@@ -1,4 +1,4 @@
-"""Long work in words: what it is, how far it has come, and what it did."""
+"""Long jobs in words: title, progress and outcome."""
 
 from estimator.message import say
 from estimator.wording import counted
@@ -6,10 +6,10 @@ from service.jobs.records import KILOBYTE, Job, JobKind, JobState
 from service.kit.measures import number
 from service.models.records import Scope
 
-AT_FAULT = "The program failed at it, several times: the log says more. It keeps what it had."
+AT_FAULT = "The program failed several times: see the log. Nothing was changed."
 FILE_AT_FAULT = (
-    "Nothing was stored: the program failed at this file, several times. Upload it again; where it fails again, the "
-    "log says why."
+    "Nothing was stored: the program failed several times on this file. Upload it again; if it fails again, see the "
+    "log."
 )
 FLEET_REPORTS = {"xlsx": "Fleet report as a workbook", "pdf": "Fleet report on paper (PDF)"}
 WHOLE_FLEET = "All units computed again"
@@ -41,26 +41,26 @@ def title_of(job: Job) -> str:
             return say("All units measured on stand {subject} computed again", subject=job.subject)
 
 
-def left_in_words(left: int) -> str:
-    """Why sessions of a unit keep what they had, and what helps."""
+def left_in_words(count: int) -> str:
+    """Why sessions of a unit were left as before, and what helps."""
     return say(
-        "{left} left as before: the file is lost, or cannot be calibrated under the model in "
+        "{sessions} left as before: the file is lost, or cannot be calibrated under the model in "
         "force. Upload a lost file again; withdraw an accepted cause that does not fit.",
-        left=counted(left, "session"),
+        sessions=counted(count, "session"),
     )
 
 
 def progress_of(job: Job) -> str:
-    """How far it has come."""
+    """How far it is."""
     if job.kind is JobKind.UPLOAD:
-        return _read_so_far(job)
+        return _upload_progress(job)
     if job.kind is JobKind.REPORT:
         return "" if job.state is not JobState.DONE else "The report is made."
     return say("Units: {done} of {total}", done=job.done, total=job.total)
 
 
-def _read_so_far(job: Job) -> str:
-    """Of a file: megabytes, and how often it was gone through before."""
+def _upload_progress(job: Job) -> str:
+    """Of a file: megabytes, and finished passes."""
     if not job.is_open:
         return ""
     if job.is_storing:
@@ -78,22 +78,24 @@ def _read_so_far(job: Job) -> str:
 
 
 def outcome_of(job: Job) -> str:
-    """What it did so far; empty of a report."""
+    """Result so far; empty for a report."""
     if job.kind is JobKind.UPLOAD:
-        return _became(job)
+        return _upload_outcome(job)
     if job.kind is JobKind.REPORT:
         return ""
     if job.state is JobState.DONE and not job.recomputed and not job.failed:
-        return "No session needed it: all rest on the models in force already."
-    other = (
+        return "No session needed it: all use the models in force."
+    verdicts = (
         say("{verdicts} with another verdict", verdicts=counted(job.verdicts, "session"))
         if job.verdicts
-        else "no verdict moved"
+        else "no verdict changed"
     )
-    return say("{recomputed} computed again, {other}.", recomputed=counted(job.recomputed, "session"), other=other)
+    return say(
+        "{recomputed} computed again, {verdicts}.", recomputed=counted(job.recomputed, "session"), verdicts=verdicts
+    )
 
 
-def _became(job: Job) -> str:
+def _upload_outcome(job: Job) -> str:
     if job.session:
         return "The file is stored as a session."
     return "The file cannot be used. Nothing was stored; correct what is listed and upload it again." * bool(
@@ -102,13 +104,13 @@ def _became(job: Job) -> str:
 
 
 def ending_of(job: Job) -> str:
-    """What its end means; empty while it goes on."""
+    """What its end means; empty while it is open."""
     if job.kind is JobKind.UPLOAD:
         return "Cancelled: nothing was stored, and the file is gone." if job.state is JobState.CANCELLED else ""
     match job.state:
         case JobState.CANCELLED:
             return "Cancelled between two pieces: what was done until then stays, the rest keeps what it had."
         case JobState.FAILED:
-            return "It could not be done. Ask for it again; where it fails again, the log says why."
+            return "The job failed. Request it again; if it fails again, see the log."
         case _:
             return ""

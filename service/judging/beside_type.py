@@ -31,7 +31,7 @@ RAYLEIGH = 1.1774
 """Median of the length of a two-vector, in sigmas of a component."""
 NEAR = float(np.cos(np.radians(10.0)))
 """Within it an axis is that of a sensor."""
-ANOTHER = "the readings hold an offset, or another sensor is connected than the file says"
+ANOTHER = "the readings contain an offset, or the connected sensor is not the one in the file"
 Tolerances = Mapping[tuple[str, str], float]
 """By kind of sensor and parameter, SI or relative."""
 
@@ -65,17 +65,17 @@ def type_of_references(values: Sequence[ParameterValue], tolerances: Tolerances)
 
 def beside_type(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doubt]:
     """What no unit of the type has; the scale factors apart."""
-    for parameter, name in (("bias", "zero"), ("quadratic", "quadratic term")):
+    for parameter, name in (("bias", "bias"), ("quadratic", "quadratic term")):
         away = {s.name: d for s in sensors if (d := _distance(s, parameter, of)) is not None}
         if away:
             kind = next(s.kind for s in sensors if s.name in away)
             who, most = joined(", ", away), in_words(kind, parameter, max(away.values(), key=abs))
             yield Doubt(
                 say(
-                    "The {name} of {who} lies {most} from those of the type's other units",
+                    "The {name} of {sensors} differs by {distance} from the other units of the type",
                     name=name,
-                    who=who,
-                    most=most,
+                    sensors=who,
+                    distance=most,
                 ),
                 ANOTHER,
             )
@@ -104,15 +104,15 @@ def _directions(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doub
         if angle <= of.far(sensor.kind, "axis", float(np.median(others)) / RAYLEIGH):
             continue
         other = next((o for o, mean in means.items() if o != sensor.name and sensor.axis @ mean > NEAR), None)
-        where = "" if other is None else say(", along that of {other}", other=other)
+        where = "" if other is None else say(", along the axis of {other}", other=other)
         yield Doubt(
             say(
-                "{name} points {kind} from where it does in the type's other units{where}",
+                "{name} points {kind} away from its direction in the other units of the type{direction}",
                 name=sensor.name,
                 kind=in_words(sensor.kind, "axis", angle),
-                where=where,
+                direction=where,
             ),
-            "sensors or axes are named otherwise than in the type" if other else "nominal axis or mounting is wrong",
+            "sensors or axes have other names than in the type" if other else "nominal axis or mounting is wrong",
         )
 
 
@@ -131,8 +131,8 @@ def _uncertainties(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[D
             else say("{ratio} times more certain", ratio=f"{max(ratio, 1 / ratio):.0f}")
         )
         yield Doubt(
-            say("Its zeros are {times} than those of the type's other units", times=times),
-            "standard errors are stated in another unit, or the readings are not what was measured",
+            say("Its biases are {times} than in the other units of the type", times=times),
+            "the standard errors are in another unit, or the readings are not the measured ones",
         )
 
 

@@ -21,7 +21,7 @@ from service.storage.queries import Store
 
 
 @dataclass(frozen=True, eq=False)
-class Basis:
+class CalibrationBasis:
     """What is stored already that the calibration of a session rests on."""
 
     model: Model
@@ -30,7 +30,7 @@ class Basis:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class ReferenceComparison:
     """A recording in service beside the calibration that its unit's readings are corrected by."""
 
     reference: Calibration
@@ -45,22 +45,22 @@ class Calibrated:
     model: Model
     """That it was calibrated under."""
     calibration: Calibration
-    comparison: Comparison | None
+    comparison: ReferenceComparison | None
     """Of a recording in service; None for every other programme."""
 
 
-def basis_of(store: Store, new: Checked, model: Model) -> Basis:
+def basis_of(store: Store, new: Checked, model: Model) -> CalibrationBasis:
     """What a calibration under a model needs of the store; ScheduleError for a recording of an uncalibrated unit."""
     is_recording = new.session.programme == IN_SERVICE
-    return Basis(model, calibration_to_compare_with(store, new) if is_recording else None)
+    return CalibrationBasis(model, calibration_to_compare_with(store, new) if is_recording else None)
 
 
 @outside_writing
-def calibrate(new: Checked, basis: Basis) -> Calibrated:
+def calibrate(new: Checked, basis: CalibrationBasis) -> Calibrated:
     """The numerical part, with no store at hand; SessionError where the session cannot tell what it should."""
     if basis.compared_with is None:
         return Calibrated(new, basis.model, _under(basis.model, new.session), None)
-    found = Comparison(basis.compared_with, parity_check(new.session, basis.compared_with))
+    found = ReferenceComparison(basis.compared_with, parity_check(new.session, basis.compared_with))
     return Calibrated(new, basis.model, parity_calibration(found.result, found.reference), found)
 
 

@@ -1,13 +1,13 @@
 """How large a named cause is in the unit of a tolerance: what it does to a zero, a scale factor or a direction.
 
 A cause that acts at the input counts as what it adds to a reading, a coefficient times what the session gave it to act
-on: the span of time or temperature from end to end, or the input itself. One that scales the input counts as a relative
-change, one that turns something as an angle.
+on: the span of time or temperature from end to end, of a square that of half the span about the middle, or the input
+itself. One that scales the input counts as a relative change, one that turns something as an angle.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from math import hypot, isfinite, sqrt
+from math import exp, hypot, isfinite, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ ACTS_ON = {
     "1/s": ("scale", "time"),
     "input": ("bias", "nothing"),
     "input/K": ("bias", "temperature"),
+    "input/K²": ("bias", "temperature²"),
     "input/s": ("bias", "time"),
     "input/(K/s)": ("bias", "warming"),
     "(input)⁻¹": ("bias", "input²"),
@@ -97,19 +98,31 @@ def _sizes(finding: Finding, by: Yardstick) -> Iterator[Size]:
     for k in range(count):
         sensors, own = finding.sensors[k : k + 1], slice(k * each, (k + 1) * each)
         kind = by.calibration.sensor(sensors[0]).kind if sensors else _leading(by)
-        found = _of_sensor(finding, own, kind, by)
+        found = _of_sensor(finding, own, kind, by, _left(finding, k))
         size = None if found is None else _beside(by, sensors, kind, *found)
         yield from () if size is None else (size,)
 
 
-def _of_sensor(finding: Finding, own: slice, kind: str, by: Yardstick) -> tuple[str, tuple[float, float | None]] | None:
-    """The parameter, and the length of a sensor's amplitudes with its sigma; None where it is nothing."""
+def _of_sensor(
+    finding: Finding, own: slice, kind: str, by: Yardstick, left: float
+) -> tuple[str, tuple[float, float | None]] | None:
+    """The parameter, and the length of a sensor's amplitudes with its sigma, of which a share is left in the session;
+    None where it is nothing."""
     parameter, times = _effect(finding.cause, finding.units[own][0], kind, by.residuals)
+    times *= left
     value = hypot(*(x for x in finding.amplitude[own] if isfinite(x)))
     if parameter is None or value == 0:
         return None
     spread = hypot(*(a * s / value for a, s in zip(finding.amplitude[own], finding.sigma[own], strict=True)))
     return parameter, (value * times, spread * times if isfinite(spread) else None)
+
+
+def _left(finding: Finding, k: int) -> float:
+    """The share of the k-th sensor's amplitude that is left at the first row: 1 but of what settles since power-on."""
+    if finding.since_power_on is None:
+        return 1.0
+    each = finding.nonlinear_each
+    return exp(-finding.since_power_on / each[k if len(each) > 1 else 0]["s"])
 
 
 def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str | None, float]:
@@ -133,6 +146,8 @@ def _times(by: str, kind: str, residuals: Residuals) -> float:
     match by:
         case "temperature":
             return _span(residuals.temperature)
+        case "temperature²":
+            return (_span(residuals.temperature) / 2) ** 2
         case "time":
             return _span(residuals.time)
         case "warming":

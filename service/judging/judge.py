@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import dist
 
-from estimator.health import Judgement
+from estimator.health import ParameterJudgement
 from estimator.health import judge as judge_parameters
 from estimator.health.common_motion import common_motion
 from estimator.health.parity import RULE as PARITY_RULE
@@ -11,7 +11,7 @@ from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
 from estimator.message import say
 from estimator.results import Calibration
-from service.judging.calibrate import Comparison
+from service.judging.calibrate import ReferenceComparison
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
 from service.models.records import MovedParameter, MovedVerdict
@@ -58,7 +58,9 @@ def decisions_of(
 
 
 @outside_writing
-def judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, coverage_factor: float) -> Judged:
+def judge_recording(
+    moved: Calibration, found: ReferenceComparison, unit_type: UnitType, coverage_factor: float
+) -> Judged:
     """Every parameter that parity sees, judged, and the recording by its worst."""
     tolerances = tolerances_of(unit_type)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
@@ -66,7 +68,7 @@ def judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, 
     return Judged(moved, decisions, recording_in_words(found.result, decisions), is_reference=False)
 
 
-def _decisions(judgements: Iterable[Judgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:
+def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:
     """Judgements with the rule and the revision of the tolerances that they rest on."""
     basis = say("{rule} ({name} rev {revision})", rule=rule, name=unit_type.name, revision=unit_type.revision)
     return tuple(Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), rule=basis) for own in judgements)

@@ -27,12 +27,12 @@ from service.types.store import UnitTypes
 from service.units.store import Units
 
 OTHERS_MEASURED = (
-    "this session is simulated, and the sessions of unit {unit} were measured; the two are never mixed: give the "
-    "simulated unit a serial number of its own"
+    "this session is simulated, but the sessions of unit {unit} were measured; they are not mixed: give the simulated "
+    "unit its own serial number"
 )
 OTHERS_SIMULATED = (
-    "this session was measured, and the sessions of unit {unit} are simulated; the two are never mixed: withdraw the "
-    "simulated ones, or give this unit a serial number of its own"
+    "this session was measured, but the sessions of unit {unit} are simulated; they are not mixed: withdraw the "
+    "simulated ones, or give this unit its own serial number"
 )
 
 
@@ -182,8 +182,13 @@ def of_unit(
         near = _near(known, new, sensors)
         if near is not None:
             yield Doubt(
-                say("{unit} is new, and {near} is known; {near2}", unit=new.session.unit, near=near[0], near2=near[1]),
-                say("is this {near}? The serial number is probably mistyped", near=near[0]),
+                say(
+                    "{unit} is new, and {similar_unit} is known; {question}",
+                    unit=new.session.unit,
+                    similar_unit=near[0],
+                    question=near[1],
+                ),
+                say("is this {similar_unit}? The serial number is probably mistyped", similar_unit=near[0]),
                 Correction(Remedy.UNIT, unit=near[0]),
             )
 
@@ -201,7 +206,7 @@ def _near(known: KnownUnit, new: Checked, sensors: Sequence[SensorCalibration]) 
     beside = [other for other in fleet if is_one_keystroke(serial, other)]
     slip = next((other for other in beside if is_slip(serial, other, fleet)), None)
     if slip is not None:
-        return slip, "the two serial numbers are one keystroke apart"
+        return slip, "the two serial numbers differ by one keystroke"
     if beside and new.session.programme in CALIBRATIONS:
         return _of_same_calibration(known, own_type, beside, sensors)
     return None
@@ -218,7 +223,9 @@ def _of_same_calibration(
     for other in beside:
         rest = [values for serial, values in others.items() if serial != other]
         if other in others and _is_chance_small(sensors, others[other], rest):
-            return other, "one digit apart, and every calibrated parameter agrees, as no two units of the type do"
+            return other, (
+                "they differ in one digit and agree in every calibrated parameter, unlike any two units of the type"
+            )
     return None
 
 
@@ -245,7 +252,7 @@ MILLENNIUM, RUNNING = datetime(2000, 1, 1, tzinfo=UTC), timedelta(days=31)
 """Where the clocks of loggers start that lost their time, and how long such a clock runs before somebody sets it."""
 LONGEST_LIFE = timedelta(days=3653)
 """Before a unit's first session: of older ones the records are missing, or the date is wrong."""
-LOST = "the clock had lost its time; put the date of the measurement into the file"
+LOST = "the clock was wrong; write the date of the measurement into the file"
 
 
 def of_date(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[Doubt]:

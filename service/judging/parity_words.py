@@ -9,12 +9,13 @@ from service.kit.measures import number
 from service.sessions.words.readings import FitWords
 
 COMMON = (
-    "a bias common to all that some acceleration explains, all axes turned together, all scales by one factor, "
-    "and any stretch or shear of the space"
+    "a common change of bias that an acceleration explains, a common turn of all axes, a common change of all scale "
+    "factors, or any stretch or shear of the axes"
 )
 """What the sensors' disagreement cannot show: any motion, and any linear map of it, explains it."""
 ONE_ORIENTATION = (
-    "The recording turns too little to tell a change of bias from one of scale or axis: record slow turns as well."
+    "The recording has too little rotation to separate a change of bias from one of scale factor or axis: record slow "
+    "turns as well."
 )
 SMALLEST = 1e-4
 """Probability below which its size tells nobody more."""
@@ -27,7 +28,7 @@ def agreement_in_words(result: ParityResult) -> FitWords:
     chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
     quiet = TOO_MUCH_MOTION if result.moving else SAME
     return FitWords(
-        headline=say("{found}.", found=CHANGED if result.detected else quiet),
+        headline=say("{result}.", result=CHANGED if result.detected else quiet),
         detail=say(
             "χ² = {chi2} for {dof} numbers; an unchanged block gives this much or more in {chance} % of recordings.",
             chi2=number(result.chi2, 1),
@@ -41,9 +42,9 @@ def agreement_in_words(result: ParityResult) -> FitWords:
 def _warnings(result: ParityResult) -> Iterator[str]:
     can = PER_SENSOR * len(result.sensors)
     yield say(
-        "Parity sees {dof} of {can} numbers that can change. It never sees {common}.",
+        "Parity observes {dof} of {total} parameters. It cannot observe {common}.",
         dof=result.dof,
-        can=can,
+        total=can,
         common=COMMON,
     )
     if not result.complete:
@@ -57,7 +58,7 @@ def _warnings(result: ParityResult) -> Iterator[str]:
         if count
     ]
     if left:
-        yield say("Left out of {blocks} blocks: {left}.", blocks=result.blocks, left=joined(", ", left))
+        yield say("Excluded, of {blocks} blocks: {left}.", blocks=result.blocks, left=joined(", ", left))
 
 
 def _suspicion(result: ParityResult) -> str:
@@ -65,8 +66,8 @@ def _suspicion(result: ParityResult) -> str:
     suspects = list(dict.fromkeys(c.sensor for c in result.suspects))[:MOST_CANDIDATES]
     act = stillness(result)
     return say(
-        "If motion did nothing to sound sensors, χ² would be {chi2_unmoved} for {dof} numbers "
-        "and {suspects} would be suspected. {act}.",
+        "If motion had no effect on sound sensors, χ² would be {chi2_unmoved} for {dof} numbers and {suspects} would "
+        "be suspected. {act}.",
         chi2_unmoved=number(result.chi2_unmoved, 1),
         dof=result.dof,
         suspects=joined(" or ", suspects),
@@ -76,5 +77,5 @@ def _suspicion(result: ParityResult) -> str:
 
 def _why(reason: str, result: ParityResult) -> str:
     if reason == "saturated":
-        return say("in which {saturated} stood at the end of the range", saturated=joined(", ", result.saturated))
-    return "in which the block moved, because its sensors do not sit in one point"
+        return say("in which {saturated} was at the end of the range", saturated=joined(", ", result.saturated))
+    return "in which the block moved, because its sensors are not at one point"

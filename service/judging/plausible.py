@@ -78,8 +78,8 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
 def _of_dead(session: CalibrationSession) -> Iterator[Doubt]:
     """Channels that read the same at every position of a stand."""
     for name in dead_channels(session):
-        what = say("{name} reads the same in every row, although its input changes", name=name)
-        yield Doubt(what, "it is dead, or its channel is not connected")
+        what = say("{name} has the same reading in every row, although its input changes", name=name)
+        yield Doubt(what, "the sensor is dead, or its channel is not connected")
 
 
 Found = list[tuple[Sensor, SensorCalibration]]
@@ -131,9 +131,18 @@ def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy =
         who = (
             "Every scale factor is"
             if len(alike) == len(ratios)
-            else say("The scale factor of {alike} is", alike=joined(", ", alike))
+            else say("The scale factor of {sensors} is", sensors=joined(", ", alike))
         )
-        yield Doubt(say("{who} {ratio} times its {what}", who=who, ratio=f"{ratio:.4g}", what=what), slip, correction)
+        yield Doubt(
+            say(
+                "{subject_and_verb} {ratio} times its {reference}",
+                subject_and_verb=who,
+                ratio=f"{ratio:.4g}",
+                reference=what,
+            ),
+            slip,
+            correction,
+        )
 
 
 def _alike(ratios: dict[str, float]) -> Iterator[tuple[str, ...]]:
@@ -152,15 +161,15 @@ def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, 
     """What makes such a ratio, and what takes it back."""
     for factor in THOUSANDS:
         if factor / LIKE < ratio < factor * LIKE:
-            slip = "the readings are in another unit than the file says, such as mV for V"
+            slip = "the readings are not in the unit that the file states, such as mV instead of V"
             return slip, Correction(remedy, sensors, 1 / factor)
     if remedy is Remedy.BOTH:
-        return "unit or sensor is another one than the file says", None
-    for factors, slip in ((IN_G, "g and m/s² were taken for one another"), (IN_DEGREES, "degrees stand for radians")):
+        return "the unit or sensor is not the one in the file", None
+    for factors, slip in ((IN_G, "g and m/s² were confused"), (IN_DEGREES, "degrees instead of radians")):
         for factor in factors:
             if factor / LIKE < ratio < factor * LIKE:
                 return say("{slip} in the nominal scale factor", slip=slip), Correction(Remedy.NOMINAL, sensors, factor)
-    return "unit, sensor or nominal scale factor is another one than the file says", None
+    return "the unit, sensor or nominal scale factor is not the one in the file", None
 
 
 def _scales(sensors: Sequence[SensorCalibration]) -> dict[str, float]:
@@ -179,7 +188,7 @@ def _of_axes(found: Found) -> Iterator[Doubt]:
             continue
         if -(axis @ nominal[name]) > NEAR:
             yield Doubt(
-                say("{name} reads backwards", name=name),
+                say("{name} has the wrong sign", name=name),
                 "its sign is reversed",
                 Correction(Remedy.READINGS, (name,), -1.0),
             )
@@ -187,15 +196,19 @@ def _of_axes(found: Found) -> Iterator[Doubt]:
             done |= {name, other}
             pair = Correction(Remedy.EXCHANGE, (name, other))
             yield Doubt(
-                say("{name} feels along the axis of {other}, and {other} along that of {name}", name=name, other=other),
+                say(
+                    "{name} measures along the axis of {other}, and {other} along that of {name}",
+                    name=name,
+                    other=other,
+                ),
                 EXCHANGED,
                 pair,
             )
         else:
             angle = np.degrees(np.arccos(np.clip(axis @ nominal[name], -1, 1)))
             yield Doubt(
-                say("{name} feels {angle}° from its nominal axis", name=name, angle=f"{angle:.0f}"),
-                "nominal axis, mounting or channel is wrong",
+                say("{name} measures {angle}° away from its nominal axis", name=name, angle=f"{angle:.0f}"),
+                "the nominal axis, mounting or channel is wrong",
             )
 
 

@@ -1,19 +1,31 @@
-"""A unit's accepted sessions as the derivation sees them, and what they tell of flags."""
+"""A unit's accepted sessions as the derivation sees them, what they tell of flags, and what a unit may be used for."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime
 from typing import Any
 
-from service.flags.records import Concern
+from pydantic import computed_field
+
+from estimator.message import joined
+from service.flags.records import Concern, Matter
 from service.fleet.condition import UnitSummary
+from service.judging.use import Use
 from service.judging.words import AGAIN, verdict_in_words
-from service.sessions.decision import Judged
+from service.kit.answer import Hidden, answer
+from service.outlook.records import Action
+from service.sessions.decision import Judged, Verdict
 from service.sessions.doubt import DoubtKind as Doubt
 from service.sessions.doubt import Reservation
 from service.sessions.records import UNWEIGHED, Receipt, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import LOOKING, QUESTIONED, condition_of
+from service.stands.records import StandCertificate
+
+Key = tuple[str, str]
+"""Matter and place of a flag."""
+Moment = tuple[datetime, str]
+"""When a session was measured, and its id: the order of records."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +81,23 @@ class Told:
 
 
 @dataclass(frozen=True)
+class ToldSession:
+    """What an accepted session tells of flags."""
+
+    at: Moment
+    verdict: Told | None
+    """By its verdict; None where that was not kept."""
+    diagnosis: Told | None
+    """By its diagnosis; None where there is none. Of a session that could not decide it clears nothing."""
+    is_old: bool = False
+    """Whether it was judged before it was kept what it tells."""
+    unit: str = ""
+    """Serial number, where several units tell."""
+    block: str = ""
+    """The same of the kind of block."""
+
+
+@dataclass(frozen=True)
 class Decided:
     """What was decided of a session under its model revision."""
 
@@ -104,3 +133,94 @@ def said(record: StoredSession | Receipt | UnitSummary) -> dict[str, Any]:
     if not isinstance(record, UnitSummary) and record.state is RecordState.QUESTIONED:
         words = QUESTIONED.word
     return {**vars(record), "reservations": (STILL_LOOKING,) if known is None else known, "said": words}
+
+
+@dataclass(frozen=True)
+class OpenFlag:
+    """An open flag of a unit, in short."""
+
+    id: int
+    matter: Matter
+    severity: int
+    place: str
+    summary: str
+
+
+@dataclass(frozen=True)
+class UseFacts:
+    """Everything that decides what a unit may be used for."""
+
+    unit: UnitSummary
+    is_calibration: bool = True
+    """Whether its latest session calibrates every sensor, so that a reference of it can stand alone."""
+    serviced_at: datetime | None = None
+    """Its last service, up to now."""
+    action: Action | None = None
+    """What its outlook says that it needs next; None without an outlook."""
+    flags: tuple[OpenFlag, ...] = ()
+    """The gravest first."""
+    questioned_at: datetime | None = None
+    """The latest session after the one that the answer rests on that waits for an engineer."""
+    uncertain: tuple[str, ...] = ()
+    """Parameters that a reference leaves uncertain by more than their tolerance."""
+    expired: StandCertificate | None = None
+    """Of the stand, where it had expired on the day of measurement."""
+    not_diagnosed: str = ""
+    """Why the diagnosis of its latest session failed; empty where it did not."""
+    is_waiting: bool = False
+    """Whether its latest session is to be judged again."""
+    correction: str | None = None
+    """Its latest calibration of every sensor since the last service."""
+
+
+@answer
+@dataclass(frozen=True)
+class Usable:
+    """Whether a unit may be used now, and why."""
+
+    usable: bool
+    """In doubt it is false."""
+    use: Use
+    """`yes`, `with-reservation`, `no`, or `not-known-yet` while its verdict or dates are being worked out."""
+    why: str
+    """In one sentence."""
+    action: str
+    """What to do, as a clause; empty where nothing is to be done."""
+    reasons: tuple[str, ...]
+    """Everything that speaks against it; empty where it may be used."""
+    reservations: tuple[str, ...]
+    """What must be known although it does not forbid the use."""
+    until: datetime | None
+    """The next calibration is due then, UTC."""
+    verdict: Verdict | None
+    """Of the session that the answer rests on."""
+    session: str | None
+    """The latest judged one; null where there is none since the last service."""
+    correction: str | None
+    """Id of the session whose correction firmware applies; null where no session calibrates every sensor."""
+    as_of: datetime
+    """When it was asked, UTC."""
+    due_reason: Hidden[str] = ""
+    """The rule that set the date, or why there is none."""
+
+    @property
+    def is_overdue(self) -> bool:
+        """Whether the date has passed."""
+        return self.until is not None and self.until < self.as_of
+
+    @property
+    def due(self) -> datetime | None:
+        """The due date where it still counts: not where something else must be done first."""
+        return self.until if self.usable or self.is_overdue else None
+
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
+    @property
+    def reservation(self) -> str:
+        """The same as one text; empty where there is none."""
+        return joined(" ", self.reservations)
+
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
+    @property
+    def next_calibration(self) -> date | None:
+        """The day of it."""
+        return None if self.until is None else self.until.date()

@@ -96,7 +96,7 @@ def known_unit(
 
 
 @dataclass(frozen=True)
-class Reference:
+class EpochReference:
     """What a session of an epoch is judged against."""
 
     session: str | None
@@ -105,10 +105,10 @@ class Reference:
     """Of the service that the epoch began with; None in a unit's first epoch."""
 
 
-def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> Reference:
+def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> EpochReference:
     """The reference for a session of a block of the unit, by what was measured and when."""
     since, until = Services(store).around(unit, at)
-    return Reference(Sessions(store).reference(unit, block, since, until, alike(programme)), since)
+    return EpochReference(Sessions(store).reference(unit, block, since, until, alike(programme)), since)
 
 
 def alike(programme: str) -> tuple[str, ...]:
@@ -130,10 +130,10 @@ def calibration_to_compare_with(store: Store, recording: Checked) -> Calibration
 
 def _uncalibrated(unit: str, since: datetime | None) -> ScheduleError:
     """That the unit has no calibration, and what to do first."""
-    service = "" if since is None else say(" since its service of {since}", since=f"{since:%Y-%m-%d}")
+    service = "" if since is None else say(" since its service of {date}", date=f"{since:%Y-%m-%d}")
     message = say(
-        "{unit} has no calibration yet{service}, and a recording in service is compared with "
-        "one: upload a calibration session of the unit first, then this file again",
+        "{unit} has no calibration{service} to compare a recording in service with: upload a calibration session "
+        "first, then this file again",
         unit=unit,
         service=service,
     )

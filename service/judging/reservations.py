@@ -15,9 +15,10 @@ from estimator.diagnosis import Finding
 from estimator.diagnosis.explanation.accepted import calibrate_extended
 from estimator.diagnosis.explanation.temperature import LEAST_DIFFERENCE, OF_TEMPERATURE
 from estimator.diagnosis.results import NoiseScale, Structure
-from estimator.health.detection import LEVEL, Warmth, warmed
+from estimator.health.detection import LEVEL, warmed
 from estimator.health.fits import Readings
 from estimator.health.prognosis import Track
+from estimator.health.warmth import Warmth
 from estimator.results import Calibration, Residuals
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.diagnosis.words.causes import UNKNOWN_CAUSE
@@ -94,13 +95,13 @@ def covered_by(session: StoredSession, reference: Residuals, earlier: Iterable[S
 def worth_of(covered: Covered) -> tuple[Size, ...] | None:
     """What the step in temperature is worth in every parameter, by the earlier sessions; None where they do not tell.
 
-    It goes on in a straight line beyond the temperatures that they span.
+    The law, a line or a parabola, is taken to go on beyond the temperatures that they span.
     """
     known = histories(covered.changes, covered.references)
     laws = [_law(track) for track in known.tracks]
     if not laws or any(law is None for law in laws):
         return None
-    step = abs(covered.now - covered.reference)
+    step = (covered.reference, covered.now)
     each = zip(known.keys, known.tracks, laws, strict=True)
     return tuple(_size(key, track.tolerance, law, step) for key, track, law in each if law is not None)
 
@@ -113,9 +114,10 @@ def _law(track: Track) -> Warmth | None:
     return warmed(changes, 0.0, track.dof, track.temperature, LEVEL).warmth
 
 
-def _size(key: TrackKey, tolerance: float, law: Warmth, step: float) -> Size:
-    value, sigma = float(np.linalg.norm(law.coefficient)), float(law.sigma.max())
-    return Size((key.sensor,), key.kind, key.parameter, value * step * tolerance, sigma * step * tolerance, tolerance)
+def _size(key: TrackKey, tolerance: float, law: Warmth, step: tuple[float, float]) -> Size:
+    worth, sigma = law.between(*step)
+    value, u = float(np.linalg.norm(worth)) * tolerance, float(sigma.max()) * tolerance
+    return Size((key.sensor,), key.kind, key.parameter, value, u, tolerance)
 
 
 MOST_ALTERNATIVES = 3
@@ -236,7 +238,7 @@ class Doubted:
 def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
     """Everything that the verdict is said with, by how much it matters; empty where it is plain."""
     found = (
-        *_of_temperature(session),
+        *_of_temperature(session.temperatures, session.worth),
         *_of_findings(session),
         *_of_models(session),
         *_of_structures(session),
@@ -258,12 +260,22 @@ def _of_findings(session: Doubted) -> Iterator[Reservation]:
             yield _sized(plain, size)
 
 
-def _of_temperature(session: Doubted) -> Iterator[Reservation]:
+def reservations_at(temperatures: Covered | None) -> tuple[Reservation, ...]:
+    """Of a session that no causes are looked for in, such as a recording in service."""
+    return tuple(_of_temperature(temperatures, worth_at(temperatures)))
+
+
+def worth_at(temperatures: Covered | None) -> tuple[Size, ...] | None:
+    """What a step out of the temperatures that a unit covers is worth in every parameter; None where there is none, or
+    where that is not known."""
+    return None if temperatures is None or not temperatures.is_far else worth_of(temperatures)
+
+
+def _of_temperature(seen: Covered | None, each: tuple[Size, ...] | None) -> Iterator[Reservation]:
     """Where the session lies outside what its unit covers, unless that is known to be worth little."""
-    seen = session.temperatures
     if seen is None or not seen.is_far:
         return
-    worth = None if session.worth is None else max(session.worth, key=_at_most)
+    worth = None if each is None else max(each, key=_at_most)
     if worth is not None and _at_most(worth) <= WORTH_SAYING:
         return
     known = "" if worth is None else worth_in(worth.parameter, worth.sensors[0], _in_words(worth))

@@ -43,4 +43,4 @@ def parity_view(result: ParityResult) -> ParityView:
 
 
 def _limit(kind: str, parameter: str, sight: Sight) -> str:
-    return "not seen" if sight.detectable is None else in_words(kind, parameter, sight.detectable)
+    return "not observed" if sight.detectable is None else in_words(kind, parameter, sight.detectable)

@@ -7,6 +7,7 @@ from uuid import uuid4
 
 from sqlalchemy import (
     BindParameter,
+    ColumnElement,
     CompoundSelect,
     Select,
     Table,
@@ -27,15 +28,16 @@ from estimator.message import with_messages
 from service.diagnosis.tables import DiagnosisRow
 from service.flags.records import Concern, FlagState, Matter, NoticeKind
 from service.flags.tables import FlagRow, NoticeRow
-from service.judging.records import Counted, Decided, Told, UnitRecords
+from service.judging.records import Counted, Decided, Key, Moment, Told, ToldSession, UnitRecords
 from service.queue.records import WorkKind
 from service.queue.tables import WorkRow
-from service.sessions.decision import Judged
+from service.sessions.decision import Judged, Verdict
 from service.sessions.records import UNWEIGHED
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.store import NOT_JUDGED, is_waiting, worst_columns
 from service.sessions.tables import CalibrationRow, CommonMotionRow, DecisionRow, ReferenceChoiceRow, SessionRow
+from service.stands.tables import StandRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.units.tables import ServiceRow, UnitRow
@@ -76,12 +78,6 @@ def unit_records(transaction: Session, unit: int) -> UnitRecords:
         diagnosed={row.id: row.at for row in sessions if row.diagnosed},
         waiting={row.id: row.at for row in sessions if row.waiting},
     )
-
-
-Key = tuple[str, str]
-"""Matter and place of a flag."""
-Moment = tuple[datetime, str]
-"""When a session was measured, and its id: the order of a unit's records."""
 
 
 class Derivations(Queries):
@@ -168,25 +164,38 @@ class Derivations(Queries):
         self._session.execute(own.values(tells=told_to_dict(told)))
         self._session.expire_all()
 
-    def told(self, unit: int) -> tuple[tuple[Moment, Told | None, Told | None, bool], ...]:
-        """What every accepted session of a unit tells, in order of time: by its verdict and by its diagnosis.
-
-        None where that was not kept or is not there; last whether the session was judged before it was kept.
-        """
+    def told(self, unit: int) -> tuple[ToldSession, ...]:
+        """What every accepted session of a unit tells, in order of time."""
         return tuple(
-            ((at, id), _told(verdict), _told(diagnosis), basis is None)
-            for at, id, verdict, diagnosis, basis in self._session.execute(_TOLD, {"unit": unit})
+            ToldSession((at, id), _told(verdict), _found(diagnosis, is_undecided), basis is None)
+            for at, id, verdict, diagnosis, is_undecided, basis in self._session.execute(_TOLD, {"unit": unit})
+        )
+
+    def told_of_stand(self, stand: str) -> tuple[ToldSession, ...]:
+        """What the newest accepted sessions on a stand tell by their diagnoses, oldest first."""
+        found = self._session.execute(_TOLD_OF_STAND, {"stand": stand}).all()
+        return tuple(
+            ToldSession((at, id), None, _found(diagnosis, is_undecided), unit=unit, block=block)
+            for at, id, diagnosis, is_undecided, unit, block in reversed(found)
         )
 
     def settled(self, unit: int, by_service: str) -> dict[Key, Moment]:
         """The last session that a flag spoke of when a person resolved it, by matter and place."""
-        own = (FlagRow.unit_id == unit, FlagRow.state == FlagState.RESOLVED)
+        return self._settled(by_service, FlagRow.unit_id == unit)
+
+    def settled_of_stand(self, stand: str, by_service: str) -> Moment | None:
+        """The same of flags that sessions on a stand raised on it."""
+        own = self._settled(by_service, FlagRow.matter == Matter.STAND, FlagRow.place == stand)
+        return own.get((Matter.STAND, stand))
+
+    def _settled(self, by_service: str, *own: ColumnElement[bool]) -> dict[Key, Moment]:
         by_person = select(NoticeRow.flag_id).where(NoticeRow.kind == NoticeKind.RESOLVED, NoticeRow.who != by_service)
         query = select(FlagRow.matter, FlagRow.place, SessionRow.started_at, SessionRow.id).join(
             SessionRow, SessionRow.id == FlagRow.session_id
         )
+        query = query.where(*own, FlagRow.state == FlagState.RESOLVED, FlagRow.id.in_(by_person))
         found: dict[Key, Moment] = {}
-        for matter, place, at, id in self._session.execute(query.where(*own, FlagRow.id.in_(by_person))):
+        for matter, place, at, id in self._session.execute(query):
             found[matter, place] = max(found.get((matter, place), (at, id)), (at, id))
         return found
 
@@ -220,11 +229,23 @@ def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Upd
     return update(own).values({name: bindparam(f"new_{name}") for name in names})
 
 
+MOST_OF_STAND = 500
+"""Sessions, the newest, that tell of a stand: of months where it is used every hour."""
+_IS_UNDECIDED = (SessionRow.verdict == Verdict.UNDECIDABLE) & ~SessionRow.is_reference
 _TOLD = (
-    select(SessionRow.started_at, SessionRow.id, SessionRow.tells, DiagnosisRow.tells, SessionRow.basis)
+    select(SessionRow.started_at, SessionRow.id, SessionRow.tells, DiagnosisRow.tells, _IS_UNDECIDED, SessionRow.basis)
     .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
     .where(SessionRow.unit_id == bindparam("unit"), IS_ACCEPTED)
     .order_by(SessionRow.started_at, SessionRow.id)
+)
+_TOLD_OF_STAND = (
+    select(SessionRow.started_at, SessionRow.id, DiagnosisRow.tells, _IS_UNDECIDED, UnitRow.serial, SessionRow.block)
+    .join(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+    .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+    .join(StandRow, StandRow.id == SessionRow.stand_id)
+    .where(StandRow.name == bindparam("stand"), IS_ACCEPTED)
+    .order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
+    .limit(MOST_OF_STAND)
 )
 _SUMMARY = ("verdict", "reason", "worst_sensor", "worst_parameter", "margin")
 _JUDGED = _changed(SessionRow, *_SUMMARY, "basis", "tells").where(SessionRow.id == bindparam("session"))
@@ -264,6 +285,12 @@ def told_to_dict(told: Told) -> dict[str, list[list[Any]]]:
     concerns = [[c.matter.value, c.place, c.severity, c.summary] for c in told.concerns]
     document: dict[str, list[list[Any]]] = STORED.written({"concerns": concerns, "clear": told.clear})
     return document
+
+
+def _found(document: dict[str, list[list[Any]]] | None, is_undecided: bool) -> Told | None:
+    """By a diagnosis: a session too coarse to decide has not seen that something is gone."""
+    told = _told(document)
+    return told if told is None or not is_undecided else Told(told.concerns, ())
 
 
 def _told(document: dict[str, list[list[Any]]] | None) -> Told | None:

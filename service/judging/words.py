@@ -30,16 +30,16 @@ from service.sessions.words.conditions import Condition, but, condition_of
 
 REPEAT = "repeat the session"
 CORRECT = "correct the file and upload it again"
-STAND = "put the stand right and repeat the session"
-FIXTURE = "seat the block again and repeat the session"
-RESTATE = "state the errors that the readings have and upload the file again"
+STAND = "correct the stand and repeat the session"
+FIXTURE = "remount the block and repeat the session"
+RESTATE = "state the true standard errors and upload the file again"
 ADD = "add positions"
-REPORT = "see what its diagnosis says"
+REPORT = "see its diagnosis"
 ADVICE = {"record": CORRECT, "stand": STAND, "fixture": FIXTURE}
 """By what a cause is of; of a sensor, a session is repeated first."""
-TOO_FEW = "it was not checked for causes, because it has too few positions"
+TOO_FEW = "causes were not checked because of too few positions"
 AGAIN = "ask again in some seconds"
-FAILED = "it was not checked for causes"
+FAILED = "causes were not checked"
 
 
 def advice_on_structure(structure: Structure) -> str:
@@ -54,32 +54,32 @@ def advice_on(cause: str) -> str:
 
 
 def named(finding: Finding, size: str) -> str:
-    """``the zero of A2 jumps once and stays (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
+    """``the bias of A2 has one step (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
     what = choice_of(finding) if finding.alternatives else finding.sentence
-    return say("{what}{size}", what=within(what), size=say(" ({size})", size=size) if size else "")
+    return say("{limit}{size}", limit=within(what), size=say(" ({size})", size=size) if size else "")
 
 
 def unexplained(structures: Sequence[Structure], size: str) -> str:
-    """``something is there in A3 that no known cause explains (20 µg, tolerance 50 µg)``."""
+    """``an effect in A3 that no known cause explains (20 µg, tolerance 50 µg)``."""
     first = structures[0]
     if first.of_record:
         return within(MIXED_UP)
     where = say(" in {sensors}", sensors=joined(", ", first.sensors)) if first.sensors else " in all sensors"
-    return say("something is there{where} that no known cause explains ({size})", where=where, size=size)
+    return say("an effect{where} that no known cause explains ({size})", where=where, size=size)
 
 
 def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *, named: bool = False) -> str:
-    """``it would be unfit with warm up (A2) in the model``; without a cause: if none of those named acted.
+    """``Unfit with warm up (A2) corrected``; without a cause: if none of those named acted.
 
     ``named``: the causes are those that the diagnosis names.
     """
-    word = uncapitalised(condition_of(verdict).word)
+    word = condition_of(verdict).word
     if named:
-        return say("it would be {word} with what was found in the model", word=word)
+        return say("{word} with these effects corrected", word=word)
     if not causes:
-        return say("it would be {word} if what acts were none of the known causes", word=word)
+        return say("{word} if the cause is none of the known ones", word=word)
     names = [cause_on(causes[0], sensors), *(cause_on(cause, ()) for cause in causes[1:])]
-    return say("it would be {word} with {names} in the model", word=word, names=joined(" and ", names))
+    return say("{word} with {names} corrected", word=word, names=joined(" and ", names))
 
 
 def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], tolerance: float) -> str:
@@ -87,36 +87,31 @@ def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], t
     value, sigma = size
     measure = deviation_measure(kind, parameter, max(value, tolerance))
     allowed = say(
-        "tolerance {tolerance}{thin}{label}",
+        "tolerance {tolerance}{thin_space}{label}",
         tolerance=number(in_measure(tolerance, measure)),
-        thin=THIN,
+        thin_space=THIN,
         label=measure.label,
     )
     if sigma is None:
         return say(
-            "about {value}{thin}{label}, {allowed}",
+            "about {value}{thin_space}{label}, {tolerance}",
             value=number(float(f"{value * measure.factor:.2g}")),
-            thin=THIN,
+            thin_space=THIN,
             label=measure.label,
-            allowed=allowed,
+            tolerance=allowed,
         )
-    return say("{value}, {allowed}", value=measured(value, COVERAGE * sigma, measure), allowed=allowed)
+    return say("{value}, {tolerance}", value=measured(value, COVERAGE * sigma, measure), tolerance=allowed)
 
 
 def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
     """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
-    here, by, at = _degrees(now), _degrees(abs(outside)), _between(*covered)
-    if outside > 0:
-        away = say(
-            "it was measured at {here}, {by} above its reference and earlier sessions ({at})", here=here, by=by, at=at
-        )
-    else:
-        away = say(
-            "it was measured at {here}, {by} below its reference and earlier sessions ({at})", here=here, by=by, at=at
-        )
+    parts = {"temperature": _degrees(now), "difference": _degrees(abs(outside)), "earlier": _between(*covered)}
+    above = "it was measured at {temperature}, {difference} above its reference and earlier sessions ({earlier})"
+    below = "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})"
+    away = say(above if outside > 0 else below, **parts)
     if worth:
-        return say("{away}, and the temperature alone may be worth {worth}", away=away, worth=worth)
-    return say("{away}, and the temperature alone can make or hide a change", away=away)
+        return say("{away}; temperature alone may account for {worth}", away=away, worth=worth)
+    return say("{away}; temperature alone can cause or hide a change of unknown size", away=away)
 
 
 def worth_in(parameter: str, sensor: str, size: str) -> str:
@@ -147,16 +142,16 @@ def within(sentence: str) -> str:
     return uncapitalised(clause) if head[1:].islower() or len(head) == 1 else clause
 
 
-FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
-NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
+FIRST_SESSION = "First session of this unit: later sessions are judged against it."
+NEW_EPOCH = "First session after a service: later sessions are judged against it."
 CHOSEN = "Chosen as the reference: the unit's other sessions are judged against it."
 OPENINGS = {Opening.FIRST: FIRST_SESSION, Opening.SERVICE: NEW_EPOCH, Opening.CHOSEN: CHOSEN}
-NOTHING_JUDGED = "Nothing could be judged: no parameter of this session has a tolerance."
+NOTHING_JUDGED = "Not judged: no parameter of this session has a tolerance."
 ALL_PASS = "Every parameter is within its tolerance by more than U; closest to it: {closest}."
 
 
 def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
-    """A verdict as it is said wherever it stands: ``Fit, but the zero of A2 jumps once: repeat the session``."""
+    """A verdict as it is said wherever it stands: ``Fit, but the bias of A2 has one step: repeat the session``."""
     return say("{word}{but}", word=condition.word, but=but(reservations)) if reservations != () else condition.word
 
 
@@ -190,36 +185,36 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
         return say(
             ALL_PASS,
             closest=say(
-                "{place}, moved {moved} (U {spread}) of {allowed} allowed",
+                "{place}, changed by {change} (U {spread}), tolerance ±{tolerance}",
                 place=place,
-                moved=moved,
+                change=moved,
                 spread=spread,
-                allowed=allowed,
+                tolerance=allowed,
             ),
         )
     if worst.verdict is Verdict.FAIL:
         return say(
-            "{place} moved {moved} (U {spread}) beyond the tolerance of {allowed}.",
+            "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}.",
             place=place,
-            moved=moved,
+            change=moved,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     if worst.verdict is Verdict.CONDITIONAL_FAIL:
         return say(
-            "{place} moved {moved} (U {spread}): beyond the tolerance of {allowed}, by less than U.",
+            "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance} by less than U.",
             place=place,
-            moved=moved,
+            change=moved,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     if worst.verdict is Verdict.CONDITIONAL_PASS:
         return say(
-            "{place} moved {moved} (U {spread}): within the tolerance of {allowed}, by less than U.",
+            "{place} changed by {change} (U {spread}), within the tolerance of ±{tolerance} by less than U.",
             place=place,
-            moved=moved,
+            change=moved,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     return _too_uncertain(place, moved, spread, allowed, worst)
 
@@ -227,19 +222,19 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
 def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
     if worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
-            "{place} is known to U {spread} only, more than its tolerance of {allowed}: measure more "
-            "positions or better averages, or set a tolerance that can be decided.",
+            "{place} has U {spread}, more than its tolerance of ±{tolerance}: measure more positions, average longer, "
+            "or set a wider tolerance.",
             place=place,
             spread=spread,
-            allowed=allowed,
+            tolerance=allowed,
         )
     return say(
-        "{place} moved {moved} (U {spread}), beyond the tolerance of {allowed} but no more than "
-        "noise makes the largest of so many numbers: measure again.",
+        "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}, but noise alone can do this "
+        "to one of so many parameters: measure again.",
         place=place,
-        moved=moved,
+        change=moved,
         spread=spread,
-        allowed=allowed,
+        tolerance=allowed,
     )
 
 
@@ -248,9 +243,9 @@ def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     named = joined(", ", sensors[:6]) + (
         say(" and {sensors} more", sensors=len(sensors) - 6) if len(sensors) > 6 else ""
     )
-    missing = "has none in the reference session to compare with"
+    missing = "cannot be compared: the reference session does not have it"
     if worst.value is None:
-        missing = "is not observable in this session: add the positions that show it"
+        missing = "is not observable in this session: add positions"
     return say("{worst} of {named} {missing}.", worst=capitalised(_name(worst)), named=named, missing=missing)
 
 
@@ -262,10 +257,10 @@ def _words(decision: Decision, si: float, *, signed: bool = False) -> str:
     return in_words(decision.kind, decision.parameter, si, signed=signed)
 
 
-ALIKE = "with one another as they did at the calibration"
+ALIKE = "with one another as at the calibration"
 SAME = say("The sensors agree {alike}", alike=ALIKE)
 CHANGED = say("The sensors do not agree {alike}", alike=ALIKE)
-TOO_MUCH_MOTION = "Moving too much to tell"
+TOO_MUCH_MOTION = "Too much motion for a decision"
 REST = 15
 """Blocks at rest that are asked for: twelve are needed, and the first and the last are never whole."""
 MOSTLY_MOTION = 0.5
@@ -281,18 +276,18 @@ def recording_in_words(result: ParityResult, decisions: tuple[Decision, ...]) ->
     found = found_in_words(result)
     unseen = [d for d in decisions if d.verdict is Verdict.UNDECIDABLE]
     if not decisions:
-        return say("{found}. {nothing_judged}", found=found, nothing_judged=NOTHING_JUDGED)
+        return say("{result}. {nothing_judged}", result=found, nothing_judged=NOTHING_JUDGED)
     if result.detected:
-        return say("{found}.", found=found)
+        return say("{result}.", result=found)
     if not unseen:
-        allowed = ", with what motion does allowed for" if result.moving else ""
+        allowed = ", motion taken into account" if result.moving else ""
         return say(
-            "{same}{allowed}: a change as large as any tolerance would have been seen.", same=SAME, allowed=allowed
+            "{same}{allowed}: a change as large as any tolerance would have been detected.", same=SAME, allowed=allowed
         )
     return (
-        say("{found}.", found=found)
+        say("{result}.", result=found)
         if result.moving
-        else say("{found}, but {unseen}.", found=found, unseen=_limit(unseen, result))
+        else say("{result}, but {unseen}.", result=found, unseen=_limit(unseen, result))
     )
 
 
@@ -300,8 +295,8 @@ def found_in_words(result: ParityResult) -> str:
     """What was found, without its full stop."""
     if result.moving:
         return say(
-            "{too_much_motion}: the sensors disagree, and lever arms, delays between channels or "
-            "vibration could be why; {result}",
+            "{too_much_motion}: the sensors disagree, possibly because of lever arms, delays between channels or "
+            "vibration; {result}",
             too_much_motion=TOO_MUCH_MOTION,
             result=stillness(result),
         )
@@ -310,18 +305,17 @@ def found_in_words(result: ParityResult) -> str:
     best = result.candidates[0]
     if not result.explained:
         return say(
-            "A change that no single sensor explains; {sensor} explains most of it. Calibrate the "
-            "unit before it is used",
+            "No single sensor explains the change; {sensor} explains most of it. Calibrate the unit before use",
             sensor=best.sensor,
         )
     if result.isolated is not None:
         moved = joined(" or ", (_moved(c, result.kind) for c in result.candidates))
         said = clipped_in_words(result, best.sensor)
         return say(
-            "{sensor} has changed since the calibration: {moved}; the others agree{said}",
+            "{sensor} has changed since the calibration: {change}; the others agree{notes}",
             sensor=best.sensor,
-            moved=moved,
-            said=said and say("; {said}", said=said),
+            change=moved,
+            notes=said and say("; {notes}", notes=said),
         )
     listed = joined(
         " or ",
@@ -331,7 +325,7 @@ def found_in_words(result: ParityResult) -> str:
         ),
     )
     return say(
-        "Something has changed since the calibration, and this recording cannot tell what: {listed}", listed=listed
+        "A parameter has changed since the calibration; this recording cannot tell which: {listed}", listed=listed
     )
 
 
@@ -339,8 +333,8 @@ def stillness(result: ParityResult) -> str:
     """What to do so that motion does not hide a change."""
     seconds = REST * (result.block_seconds or 1.0)
     return say(
-        "hold the unit still for {seconds} s while recording, or state where its sensors sit "
-        "(position_m) and record its gyros beside them",
+        "hold the unit still for {seconds} s while recording, or state where its sensors are (position_m) and record "
+        "its gyros too",
         seconds=f"{seconds:.0f}",
     )
 
@@ -351,9 +345,7 @@ def clipped_in_words(result: ParityResult, sensor: str) -> str:
     return (
         ""
         if share is None
-        else say(
-            "{sensor} stood at the end of its range in {share} of the samples", sensor=sensor, share=percent(share)
-        )
+        else say("{sensor} was at the end of its range in {share} of the samples", sensor=sensor, share=percent(share))
     )
 
 
@@ -371,9 +363,9 @@ def _moved(candidate: Candidate, kind: str) -> str:
     moved = in_words(kind, candidate.kind, size, signed=candidate.kind != "axis")
     sigma = max(candidate.sigma)
     return say(
-        "{parameter} {moved} (U {expanded})",
+        "{parameter} {change} (U {expanded})",
         parameter=PARAMETER_NAMES[candidate.kind],
-        moved=moved,
+        change=moved,
         expanded=in_words(kind, candidate.kind, COVERAGE * sigma),
     )
 
@@ -384,17 +376,18 @@ def _limit(unseen: list[Decision], result: ParityResult) -> str:
     if blind:
         names = {PARAMETER_NAMES[d.parameter] for d in blind}
         return say(
-            "{names} cannot be seen without motion: turn the unit while recording", names=joined(" and ", sorted(names))
+            "{names} cannot be observed without motion: turn the unit while recording",
+            names=joined(" and ", sorted(names)),
         )
     worst = max(unseen, key=lambda d: (d.critical or 0.0) / d.tolerance)
     needed = in_words(worst.kind, worst.parameter, worst.critical or 0.0)
     allowed = in_words(worst.kind, worst.parameter, worst.tolerance)
-    longer = "record longer, with slower turns, or set a tolerance that can be decided"
+    longer = "record longer, turn more slowly, or set a wider tolerance"
     return say(
-        "{sensor} {parameter_names} must change by {needed} to be seen, and {allowed} are allowed: {longer}",
+        "a change of {sensor} {parameter_names} is detected from {change} on, tolerance ±{tolerance}: {longer}",
         sensor=worst.sensor,
         parameter_names=PARAMETER_NAMES[worst.parameter],
-        needed=needed,
-        allowed=allowed,
+        change=needed,
+        tolerance=allowed,
         longer=stillness(result) if result.motion_share > MOSTLY_MOTION else longer,
     )

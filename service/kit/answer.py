@@ -5,9 +5,11 @@ from dataclasses import is_dataclass
 from functools import cache
 from inspect import getsource
 from itertools import pairwise
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, TypeVar
 
 from pydantic import Field
+
+from estimator.json_object import Json
 
 T = TypeVar("T")
 Hidden = Annotated[T, Field(exclude=True)]
@@ -20,9 +22,9 @@ def answer(record: type[T]) -> type[T]:
     return record
 
 
-def _describe(schema: dict[str, Any], record: type) -> None:
+def _describe(schema: Json, record: type) -> None:
     """An answer holds every field, those with a default too."""
-    fields: dict[str, dict[str, Any]] = schema.get("properties", {})
+    fields: dict[str, Json] = schema.get("properties", {})
     texts = {name: text for base in reversed(record.__mro__) for name, text in _texts(base).items()}
     for name, field in fields.items():
         for name_of_input in ("default", "readOnly"):

@@ -1,4 +1,4 @@
-"""Work beside the requests that has failed."""
+"""Background work that has failed."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -12,11 +12,11 @@ AT_FAULT = "the program failed at it: see the log"
 
 def too_long(seconds: float) -> str:
     """Of what was ended because it was not done in time."""
-    return say("it was not done within {seconds} s, the longest that it may take", seconds=f"{seconds:g}")
+    return say("it was not finished within the limit of {seconds} s", seconds=f"{seconds:g}")
 
 
 class FailedKind(StrEnum):
-    """What is done beside the requests."""
+    """What is done in the background."""
 
     DIAGNOSIS = "diagnosis"
     """Of a session."""
@@ -39,7 +39,7 @@ class FailedKind(StrEnum):
 @answer
 @dataclass(frozen=True)
 class Failed:
-    """One piece of work beside the requests that has failed."""
+    """One piece of background work that has failed."""
 
     kind: FailedKind
     """What is done."""
@@ -50,12 +50,12 @@ class Failed:
 
 
 UNIT = (
-    "Its dates and verdicts could not be worked out with its latest records: {why}. The administrator must act: see "
+    "Its dates and verdicts could not be computed with its latest records: {why}. The administrator must act: see "
     "Failed work on the page Jobs, and the log."
 )
 SESSION = "Its diagnosis failed: {why}. The administrator must act: see Failed work on the page Jobs, and the log."
 GROUP = (
-    "What these sessions show together could not be worked out: {why}. The administrator must act: see Failed work on "
+    "What these sessions show together could not be computed: {why}. The administrator must act: see Failed work on "
     "the page Jobs, and the log."
 )
 NAMES = {
@@ -72,7 +72,7 @@ NAMES = {
 
 def with_last_try(text: str, why: str) -> str:
     """What was given up, and how its last try ended where that is known."""
-    return say("{text} The last try: {why}.", text=text, why=without_stop(why)) if why else text
+    return say("{failure} The last try: {reason}.", failure=text, reason=without_stop(why)) if why else text
 
 
 def unit_failed(reason: str) -> str:

@@ -1,4 +1,4 @@
-"""The boundary of work beside the requests: what fails is logged, counted and tried again later, and the rest goes on.
+"""The boundary of work in the background: what fails is logged, counted and tried again later, and the rest goes on.
 
 What an upload or a store can do is foreseen, and said in words where it happens. Everything else is a fault of the
 program, and only here is it caught: logged with its traceback and with what it was at, so that whoever gave the work

@@ -50,7 +50,7 @@ class Limits:
     in_flight: int = 4
     """Large uploads that are received or worked on at once; others are asked back."""
     work: float = 600.0
-    """Seconds that one piece of work beside the requests may take; the largest diagnosis takes tens of them."""
+    """Seconds that one piece of work in the background may take; the largest diagnosis takes tens of them."""
     free: int = 256 * MEBIBYTE
     """Bytes that the disk of uploaded files keeps: a database on it needs room to close what is open."""
 
@@ -109,13 +109,13 @@ def check_table(filename: str, rows: int, columns: int) -> None:
     if rows > most.rows:
         raise refusal(
             filename,
-            say("has {rows} rows; at most {rows2} can be read, so average or split it", rows=rows, rows2=most.rows),
+            say("has {rows} rows; at most {limit} can be read, so average or split it", rows=rows, limit=most.rows),
             "table",
         )
     if columns > most.columns:
         raise refusal(
             filename,
-            say("has {columns} columns; at most {columns2} can be read", columns=columns, columns2=most.columns),
+            say("has {columns} columns; at most {limit} can be read", columns=columns, limit=most.columns),
             "table",
         )
     if rows * columns > most.cells:

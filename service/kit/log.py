@@ -34,7 +34,7 @@ log: BoundLogger = structlog.wrap_logger(
 
 
 def request_id() -> str | None:
-    """The id of the request that is being answered; None beside the requests."""
+    """The id of the request that is being answered; None in the background."""
     found: str | None = structlog.contextvars.get_contextvars().get("request_id")
     return found
 

@@ -177,9 +177,9 @@ def coverage_in_words(calibration: Calibration, k: float) -> str:
         return f"k = {number(k)}"
     most, least = (coverage_factor(k, dof) for dof in (min(dofs), max(dofs)))
     told = _range(min(dofs), max(dofs), 0)
-    degrees = "one effective degree" if told == "1" else say("{told} effective degrees", told=told)
+    degrees = "one effective degree" if told == "1" else say("{number} effective degrees", number=told)
     return say(
-        "k = {least}, by Student's t: the readings tell their noise to {degrees} of freedom",
+        "k = {least}, by Student's t: the noise is estimated with {degrees} of freedom",
         least=_range(least, most, 2),
         degrees=degrees,
     )

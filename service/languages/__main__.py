@@ -1,4 +1,4 @@
-"""`make words`: brings the catalogues up to date with the sources and lists what needs words."""
+"""`make words`: updates the catalogues from the sources and lists untranslated messages."""
 
 import sys
 

@@ -12,31 +12,32 @@ from babel.messages.pofile import read_po
 
 from estimator.message import Message, filled
 from service.languages.charts import chart_in
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 from service.languages.language import Language
-from service.languages.time import TIME
+from service.languages.locale import LOCALE
+from service.languages.values import value_in
 
 FOLDER = Path(__file__).parent
 NAMED = frozenset(("unit", "serial", "subject", "stand", "operator", "login", "account", "customer", "filename", "who"))
-"""Places of what people named: a unit may be called as a word of ours."""
+"""Parts that are names given by people: a unit may be named like one of our words."""
 
 
 class Catalogue:
-    """What is said in a language."""
+    """Translations into one language."""
 
     def __init__(self, language: Language, stored: Catalog) -> None:
         self._stored = stored
         self._known = {texts[0]: forms_of(one) for one in stored if (texts := _texts(one.id)) and forms_of(one)}
-        self._time = TIME[language]
+        self._locale = LOCALE[language]
         self.plural = c2py(stored.plural_expr)
 
-    def forms(self, message: Entry) -> Sequence[str]:
-        """A message's translation, one text for every plural form; empty where it has none."""
-        found = self._stored.get(message.id) or self._stored.get(message.text)
-        return forms_of(found) if found else ()
+    def forms(self, message: MessageEntry) -> Sequence[str]:
+        """The translation of a message, one text for every plural form; empty where there is none."""
+        stored = self._stored.get(message.id) or self._stored.get(message.text)
+        return forms_of(stored) if stored else ()
 
     def say(self, text: str) -> str:
-        """A text that was made in English; what the catalogue does not have stays as it is."""
+        """The translation of an English text; unchanged where there is none."""
         if not isinstance(text, Message):
             return self._forms(text)[0]
         forms = self._forms(text.template)
@@ -44,30 +45,30 @@ class Catalogue:
         return filled(form, {name: part if name in NAMED else self.say(part) for name, part in text.parts.items()})
 
     def chart(self, definition: Any) -> Any:
-        """A chart's definition with its words in the language."""
-        return chart_in(definition, self.say, self._time)
+        """A chart's definition with translated texts."""
+        return chart_in(definition, self.say, self._locale)
 
     def _forms(self, english: str) -> Sequence[str]:
-        """Of a whole text or template, also where it begins as within a sentence, or has lost its full stop."""
+        """Of a whole text or template, also with another first letter or without its full stop."""
         if known := self._known.get(english):
             return known
-        turned = english[:1].swapcase() + english[1:]
-        if known := self._known.get(turned):
+        other_case = english[:1].swapcase() + english[1:]
+        if known := self._known.get(other_case):
             change = str.upper if english[0].isupper() else str.lower
             return [change(form[:1]) + form[1:] for form in known]
-        if not english.endswith(".") and (f"{english}." in self._known or f"{turned}." in self._known):
+        if not english.endswith(".") and (f"{english}." in self._known or f"{other_case}." in self._known):
             return [form.removesuffix(".") for form in self._forms(f"{english}.")]
-        return [english]
+        return [value_in(english, self.say)]
 
 
 def forms_of(stored: Stored) -> tuple[str, ...]:
-    """The translation, where it is whole."""
+    """The translation, where it is complete."""
     texts = _texts(stored.string)
     return texts if all(texts) else ()
 
 
 def _texts(text: object) -> tuple[str, ...]:
-    """Of one message, or of its forms; none of the head of the file."""
+    """Of one message, or of its forms; empty for the header of the file."""
     texts = text if isinstance(text, tuple | list) else (text,)
     return tuple(str(one) for one in texts) if texts != ("",) else ()
 

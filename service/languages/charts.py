@@ -1,32 +1,32 @@
-"""Charts in another language: what people read of a definition; fields, values and expressions stay."""
+"""Translation of charts: the texts of a definition; fields, values and expressions stay."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
 
 READ = frozenset(("title", "text", "description", "subtitle"))
-"""Keys of Vega-Lite under which a text stands that people read."""
+"""Keys of texts in Vega-Lite."""
 
 
-def chart_in(data: Any, say: Callable[[str], str], time: Mapping[str, Any]) -> Any:
-    """A whole definition, its axes of time in the language too; ``time`` is d3's locale of it."""
-    told = _part_in(data, say)
-    if isinstance(told, dict) and "config" in told:
-        told["config"] = told["config"] | {"locale": {"time": time}}
-    return told
+def chart_in(data: Any, say: Callable[[str], str], locale: Mapping[str, Any]) -> Any:
+    """A whole definition, its axes of time and numbers in the language too; ``locale`` as d3 wants it."""
+    chart = _part_in(data, say)
+    if isinstance(chart, dict) and "config" in chart:
+        chart["config"] = chart["config"] | {"locale": locale}
+    return chart
 
 
 def _part_in(data: Any, say: Callable[[str], str]) -> Any:
-    """A part of a definition with what people read of it said in another language."""
+    """A part of a definition with translated texts."""
     if isinstance(data, dict):
-        return {k: _said(v, say) if k in READ else _part_in(v, say) for k, v in data.items()}
+        return {k: _text_in(v, say) if k in READ else _part_in(v, say) for k, v in data.items()}
     if isinstance(data, list | tuple):
-        return [_part_in(one, say) for one in data]
+        return [_part_in(item, say) for item in data]
     return data
 
 
-def _said(value: Any, say: Callable[[str], str]) -> Any:
+def _text_in(value: Any, say: Callable[[str], str]) -> Any:
     if isinstance(value, str):
         return say(value)
-    if isinstance(value, list | tuple) and all(isinstance(one, str) for one in value):
-        return [say(one) for one in value]
+    if isinstance(value, list | tuple) and all(isinstance(line, str) for line in value):
+        return [say(line) for line in value]
     return _part_in(value, say)

@@ -1,23 +1,23 @@
-"""Documents in another language: every text of the data that a template is filled with."""
+"""Translation of documents: every text of the data of a template."""
 
 from collections.abc import Callable
 from typing import Any
 
-NOT_SAID = frozenset(
+UNTRANSLATED = frozenset(
     ("key", "shape", "unit", "serial", "unit_type", "notes", "sha256", "who", "number", "address", "code", "sealed_by")
 )
-"""Fields that name something for the template, or hold what people named or wrote."""
+"""Fields that are keys of the template, or hold names and texts of people."""
 VALUE, BY_SOMEBODY = "value", "is_written"
-"""Of a line of a paper: its value, and whether somebody wrote that."""
+"""Of a line of a paper: its value, and whether somebody wrote it."""
 
 
 def document_in(data: Any, say: Callable[[str], str]) -> Any:
-    """Plain dicts and lists with their texts said in another language."""
+    """Plain dicts and lists with translated texts."""
     match data:
         case str():
             return say(data)
         case dict():
-            kept = NOT_SAID | {VALUE} if data.get(BY_SOMEBODY) else NOT_SAID
+            kept = UNTRANSLATED | {VALUE} if data.get(BY_SOMEBODY) else UNTRANSLATED
             return {key: value if key in kept else document_in(value, say) for key, value in data.items()}
         case list():
             return [document_in(value, say) for value in data]

@@ -1,4 +1,4 @@
-"""A message: one sentence, heading or label as the sources have it, in English, with its places for values."""
+"""A message: one sentence, heading or label in the sources, in English, with its placeholders."""
 
 import re
 from dataclasses import dataclass
@@ -6,30 +6,30 @@ from dataclasses import dataclass
 from estimator.message import PLACE
 
 LETTERS = re.compile(r"[A-Za-z]{2}")
-"""What every message has."""
+"""In every message."""
 COUNT = "n"
-"""The place whose number decides between one and many."""
+"""The placeholder whose number decides between singular and plural."""
 TAG = re.compile(r"</?[a-z]\w*>")
-"""An inline tag in a message of a page; its attributes are the template's matter."""
+"""An inline tag in a message of a page, without its attributes."""
 
 
 @dataclass(frozen=True)
-class Entry:
-    """What a catalogue has one entry for."""
+class MessageEntry:
+    """An entry of a catalogue."""
 
     text: str
-    """As in the source; of a counted thing, what is said of one."""
+    """As in the source; the singular of a counted thing."""
     many: str = ""
-    """What is said of several; empty where nothing is counted."""
+    """The plural; empty where nothing is counted."""
     place: str = ""
-    """The file that it stands in."""
+    """The file with the message."""
 
     @property
     def id(self) -> str | tuple[str, str]:
-        """Under which a gettext catalogue knows it."""
+        """Its id in a gettext catalogue."""
         return (self.text, self.many) if self.many else self.text
 
 
 def places_of(text: str) -> list[str]:
-    """The names of a message's places and tags, sorted: a translation has the same."""
+    """The names of a message's placeholders and tags, sorted: a translation has the same."""
     return sorted(PLACE.findall(text) + TAG.findall(text))

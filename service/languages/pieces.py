@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass, field
 
-from service.languages.entry import COUNT, Entry
+from service.languages.entry import COUNT, MessageEntry
 
 NAME = re.compile(r"[A-Za-z_]\w*")
 QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
@@ -58,16 +58,16 @@ class Piece:
         self.many += ending[2]
         self.counted = ending[1]
 
-    def message(self, file: str) -> Entry:
+    def message(self, file: str) -> MessageEntry:
         """As a catalogue has it: spaces and line ends are one space."""
         one, many = " ".join(self.one.split()), " ".join(self.many.split())
         if not self.counted:
-            return Entry(one, place=file)
+            return MessageEntry(one, place=file)
         number = next((n for n, s in self.sources.items() if s.strip("{} ") == self.counted), "")
         if number:
             one, many = (text.replace(f"{{{number}}}", f"{{{COUNT}}}") for text in (one, many))
             self.sources[COUNT] = self.sources.pop(number)
-        return Entry(one, many, file)
+        return MessageEntry(one, many, file)
 
 
 def name_of(expression: str) -> str:

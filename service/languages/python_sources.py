@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from estimator.message import PLACE
-from service.languages.entry import LETTERS, Entry
+from service.languages.entry import LETTERS, MessageEntry
 
 SILENT_CALLS = frozenset(
     (
@@ -22,39 +22,39 @@ SPACED = re.compile(
 HEADING = re.compile(r"^[A-Z][a-z]+[.:!?]?$|^[A-Z][a-z]+,? [^\sA-Za-z]{1,3}(, \S+)?$")
 CODE = re.compile(r"[_<>{}\[\]\\|=&#\n]|://|^[a-z]+/|^--|^var\(|:[QTNO]$|^-//|^[a-z]+-[a-z]+, ")
 QUERY = re.compile(r"^SELECT ")
-"""What words do not have."""
+"""Not in words."""
 SENTENCE = re.compile(r"(\S+ ){4}.*[.:]$|(\S+ ){8}")
-"""What may have it all the same: ``with the coverage factor k = 2.``"""
+"""Words all the same: ``with the coverage factor k = 2.``"""
 TEMPLATES = {"say": 1, "say_count": 2}
-"""The functions of `estimator.message` that take templates, and how many each."""
+"""Functions of `estimator.message` that take templates, with the number of templates."""
 HELPERS = {
     "counted": ("{n} @", "{n} @s"),
     "few": ("{n} @ is too few", "{n} @s are too few"),
 }
-"""What the functions of `estimator.wording` make of a counted thing."""
+"""Messages of the functions of `estimator.wording` for a counted thing."""
 
 
-def messages(source: str, name: str, *, headings: bool, described: bool = False) -> Iterator[Entry]:
-    """The messages of a module, in order; ``headings``: single words that begin with a capital letter too;
-    ``described``: what fields are described by."""
-    for node in _told(ast.parse(source), described=described):
+def messages(source: str, name: str, *, headings: bool, described: bool = False) -> Iterator[MessageEntry]:
+    """The messages of a module, in order; ``headings``: also single capitalised words; ``described``: also descriptions
+    of fields."""
+    for node in _texts_in(ast.parse(source), described=described):
         if isinstance(node, ast.Call):
             yield replace(_of_call(node), place=name)
-        elif isinstance(node, ast.Constant) and _is_said(str(node.value), headings=headings):
-            yield Entry(str(node.value), place=name)
+        elif isinstance(node, ast.Constant) and _is_message(str(node.value), headings=headings):
+            yield MessageEntry(str(node.value), place=name)
 
 
 def finished(source: str) -> Iterator[str]:
-    """Sentences that are f-strings: they have lost their parts, and nobody can say them in another language."""
-    for node in _told(ast.parse(source), described=False):
+    """Sentences that are f-strings: they have lost their parts and cannot be translated."""
+    for node in _texts_in(ast.parse(source), described=False):
         if isinstance(node, ast.JoinedStr):
             text = "".join(str(v.value) if isinstance(v, ast.Constant) else "{value}" for v in node.values)
-            if _is_said(text, headings=False) and LETTERS.search(PLACE.sub(" ", text)):
+            if _is_message(text, headings=False) and LETTERS.search(PLACE.sub(" ", text)):
                 yield text
 
 
-def _told(node: ast.AST, *, described: bool) -> Iterator[ast.expr]:
-    """The texts that are neither documentation nor for programs, and what makes texts of templates."""
+def _texts_in(node: ast.AST, *, described: bool) -> Iterator[ast.expr]:
+    """Texts that are neither documentation nor for programs, and calls with templates."""
     skipped = 0
     if isinstance(node, ast.Constant):
         if isinstance(node.value, str):
@@ -64,7 +64,7 @@ def _told(node: ast.AST, *, described: bool) -> Iterator[ast.expr]:
         yield node
         for value in node.values:
             if isinstance(value, ast.FormattedValue):
-                yield from _told(value.value, described=described)
+                yield from _texts_in(value.value, described=described)
         return
     if isinstance(node, ast.Call):
         if _name(node.func) in SILENT_CALLS:
@@ -74,11 +74,11 @@ def _told(node: ast.AST, *, described: bool) -> Iterator[ast.expr]:
             yield node
             skipped = len(_templates(node))
     for child in list(_children(node))[skipped and skipped + 1 :]:
-        yield from _told(child, described=described)
+        yield from _texts_in(child, described=described)
 
 
 def _children(node: ast.AST) -> Iterator[ast.AST]:
-    """Without documentation, decorators, annotations, names of keys, and examples for programs."""
+    """Without documentation, decorators, annotations, keys, and examples for programs."""
     for name, value in ast.iter_fields(node):
         if isinstance(node, ast.keyword) and node.arg == "json_schema_extra":
             continue
@@ -95,22 +95,22 @@ def _name(node: ast.expr) -> str:
 
 
 def _templates(call: ast.Call) -> list[str]:
-    """What a call makes its text of, as far as it stands there."""
+    """The literal templates of a call."""
     name = _name(call.func)
-    given = call.args[-1:] if name in HELPERS else call.args[: TEMPLATES.get(name, 0)]
-    return [one.value for one in given if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+    arguments = call.args[-1:] if name in HELPERS else call.args[: TEMPLATES.get(name, 0)]
+    return [one.value for one in arguments if isinstance(one, ast.Constant) and isinstance(one.value, str)]
 
 
-def _of_call(call: ast.Call) -> Entry:
+def _of_call(call: ast.Call) -> MessageEntry:
     texts = _templates(call)
     if (name := _name(call.func)) in HELPERS:
         texts = [form.replace("@", texts[0]) for form in HELPERS[name]]
-    return Entry(*texts)
+    return MessageEntry(*texts)
 
 
-def _is_said(text: str, *, headings: bool) -> bool:
+def _is_message(text: str, *, headings: bool) -> bool:
     """Whether it reads as words."""
-    bare = PLACE.sub("\x00", text)
-    if QUERY.search(bare) or (CODE.search(bare) and not (SENTENCE.search(bare) and "\n" not in bare)):
+    plain = PLACE.sub("\x00", text)
+    if QUERY.search(plain) or (CODE.search(plain) and not (SENTENCE.search(plain) and "\n" not in plain)):
         return False
-    return bool(SPACED.search(bare)) or (headings and bool(HEADING.search(bare)))
+    return bool(SPACED.search(plain)) or (headings and bool(HEADING.search(plain)))

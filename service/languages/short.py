@@ -1,4 +1,4 @@
-"""Words that stand alone: what no extraction can tell from a key. They are said wherever such a value is shown."""
+"""Words on their own, which extraction cannot tell from keys. They are translated wherever such a value is shown."""
 
 WORDS = tuple(
     word.strip()
@@ -22,7 +22,7 @@ WORDS = tuple(
     refuse | stand-certificate | question | acknowledge | resolve | assigned | check | attach
     Jan | Feb | Mar | Apr | May | Jun | Jul | Aug | Sep | Oct | Nov | Dec
     {first} and {last} | {first} or {last} | {first}; and {last}
-    {unit} per {input} | {rate} a year
+    {unit} per {input} | {rate} a year | ppm | arcsec
     a steady change of a parameter; a step is a sudden one
     """.strip().splitlines()
     for word in line.split("|")
@@ -44,7 +44,7 @@ FROM_PYDANTIC = (
     "JSON decode error",
     "Input should have timezone info",
 )
-"""What it finds in a request."""
+"""Errors of pydantic."""
 FROM_HTTP = (
     "Bad Request",
     "Unauthorized",
@@ -72,7 +72,7 @@ COUNTED = (
     *("accelerometer", "block", "byte", "column", "day", "flag", "gyro", "gyroscope", "orientation", "position"),
     *("problem", "reading", "row", "sensor", "session", "stand", "unit", "value"),
 )
-"""Things that are said with a number; all have their plural in s."""
+"""Things that are counted; all have a plural in s."""
 NAMES = frozenset(
     (
         *("imu-health", "· imu-health", "OpenAPI", "Kalibr", "ROS 2", "imu-health {value}", "imu-health {version}"),
@@ -82,4 +82,4 @@ NAMES = frozenset(
         *("mounting{value}", "{value} ± {value} cm", "row {value}"),
     )
 )
-"""What looks like words and is none: names of programs, headers, fonts, sensors and keys, and numbers."""
+"""Not words: names of programs, headers, fonts, sensors and keys, and numbers."""

@@ -1,4 +1,4 @@
-"""Where the words are: the templates, the typesetter's templates, and the modules that say something to people."""
+"""Sources of messages: the templates, the typesetter's templates, and the modules with texts for people."""
 
 import re
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from pathlib import Path
 from estimator.causes import CATALOGUE, OF_SEVERAL, ON_TURNTABLE, Cause
 from estimator.message import PLACE
 from service.languages import python_sources, typst_sources
-from service.languages.entry import LETTERS, Entry
+from service.languages.entry import LETTERS, MessageEntry
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
 from service.languages.template import Template
 from service.languages.templates import literals
@@ -15,17 +15,17 @@ from service.languages.templates import literals
 ROOT = Path(__file__).parents[2]
 TEMPLATES = "service/*/templates/*.html"
 PAPERS = "service/papers/templates"
-SAID = re.compile(
+HEADING_MODULES = re.compile(
     r"service/(kit/(measures|failure)|web/(in_language|list_view|problem_pages|render)|(pages|papers|planning)/"
     r"|.*/(records|words|charts|pages|sections|decision|doubt|states|condition|populations)\b"
     r"|.*_pages\.py|.*/(view|gain|lines|conditions|template|preview|pattern|layout/)"
     r"|outlook/reading|ingest/session_keys)"
 )
-"""Where a single word with a capital letter is said to people too."""
+"""Where single capitalised words are shown to people too."""
 SETTINGS = "service/settings.py"
-"""Its page shows what they are described by."""
-ALSO = ("service", "estimator")
-SILENT = (
+"""Its page shows the descriptions of the settings."""
+PACKAGES = ("service", "estimator")
+IGNORED = (
     "service/app.py",
     "service/cli.py",
     "service/client",
@@ -77,42 +77,42 @@ SILENT = (
     "estimator/wording.py",
     "estimator/published",
 )
-"""What speaks to programs, to whoever runs the service, or in a form that a standard fixes."""
+"""Texts for programs, for the operator, or fixed by a standard."""
 
 
-def messages() -> Iterator[Entry]:
-    """Every message of the product, in the order of its files; some stand in several."""
+def messages() -> Iterator[MessageEntry]:
+    """Every message of the product, in the order of its files; some occur in several."""
     return (one for one in _all() if LETTERS.search(PLACE.sub(" ", one.text)) and one.text not in NAMES)
 
 
-def _all() -> Iterator[Entry]:
-    yield from (Entry(word, place="service/languages/short.py") for word in STANDING_ALONE)
+def _all() -> Iterator[MessageEntry]:
+    yield from (MessageEntry(word, place="service/languages/short.py") for word in STANDING_ALONE)
     yield from (
-        Entry(text, place="estimator/causes")
+        MessageEntry(text, place="estimator/causes")
         for cause in (*CATALOGUE, *ON_TURNTABLE, *OF_SEVERAL)
         for text in _names_of(cause)
     )
-    yield from (Entry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
+    yield from (MessageEntry(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
     for path in sorted(ROOT.glob(TEMPLATES)):
         template = Template(path.read_text("utf-8"), path.name)
         yield from (found.message for found in template.messages())
-        yield from (Entry(text, place=path.name) for text in literals(template))
+        yield from (MessageEntry(text, place=path.name) for text in literals(template))
     for path in sorted((ROOT / PAPERS).glob("*.typ")):
         yield from typst_sources.messages(path.read_text("utf-8"), path.name)
     for path in modules():
         name = path.relative_to(ROOT).as_posix()
         source = path.read_text("utf-8")
-        headings, described = SAID.match(name) is not None and not name.endswith("api.py"), name == SETTINGS
+        headings, described = HEADING_MODULES.match(name) is not None and not name.endswith("api.py"), name == SETTINGS
         yield from python_sources.messages(source, name, headings=headings, described=described)
 
 
 def _names_of(cause: Cause) -> Iterator[str]:
-    """What a cause and its amplitudes are called."""
+    """Names of a cause and its amplitudes."""
     yield from filter(re.compile(r"[a-z]{2}").search, (cause.name, cause.shape_words, *cause.amplitude_words))
 
 
 def modules() -> Iterator[Path]:
-    """Those that say something to people."""
-    for path in sorted(p for room in ALSO for p in (ROOT / room).rglob("*.py")):
-        if not path.relative_to(ROOT).as_posix().startswith(SILENT):
+    """Modules with texts for people."""
+    for path in sorted(p for room in PACKAGES for p in (ROOT / room).rglob("*.py")):
+        if not path.relative_to(ROOT).as_posix().startswith(IGNORED):
             yield path

@@ -1,7 +1,7 @@
-"""The words of a page's template, found where they stand, without a mark.
+"""The messages of a page's template, found without markers.
 
 A message is a run of text between block tags and statements, with its inline tags (without attributes) and with a
-place for every expression. So whoever writes a page writes English and nothing else, and no text can be forgotten.
+placeholder for every expression. The author of a page writes plain English, and no text can be forgotten.
 """
 
 import re
@@ -9,40 +9,40 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 from service.languages.pieces import Piece
 
 INLINE = frozenset(("a", "abbr", "b", "em", "i", "small", "strong", "sub", "sup", "span", "time"))
 """Tags that may stand inside a sentence."""
-SPOKEN = frozenset(("alt", "aria-label", "data-label", "label", "placeholder", "title"))
-"""Attributes whose value is read by people."""
-SAID_BY_SCRIPTS = "data-said-"
-"""How attributes begin from which a script takes what it says."""
+TEXT_ATTRIBUTES = frozenset(("alt", "aria-label", "data-label", "label", "placeholder", "title"))
+"""Attributes with text for people."""
+SCRIPT_TEXT_PREFIX = "data-said-"
+"""Prefix of attributes with texts of scripts."""
 ENGLISH = ' lang="en"'
-"""Marks an element that is left alone, as the description of the API."""
+"""Marks an element that is not translated, such as the description of the API."""
 SILENT = re.compile(r"<(script|style|svg)\b.*?</\1>", re.DOTALL)
-"""Elements that hold no words."""
+"""Elements without words."""
 CODE = re.compile(r"<code\b.*?</code>", re.DOTALL)
-"""What is said to a machine stands in every language as it is."""
+"""Code is the same in every language."""
 JINJA = re.compile(r"\{%.*?%\}|\{\{.*?\}\}|\{#.*?#\}", re.DOTALL)
 TAG = re.compile(r"<(/?)([a-zA-Z][\w-]*)[^<>]*>|<![^<>]*>")
 ATTRIBUTE = re.compile(r'([\w-]+)="([^"]*)"')
 LETTERS = re.compile(r"[A-Za-z]{2,}")
-THEIRS = re.compile(
+PERSONAL_EXPRESSIONS = re.compile(
     r"\b(serial|unit|unit_type|operator|stand|notes?|why|login|filename|lot|customer\.\w+|issued_by|account)\s*\}\}$"
 )
-"""Ends of expressions that say what people named or wrote."""
+"""Ends of expressions for names or texts written by people."""
 FIRST = 0xF0000
-"""The private characters of Unicode stand for what is not HTML while HTML is looked at."""
+"""Private characters of Unicode stand for everything that is not HTML while HTML is parsed."""
 
 
 @dataclass(frozen=True)
-class Found:
-    """A message in a template, between two places of its flat text."""
+class TemplateMessage:
+    """A message in a template, between two positions of its flat text."""
 
     start: int
     end: int
-    message: Entry
+    message: MessageEntry
     piece: Piece
 
 
@@ -60,11 +60,11 @@ class Template:
         return chr(FIRST + len(self._parts) - 1)
 
     def part(self, char: str) -> str:
-        """What a character stands for; empty where it stands for itself."""
+        """The source behind a character; empty where it stands for itself."""
         return self._parts[ord(char) - FIRST] if ord(char) >= FIRST else ""
 
     def jinja(self) -> Iterator[tuple[str, bool]]:
-        """Every expression and statement, and whether its value stands in what people read."""
+        """Every expression and statement, and whether its value is in text for people."""
         for k, char in enumerate(self.flat):
             if self.part(char).startswith(("{{", "{%")):
                 yield self.part(char), k in self._told
@@ -74,9 +74,9 @@ class Template:
         return "".join(self.whole(self.part(c)) if ord(c) >= FIRST else c for c in flat)
 
     def spoken_source(self, start: int, end: int) -> str:
-        """The source between two places; what expressions tell people is said in the language of the page."""
+        """The source between two positions, with expressions for people translated."""
         return "".join(
-            speaking(self.part(c)) if k in self._told and self.part(c).startswith("{{") else self.whole(c)
+            translating(self.part(c)) if k in self._told and self.part(c).startswith("{{") else self.whole(c)
             for k, c in enumerate(self.flat[start:end], start)
         )
 
@@ -87,11 +87,11 @@ class Template:
 
     @cached_property
     def _english(self) -> frozenset[int]:
-        """What stands in elements that say that they are English in every language."""
+        """Positions in elements that are marked as English in every language."""
         return frozenset(k for tag in self._tags if ENGLISH in tag.group() for k in range(tag.start(), self._end(tag)))
 
     def _end(self, first: re.Match[str]) -> int:
-        """Where an element ends."""
+        """End of an element."""
         depth = 0
         for tag in self._tags:
             if tag.start() >= first.start() and tag[2] == first[2]:
@@ -100,35 +100,35 @@ class Template:
                     return tag.end()
         return len(self.flat)
 
-    def messages(self) -> Iterator[Found]:
-        """Every message, in order: of texts and of attributes that people read."""
-        found = [f for start, end in self._runs() for f in self._inside(start, end)]
-        found += [f for start, end in self.spoken() if (f := self._message(start, end))]
-        yield from sorted((f for f in found if f.start not in self._english), key=lambda f: f.start)
+    def messages(self) -> Iterator[TemplateMessage]:
+        """Every message, in order: of texts and of attributes for people."""
+        matches = [f for start, end in self._runs() for f in self._inside(start, end)]
+        matches += [f for start, end in self.spoken() if (f := self._message(start, end))]
+        yield from sorted((f for f in matches if f.start not in self._english), key=lambda f: f.start)
 
     def spoken(self) -> Iterator[tuple[int, int]]:
-        """Where the attributes stand that people read."""
+        """Positions of the attributes for people."""
         for tag in self._tags:
             for attribute in ATTRIBUTE.finditer(tag.group()):
-                if attribute[1] in SPOKEN or attribute[1].startswith(SAID_BY_SCRIPTS):
+                if attribute[1] in TEXT_ATTRIBUTES or attribute[1].startswith(SCRIPT_TEXT_PREFIX):
                     yield tag.start() + attribute.start(2), tag.start() + attribute.end(2)
 
     def texts(self) -> Iterator[tuple[int, int]]:
         """Everything between tags."""
-        at = 0
+        position = 0
         for tag in self._tags:
-            yield at, tag.start()
-            at = tag.end()
-        yield at, len(self.flat)
+            yield position, tag.start()
+            position = tag.end()
+        yield position, len(self.flat)
 
     def _runs(self) -> Iterator[tuple[int, int]]:
-        """Between what ends a sentence: block tags, statements, pictures, and inline tags without their partner."""
+        """Runs between block tags, statements, pictures, and inline tags without their partner."""
         cuts = [(t.start(), t.end()) for t in self._tags if t[2] not in INLINE]
         cuts += [(k, k + 1) for a, b in self.texts() for k in range(a, b) if self._cuts(self.flat[k])]
-        at = 0
+        position = 0
         for start, end in [*sorted(cuts), (len(self.flat), len(self.flat))]:
-            yield from self._paired(at, start)
-            at = end
+            yield from self._paired(position, start)
+            position = end
 
     def _cuts(self, char: str) -> bool:
         part = self.part(char)
@@ -136,7 +136,7 @@ class Template:
 
     def _paired(self, start: int, end: int) -> Iterator[tuple[int, int]]:
         """A run, cut where an inline tag has no partner in it."""
-        opened, lone = list[re.Match[str]](), list[re.Match[str]]()
+        opened, unpaired = list[re.Match[str]](), list[re.Match[str]]()
         for tag in self._tags:
             if start <= tag.start() and tag.end() <= end:
                 if not tag[1]:
@@ -144,15 +144,15 @@ class Template:
                 elif opened:
                     opened.pop()
                 else:
-                    lone.append(tag)
-        at = start
-        for tag in sorted((*lone, *opened), key=lambda t: t.start()):
-            yield at, tag.start()
-            at = tag.end()
-        yield at, end
+                    unpaired.append(tag)
+        position = start
+        for tag in sorted((*unpaired, *opened), key=lambda t: t.start()):
+            yield position, tag.start()
+            position = tag.end()
+        yield position, end
 
-    def _inside(self, start: int, end: int) -> Iterator[Found]:
-        """The messages of a run: itself, or what its elements hold where nothing is said between them."""
+    def _inside(self, start: int, end: int) -> Iterator[TemplateMessage]:
+        """The messages of a run: itself, or those of its elements where there is no text between them."""
         elements = self._elements(start, end)
         between, at = "", start
         for a, b, _, _ in elements:
@@ -164,7 +164,7 @@ class Template:
             yield found
 
     def _elements(self, start: int, end: int) -> list[tuple[int, int, int, int]]:
-        """The outermost elements of a run: from, to, and the same of their content."""
+        """The outermost elements of a run: start, end, and the same of their content."""
         elements, depth, first = list[tuple[int, int, int, int]](), 0, None
         for tag in self._tags:
             if not (start <= tag.start() and tag.end() <= end):
@@ -177,15 +177,15 @@ class Template:
                 first = None
         return elements
 
-    def _message(self, start: int, end: int) -> Found | None:
+    def _message(self, start: int, end: int) -> TemplateMessage | None:
         text = self.flat[start:end]
         start, end = start + len(text) - len(text.lstrip()), end - len(text) + len(text.rstrip())
         if not LETTERS.search(TAG.sub("", self.flat[start:end])):
             return None
-        piece, at, names = Piece(), start, list[str]()
+        piece, position, names = Piece(), start, list[str]()
         for tag in (*(t for t in self._tags if start <= t.start() < end), None):
             stop = end if tag is None else tag.start()
-            for char in self.flat[at:stop]:
+            for char in self.flat[position:stop]:
                 part = self.part(char)
                 if part.startswith("{{"):
                     piece.expression(part)
@@ -194,16 +194,16 @@ class Template:
                 else:
                     piece.add(char)
             if tag is not None:
-                at = tag.end()
+                position = tag.end()
                 if tag[1]:
                     piece.add(f"</{names.pop()}>")
                 else:
                     names.append(piece.tag(tag.group(), tag[2]))
-        return Found(start, end, piece.message(self.name), piece)
+        return TemplateMessage(start, end, piece.message(self.name), piece)
 
 
-def speaking(expression: str) -> str:
-    """The expression, its value said in the language of the page; what people named or wrote stays as they did."""
-    if THEIRS.search(expression):
+def translating(expression: str) -> str:
+    """The expression with its value translated; names and texts written by people stay."""
+    if PERSONAL_EXPRESSIONS.search(expression):
         return expression
     return f"{{{{ ({expression[2:-2].strip()})|translated }}}}"

@@ -1,13 +1,13 @@
-"""The words of the typesetter's templates: what they give to ``say("…")``."""
+"""The messages of the typesetter's templates: the arguments of ``say("…")``."""
 
 import re
 from collections.abc import Iterator
 
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 
-SAID = re.compile(r"\bsay\(\"([^\"]+)\"")
+SAY_CALL = re.compile(r"\bsay\(\"([^\"]+)\"")
 
 
-def messages(source: str, name: str) -> Iterator[Entry]:
+def messages(source: str, name: str) -> Iterator[MessageEntry]:
     """The messages of a template, in order."""
-    yield from (Entry(text, place=name) for text in SAID.findall(source))
+    yield from (MessageEntry(text, place=name) for text in SAY_CALL.findall(source))

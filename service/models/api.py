@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
+from estimator.json_object import Json
 from service.flags.api import Handling
 from service.kit.answer import answer
 from service.models.records import ModelRevision, Recomputation, Scope
@@ -36,30 +37,33 @@ class DiagnosisDocument(BaseModel):
 
     format: str = Field(description="`imu-diagnosis/1`.")
     unit: str = Field(description="Serial number of the unit.")
-    findings: list[dict[str, Any]] = Field(
+    findings: list[Json] = Field(
         description="Named causes, strongest first: cause, sensors, amplitude and sigma in SI, p_value, alternatives "
         "(`unexplained`: a cause that is not in the catalogue), what would distinguish them, ranking, sentence, advice."
     )
     unexplained: bool = Field(description="Whether there is structure that no known cause explains.")
-    structures: list[dict[str, Any]] = Field(
+    structures: list[Json] = Field(
         description="Where that structure lives, no sensors where it is common to all. `course` is how the applied "
         "vector must have run: `order`, `components` (`β` and `α` in rad, `size` relative) and `values`, one list a "
         "row; null where nothing common was found. `of_record`: whether the record itself is mixed up."
     )
-    noise: list[dict[str, Any]] = Field(
+    noise: list[Json] = Field(
         default=[],
         description="Kinds of sensor whose stated standard errors the readings contradict: `kind`, `factor` by which "
         "they are too small (below 1 they are too large), and the degrees of `freedom` that tell it.",
     )
-    gain: dict[str, Any] | None = Field(
-        description="Prediction of readings that were held out, before and after, with `rms_by_kind` of sensor; null "
-        "where causes are not looked for."
+    gain: Json | None = Field(
+        description="Prediction of readings that were held out, before and after, with `rms_by_kind` of sensor and "
+        "`rms_by_sensor`, by kind and name, in SI; null where causes are not looked for."
     )
-    limits: list[dict[str, Any]] = Field(description="Smallest amplitude of each cause that would have been found.")
-    calibration: dict[str, Any] | None = Field(
+    gain_in_words: str = Field(
+        default="", description="The same of the sensors concerned in one sentence; empty where no cause is named."
+    )
+    limits: list[Json] = Field(description="Smallest amplitude of each cause that would have been found.")
+    calibration: Json | None = Field(
         description="imu-calibration/1 under the model with the named causes; null where causes are not looked for."
     )
-    residuals_before: dict[str, Any] | None = Field(
+    residuals_before: Json | None = Field(
         description="Measured minus simulated under the baseline model; null where causes are not looked for."
     )
     notes: list[str] = Field(description="What else is worth knowing.")
@@ -95,6 +99,7 @@ class NewModelSchema(BaseModel):
     scope: AnyScope = Field(description="Whose model: the unit's, that of all units of its type, or the stand's.")
     by: Name = Field(description="Who accepts it.")
     note: LongText = Field(default="", description="Why.")
+    again: bool = Field(default=False, description="Whether the stored sessions that it concerns are computed again.")
 
 
 @answer
@@ -102,7 +107,7 @@ class NewModelSchema(BaseModel):
 class ModelDocument(ModelRevision):
     """One accepted or withdrawn cause: a numbered revision of a model."""
 
-    evidence: dict[str, Any]  # type: ignore[assignment]  # as it is stored
+    evidence: Json  # type: ignore[assignment]  # as it is stored
     """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions told beside,
     null where a single session showed it."""
 
@@ -117,12 +122,12 @@ class ModelAndRecomputations(ModelDocument):
 
 
 def model_document(revision: ModelRevision) -> ModelDocument:
-    """With its evidence as it is stored."""
+    """A revision with its evidence as stored."""
     return ModelDocument(**_fields(revision))
 
 
 def moved_by(revision: ModelRevision, recomputations: Iterable[Recomputation]) -> ModelAndRecomputations:
-    """With what it brought."""
+    """A revision with its consequences."""
     return ModelAndRecomputations(**_fields(revision), recomputations=tuple(recomputations))
 
 
@@ -143,9 +148,9 @@ router = APIRouter(prefix="/models", tags=["models"])
 def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ModelDocument:
     """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without.
     What a group of sessions showed goes out of the stored ones too."""
-    made = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
+    withdrawal = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
     recompute_beside(reception, now)
-    return model_document(made)
+    return model_document(withdrawal)
 
 
 @router.get("/{id}", responses=errors(404, 422))
@@ -162,5 +167,5 @@ def list_models(
     subject: Annotated[Text | None, Query(description="Only of this unit, unit type or stand.")] = None,
 ) -> ModelPage:
     """Accepted causes, newest first."""
-    found = Models(store).page(ModelQuery(scope, subject, window.offset, window.limit))
-    return ModelPage(models=list(map(model_document, found)), **window.place(len(found)))
+    revisions = Models(store).page(ModelQuery(scope, subject, window.offset, window.limit))
+    return ModelPage(models=list(map(model_document, revisions)), **window.place(len(revisions)))

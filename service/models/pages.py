@@ -19,6 +19,7 @@ from service.groups.store import Groups
 from service.groups.words import over, since_in_words
 from service.models.records import ModelRevision, NewLasting, Pooled, Progress, Recomputation, Scope
 from service.models.rules import in_force, pooled_of
+from service.models.sections import gain_of
 from service.models.store import Models, Recomputations
 from service.models.words import left_in_words, moved_in_words, progress_of
 from service.people.dependencies import SEE_OTHER, By, Number, Why
@@ -30,13 +31,13 @@ from service.web.dependencies import Now, Reading
 from service.web.fields import NO_NUL
 from service.web.render import SOONEST, render
 
-HOMES = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
-"""Where the page of a subject is."""
+SUBJECT_PATHS = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
+"""Address of the page of a subject."""
 
 
 @dataclass(frozen=True)
 class MovedRow:
-    """A session with another verdict since."""
+    """A session whose verdict changed."""
 
     session: str
     unit: str
@@ -46,8 +47,8 @@ class MovedRow:
 
 
 @dataclass(frozen=True)
-class UnitRow:
-    """What became of a unit's sessions."""
+class RecomputedRow:
+    """Result for a unit's sessions."""
 
     unit: str
     sessions: str
@@ -55,46 +56,49 @@ class UnitRow:
 
 
 @dataclass(frozen=True)
-class ModelPage:
-    """Everything the page shows."""
+class ModelView:
+    """Contents of the page."""
 
     revision: ModelRevision
     name: str
     whose: str
     home: str
-    """Address of whose model it is."""
+    """Address of the subject's page."""
     statement: str
     amplitudes: tuple[str, ...]
     evidence: str
+    gain: str
+    """What it gained for its sensors, in one sentence."""
     withdrawn: ModelRevision | None
-    """That took it out again."""
+    """The revision that withdrew it."""
     holds: bool
     progress: str
     verdicts: tuple[MovedRow, ...]
-    units: tuple[UnitRow, ...]
+    units: tuple[RecomputedRow, ...]
     follow: int | None
-    """Seconds until the page reads itself again; None once all is done."""
+    """Seconds until the page refreshes; None once all is done."""
 
 
 def model_page(
-    revision: ModelRevision, of_subject: Sequence[ModelRevision], found: Sequence[Recomputation]
-) -> ModelPage:
-    """Of a revision among those of its subject, with what it brought."""
+    revision: ModelRevision, of_subject: Sequence[ModelRevision], recomputations: Sequence[Recomputation]
+) -> ModelView:
+    """A revision among those of its subject, with its consequences."""
     evidence, pooled = revision.evidence, pooled_of(revision)
-    return ModelPage(
+    return ModelView(
         revision=revision,
         name=cause_on(revision.cause, revision.sensors),
         whose=say("{scope} {subject}", scope=revision.scope, subject=revision.subject),
-        home=f"{HOMES[revision.scope]}{quote(revision.subject)}",
+        home=f"{SUBJECT_PATHS[revision.scope]}{quote(revision.subject)}",
         statement="" if evidence is None else evidence.sentence,
         amplitudes=_amplitudes(revision),
         evidence="" if evidence is None else _evidence(evidence.strength, pooled),
+        gain=gain_of(revision),
         withdrawn=next((r for r in of_subject if r.withdraws == revision.id), None),
         holds=revision in in_force(of_subject),
-        progress=progress_of(found),
-        verdicts=tuple(_moved(found)),
-        units=tuple(map(_unit, found)),
-        follow=SOONEST if any(one.state is Progress.WAITING for one in found) else None,
+        progress=progress_of(recomputations),
+        verdicts=tuple(_moved(recomputations)),
+        units=tuple(map(_unit, recomputations)),
+        follow=SOONEST if any(one.state is Progress.WAITING for one in recomputations) else None,
     )
 
 
@@ -102,18 +106,22 @@ def _amplitudes(revision: ModelRevision) -> tuple[str, ...]:
     evidence = revision.evidence
     if evidence is None or revision.cause == EMPIRICAL:  # the equation of a learned term states them
         return ()
-    own = Amounts(revision.cause, revision.sensors, evidence.amplitude, evidence.sigma, evidence.units)
-    return tuple(amplitudes_of(own))
+    amounts = Amounts(revision.cause, revision.sensors, evidence.amplitude, evidence.sigma, evidence.units)
+    return tuple(amplitudes_of(amounts))
 
 
 def _evidence(strength: float, pooled: Pooled | None) -> str:
     """``Over 34 sessions, in all of these sessions: 12.3 standard errors.``"""
     if pooled is None:
-        return say("In one session: {strength}. Each session fits its own size.", strength=standard_errors(strength))
+        return say(
+            "In one session: {strength}. Its size is estimated in each session.", strength=standard_errors(strength)
+        )
     since = since_in_words(pooled.form, pooled.since)
-    fitted = "each session has a say in it" if pooled.form == "varying" else "no session fits it again"
+    fitted = (
+        "estimated from all sessions together" if pooled.form == "varying" else "not estimated again in single sessions"
+    )
     return say(
-        "{sessions}, {since}: {strength}. The size is theirs: {fitted}.",
+        "{sessions}, {since}: {strength}. Size from these sessions: {fitted}.",
         sessions=over(pooled.sessions),
         since=since,
         strength=standard_errors(strength),
@@ -121,21 +129,32 @@ def _evidence(strength: float, pooled: Pooled | None) -> str:
     )
 
 
-def _moved(found: Sequence[Recomputation]) -> Iterator[MovedRow]:
-    for one in found:
-        for m in () if one.outcome is None else one.outcome.verdicts:
-            yield MovedRow(m.session, one.unit, m.started_at, condition_of(m.before), condition_of(m.after))
+def _moved(recomputations: Sequence[Recomputation]) -> Iterator[MovedRow]:
+    for recomputation in recomputations:
+        for verdict in () if recomputation.outcome is None else recomputation.outcome.verdicts:
+            yield MovedRow(
+                verdict.session,
+                recomputation.unit,
+                verdict.started_at,
+                condition_of(verdict.before),
+                condition_of(verdict.after),
+            )
 
 
-def _unit(one: Recomputation) -> UnitRow:
-    told = one.outcome
-    if told is None:
-        return UnitRow(one.unit, one.state.value, left_in_words(one))
-    left = say(", {left} cannot be", left=told.left) if told.left else ""
-    return UnitRow(
-        one.unit,
-        say("{recomputed} of {sessions}{left}", recomputed=told.recomputed, sessions=told.sessions, left=left),
-        moved_in_words(told.furthest),
+def _unit(recomputation: Recomputation) -> RecomputedRow:
+    outcome = recomputation.outcome
+    if outcome is None:
+        return RecomputedRow(recomputation.unit, recomputation.state.value, left_in_words(recomputation))
+    remainder = say(", {number} cannot be", number=outcome.left) if outcome.left else ""
+    return RecomputedRow(
+        recomputation.unit,
+        say(
+            "{recomputed} of {sessions}{remainder}",
+            recomputed=outcome.recomputed,
+            sessions=outcome.sessions,
+            remainder=remainder,
+        ),
+        moved_in_words(outcome.furthest),
     )
 
 
@@ -166,14 +185,14 @@ def accept(
     """Accepts what a group of sessions shows, and shows what that moves."""
     with reception.storage.database.reading() as store:
         group = Groups(store).find(level, name)
-    made = accept_lasting(reception.storage, group, NewLasting(cause, tuple(sensors), by, note), now)
+    accepted = accept_lasting(reception.storage, group, NewLasting(cause, tuple(sensors), by, note), now)
     recompute_beside(reception, now)
-    return RedirectResponse(f"/models/{made.id}", SEE_OTHER)
+    return RedirectResponse(f"/models/{accepted.id}", SEE_OTHER)
 
 
 @router.post("/models/{id}/withdraw")
 def withdraw(id: Number, reception: ReceptionOf, now: Now, *, by: By, why: Why) -> RedirectResponse:
     """Takes an accepted cause out of the model again, and shows what that moves."""
-    made = withdraw_model(reception.storage, id, by, why, now)
+    withdrawal = withdraw_model(reception.storage, id, by, why, now)
     recompute_beside(reception, now)
-    return RedirectResponse(f"/models/{made.id}", SEE_OTHER)
+    return RedirectResponse(f"/models/{withdrawal.id}", SEE_OTHER)

@@ -1,4 +1,4 @@
-"""The causes that engineers accepted, the model that they add up to, and what recomputation moved."""
+"""Accepted causes, the model composed of them, and the results of recomputation."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -12,7 +12,7 @@ from service.sessions.decision import Verdict
 
 
 class Scope(StrEnum):
-    """Whose model an accepted cause becomes part of."""
+    """Subject of a model with accepted causes."""
 
     UNIT = "unit"
     UNIT_TYPE = "unit type"
@@ -20,7 +20,7 @@ class Scope(StrEnum):
 
 
 SCOPES = {"unit": Scope.UNIT, "type": Scope.UNIT_TYPE, "stand": Scope.STAND}
-"""Whose model, by the level of the sessions that show it."""
+"""By the level of the sessions that show a cause."""
 
 
 @dataclass(frozen=True)
@@ -31,31 +31,33 @@ class NewModel:
     scope: Scope
     by: str
     note: str
+    again: bool = False
+    """Whether the stored sessions that it concerns are computed again."""
 
 
 @dataclass(frozen=True)
 class NewLasting:
-    """A lasting effect that an engineer accepts, as the group that shows it found it."""
+    """A lasting effect that an engineer accepts from the findings in a group."""
 
     cause: str
     sensors: tuple[str, ...]
-    """Of the finding; empty where the cause alone says which one is meant."""
+    """Of the finding; empty where the cause alone identifies it."""
     by: str
     note: str
 
 
 @dataclass(frozen=True)
 class Pooled(Document, forms=dict.fromkeys(("first", "last", "since"), MOMENT)):
-    """What a group of sessions told of an effect beside its size: the size is not fitted again in any session."""
+    """Facts of an effect in a group of sessions beside its size, which is then fixed in every session."""
 
     sessions: int
-    """That were pooled, from ``first`` to ``last``."""
+    """Number of pooled sessions, from ``first`` to ``last``."""
     first: str | None
     last: str | None
     form: str
     """``same``, ``varying`` or ``since``."""
     since: str | None
-    """Start of the first session that has it, where earlier ones had not."""
+    """Start of the first session with the effect, where earlier ones lack it."""
     kind: str
     """Of its sensors; empty without any."""
     shape: float | None
@@ -66,14 +68,14 @@ class Pooled(Document, forms=dict.fromkeys(("first", "last", "since"), MOMENT)):
     """Sessions that fixed the size when it was tried on the later ones; 0 where there were too few."""
     held_out: int
     log_score: float | None
-    """That those later ones gained."""
+    """Gain of those later ones."""
     words: tuple[str, ...] = ()
-    """Of a learned term: what each amplitude multiplies; none of a cause."""
+    """Of a learned term: what each amplitude multiplies; empty for a cause."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """The finding that a cause was accepted on, and what naming it was worth."""
+    """The finding on which a cause was accepted, and its gain."""
 
     p_value: float
     strength: float
@@ -85,9 +87,9 @@ class Evidence:
     alternatives: tuple[str, ...]
     sentence: str
     gain: Gain | None
-    """None of what a group of sessions showed."""
+    """None for a group of sessions."""
     pooled: Pooled | None = None
-    """None of what a single session showed: there each session fits it."""
+    """None for a single session: then each session fits the size."""
 
 
 @answer
@@ -122,37 +124,37 @@ class ModelRevision:
 
 @dataclass(frozen=True)
 class Model:
-    """The causes beyond the baseline that a session's calibration takes into account."""
+    """The causes beyond the baseline in a session's calibration."""
 
     revision: int
     """The latest revision that concerns the session; 0 for the baseline alone."""
     causes: tuple[tuple[str, tuple[str, ...]], ...]
-    """Identifier and sensors of each that the session fits."""
+    """Identifier and sensors of each fitted cause."""
     fixed: tuple[FixedEffect, ...] = ()
-    """Those whose size groups of sessions fixed, the one that counts first before others of its cause."""
+    """Effects with a size fixed by groups of sessions; the first one applies before others of its cause."""
 
 
 class Progress(StrEnum):
-    """How far the sessions of one unit have come."""
+    """State of the recomputation of one unit."""
 
     WAITING = "waiting"
     DONE = "done"
     GIVEN_UP = "given up"
-    """No process outlived it: the sessions keep what they had."""
+    """No process survived it: the sessions stay as they were."""
     CANCELLED = "cancelled"
-    """Somebody stopped it before its turn: the sessions keep what they had."""
+    """Cancelled before it began: the sessions stay as they were."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A unit whose sessions are to be computed again under the models up to a revision."""
+    """Recomputation of a unit's sessions under the models up to a revision."""
 
     revision: int
     unit: str
 
     @property
     def key(self) -> str:
-        """Its name in the queue."""
+        """Key in the queue."""
         return f"{self.unit} {self.revision}"
 
 
@@ -179,7 +181,7 @@ class MovedVerdict:
 
 @dataclass(frozen=True)
 class LeftSession:
-    """A session that cannot be computed under its model; it keeps what it has."""
+    """A session that cannot be computed under its model; it stays as it was."""
 
     session: str
     why: str

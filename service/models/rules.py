@@ -1,4 +1,4 @@
-"""Step: the causes beyond the baseline that a session's calibration takes into account."""
+"""Step: the causes beyond the baseline in a session's calibration."""
 
 from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
@@ -12,29 +12,29 @@ from service.models.records import Evidence, Model, ModelRevision, Pooled, Scope
 from service.models.store import Models
 from service.storage.queries import Store
 
-EVER = datetime.min.replace(tzinfo=UTC)
-NARROWEST = (Scope.UNIT, Scope.UNIT_TYPE, Scope.STAND)
-"""Of one cause on one sensor the size found nearest to it counts: every group is pooled on the plain simulation, so
-each of them holds the whole effect."""
+BEGINNING_OF_TIME = datetime.min.replace(tzinfo=UTC)
+PRECEDENCE = (Scope.UNIT, Scope.UNIT_TYPE, Scope.STAND)
+"""Precedence of sizes for one cause on one sensor: every group is pooled on the plain simulation, so each size is the
+whole effect."""
 
 
 def in_force(revisions: Sequence[ModelRevision]) -> tuple[ModelRevision, ...]:
-    """The accepted causes that were not withdrawn since."""
+    """The accepted causes that are not withdrawn."""
     withdrawn = {r.withdraws for r in revisions}
     return tuple(r for r in revisions if r.withdraws is None and r.id not in withdrawn)
 
 
 def model_as_of(revisions: Sequence[ModelRevision], number: int) -> tuple[ModelRevision, ...]:
-    """The accepted causes that held when a revision was the latest."""
+    """The causes in force when a revision was the latest."""
     return in_force([revision for revision in revisions if revision.id <= number])
 
 
 def model_of(revisions: Sequence[ModelRevision], at: datetime) -> Model:
-    """The model that revisions add up to for a session of a time; the same cause on the same sensors counts once."""
-    holding = in_force(revisions)
-    causes = dict.fromkeys((r.cause, r.sensors) for r in holding if pooled_of(r) is None)
-    nearest = sorted(holding, key=lambda r: (NARROWEST.index(r.scope), -r.id))
-    return Model(max((r.id for r in revisions), default=0), tuple(causes), tuple(_fixed(nearest, at)))
+    """The model composed of revisions for a session at a time; the same cause on the same sensors counts once."""
+    accepted = in_force(revisions)
+    causes = dict.fromkeys((r.cause, r.sensors) for r in accepted if pooled_of(r) is None)
+    ordered = sorted(accepted, key=lambda r: (PRECEDENCE.index(r.scope), -r.id))
+    return Model(max((r.id for r in revisions), default=0), tuple(causes), tuple(_fixed(ordered, at)))
 
 
 def model_for(store: Store, new: Checked) -> Model:
@@ -43,12 +43,12 @@ def model_for(store: Store, new: Checked) -> Model:
 
 
 def pooled_of(revision: ModelRevision) -> Pooled | None:
-    """What a group told of a revision's cause; None where a single session showed it."""
+    """A revision's facts from a group; None for a single session."""
     return None if revision.evidence is None else revision.evidence.pooled
 
 
 def places_of(revision: ModelRevision, sensors: Sequence[SensorCalibration]) -> tuple[str, ...]:
-    """The sensors of a block that a revision's cause acts on, by name; an empty name for one of stand or fixture."""
+    """The sensors of a block affected by a revision's cause, by name; an empty name for a cause of stand or fixture."""
     pooled = pooled_of(revision)
     if EVERY in revision.sensors and pooled is not None:
         return tuple(sensor.name for sensor in sensors if sensor.kind == pooled.kind)
@@ -56,10 +56,10 @@ def places_of(revision: ModelRevision, sensors: Sequence[SensorCalibration]) -> 
 
 
 def _fixed(revisions: Sequence[ModelRevision], at: datetime) -> Iterator[FixedEffect]:
-    """Of what groups showed; what began at a date is not in the sessions before it."""
+    """Effects from groups; one with a start applies only to sessions after it."""
     for revision in revisions:
         evidence, pooled = revision.evidence, pooled_of(revision)
-        if evidence is not None and pooled is not None and at >= _began(revision, pooled):
+        if evidence is not None and pooled is not None and at >= _start_of(revision, pooled):
             yield _effect(revision, evidence, pooled)
 
 
@@ -76,8 +76,8 @@ def _effect(revision: ModelRevision, evidence: Evidence, pooled: Pooled) -> Fixe
     )
 
 
-def _began(revision: ModelRevision, pooled: Pooled) -> datetime:
-    """From when on sessions have it; where earlier versions did not know, those after its acceptance surely do."""
+def _start_of(revision: ModelRevision, pooled: Pooled) -> datetime:
+    """Start of the effect; where earlier versions did not record it, its acceptance."""
     if pooled.form != "since":
-        return EVER
+        return BEGINNING_OF_TIME
     return revision.accepted_at if pooled.since is None else moment(pooled.since)

@@ -1,10 +1,11 @@
-"""Causes in the model of a stand or a unit type, as lines of a table."""
+"""Accepted causes of a stand or a unit type, as lines of a table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
 from service.diagnosis.words.causes import cause_on
+from service.diagnosis.words.gain import gain_in_words
 from service.models.records import ModelRevision
 
 
@@ -18,11 +19,27 @@ class AcceptedCause:
     who: str
     at: datetime
     note: str
+    gain: str
+    """What it gained, in one sentence."""
+
+
+def gain_of(revision: ModelRevision) -> str:
+    """What an accepted cause gained for its sensors in the session that showed it; empty where none was measured."""
+    evidence = revision.evidence
+    return "" if evidence is None or evidence.gain is None else gain_in_words(evidence.gain, revision.sensors)
 
 
 def accepted_causes(revisions: Sequence[ModelRevision]) -> tuple[AcceptedCause, ...]:
     """Lines in the order of the revisions."""
     return tuple(
-        AcceptedCause(one.id, cause_on(one.cause, one.sensors), one.session, one.accepted_by, one.accepted_at, one.note)
-        for one in revisions
+        AcceptedCause(
+            revision=revision.id,
+            name=cause_on(revision.cause, revision.sensors),
+            session=revision.session,
+            who=revision.accepted_by,
+            at=revision.accepted_at,
+            note=revision.note,
+            gain=gain_of(revision),
+        )
+        for revision in revisions
     )

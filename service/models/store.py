@@ -2,10 +2,10 @@
 
 from dataclasses import asdict, dataclass
 from datetime import datetime
-from typing import Any
 
 from sqlalchemy import ColumnElement, String, and_, bindparam, cast, func, or_, select, update
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
@@ -34,13 +34,13 @@ from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
 
-def evidence_to_dict(evidence: Evidence | None) -> dict[str, Any]:
-    """What a model revision rests on; empty of one that withdraws another."""
+def evidence_to_dict(evidence: Evidence | None) -> Json:
+    """The document of a revision's evidence; empty for a withdrawal."""
     return {} if evidence is None else STORED.written(evidence)
 
 
-def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
-    """What `evidence_to_dict` wrote."""
+def evidence_from_dict(entry: Json) -> Evidence | None:
+    """Reads a document of `evidence_to_dict`."""
     return STORED.read(Evidence, entry) if entry else None
 
 
@@ -54,7 +54,7 @@ OWNER = or_(
 
 @dataclass(frozen=True)
 class ModelQuery:
-    """Which revisions are wanted."""
+    """Filter of revisions."""
 
     scope: Scope | None = None
     subject: str | None = None
@@ -95,19 +95,19 @@ class Models(Queries):
         query = select(ModelRow).where(ModelRow.scope == scope, ModelRow.subject == subject).order_by(ModelRow.id)
         return tuple(map(_revision, self._session.scalars(query)))
 
-    def page(self, wanted: ModelQuery) -> tuple[ModelRevision, ...]:
+    def page(self, filters: ModelQuery) -> tuple[ModelRevision, ...]:
         """Revisions, newest first."""
         query = select(ModelRow).order_by(ModelRow.id.desc())
-        if wanted.scope is not None:
-            query = query.where(ModelRow.scope == wanted.scope)
-        if wanted.subject is not None:
-            query = query.where(ModelRow.subject == wanted.subject)
-        return tuple(map(_revision, self._session.scalars(query.offset(wanted.offset).limit(wanted.limit))))
+        if filters.scope is not None:
+            query = query.where(ModelRow.scope == filters.scope)
+        if filters.subject is not None:
+            query = query.where(ModelRow.subject == filters.subject)
+        return tuple(map(_revision, self._session.scalars(query.offset(filters.offset).limit(filters.limit))))
 
     def for_upload(self, unit: str, new_type: str, stand: str | None) -> tuple[ModelRevision, ...]:
-        """All revisions that concern a session yet to be stored, oldest first; a new unit gets the new type."""
-        named = {"serial": unit, "new_type": new_type, "stand": stand or ""}
-        return tuple(map(_revision, self._session.scalars(_FOR_UPLOAD, named)))
+        """All revisions that concern a session yet to be stored, oldest first; a new unit has the new type."""
+        parameters = {"serial": unit, "new_type": new_type, "stand": stand or ""}
+        return tuple(map(_revision, self._session.scalars(_FOR_UPLOAD, parameters)))
 
     def of_session(self, id: str) -> tuple[ModelRevision, ...]:
         """All revisions that concern a stored session, oldest first, in one query."""
@@ -140,12 +140,12 @@ class Models(Queries):
         return tuple(map(_revision, self._session.scalars(select(ModelRow).where(owner).order_by(ModelRow.id))))
 
     def units_behind(self, after: str, limit: int) -> tuple[str, ...]:
-        """Serial numbers, in order and after one, of units with sessions that a later revision than theirs concerns."""
+        """Serial numbers, in order and after one, of units with sessions that a later revision concerns."""
         query = select(UnitRow.serial).join(UnitTypeRow).where(_is_behind(), UnitRow.serial > after)
         return tuple(self._session.scalars(query.order_by(UnitRow.serial).limit(limit)))
 
     def count_behind(self) -> int:
-        """How many those are."""
+        """Number of such units."""
         return self._session.scalar(select(func.count(UnitRow.id)).join(UnitTypeRow).where(_is_behind())) or 0
 
 
@@ -171,7 +171,7 @@ _FOR_UPLOAD = (
 
 
 def _is_behind() -> ColumnElement[bool]:
-    """Whether a unit, beside its type, has a session that rests on an earlier revision than concerns it now."""
+    """Whether a unit, joined with its type, has a session with an earlier revision than the current one."""
     later = (
         select(SessionRow.id)
         .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
@@ -199,55 +199,57 @@ def _revision(row: ModelRow) -> ModelRevision:
 
 
 class Recomputations(Queries):
-    """What model revisions brought, unit by unit."""
+    """Recomputations after model revisions, unit by unit."""
 
     def ask(self, revision: int, scope: Scope, subject: str, now: datetime) -> int:
-        """Asks for every unit that a revision of a model concerns; returns how many those are."""
-        units = select(UnitRow.id, UnitRow.serial).where(concerned(scope, subject)).order_by(UnitRow.id)
-        found = self._session.execute(units).all()
+        """Requests the recomputation of every unit concerned by a revision; returns their number."""
+        query = select(UnitRow.id, UnitRow.serial).where(concerned(scope, subject)).order_by(UnitRow.id)
+        found = self._session.execute(query).all()
         rows = [{"revision": revision, "unit_id": unit, "state": Progress.WAITING} for unit, _ in found]
         self.insert_all_once(RecomputationRow, rows)
-        self._queue.ask_once((Task(revision, serial).key for _, serial in found), now)
+        self._queue.enqueue_once((Task(revision, serial).key for _, serial in found), now)
         return len(found)
 
     def waiting(self, now: datetime, limit: int) -> tuple[Task, ...]:
-        """What nobody is at, the one that was asked for first before all."""
+        """Unclaimed tasks, the oldest request first."""
         return tuple(map(task_of, self._queue.waiting(now, limit)))
 
     def try_again(self) -> None:
-        """What was given up waits again, as its work does."""
-        own = update(RecomputationRow).where(RecomputationRow.state == Progress.GIVEN_UP)
-        self._session.execute(own.values(state=Progress.WAITING, done_at=None))
+        """Retries recomputations that were given up, as their work is."""
+        statement = update(RecomputationRow).where(RecomputationRow.state == Progress.GIVEN_UP)
+        self._session.execute(statement.values(state=Progress.WAITING, done_at=None))
 
     def give_up(self, task: Task, now: datetime) -> None:
-        """No process outlived it: its sessions keep what they have."""
+        """Gives up: the sessions stay as they were."""
         self._session.execute(update(RecomputationRow).where(*_of(task)).values(state=Progress.GIVEN_UP, done_at=now))
         self._queue.give_up(task.key)
 
     def cancel(self, revision: int, now: datetime) -> None:
-        """Nobody begins the units of a revision that nobody is at."""
-        own = (RecomputationRow.revision == revision, RecomputationRow.state == Progress.WAITING)
+        """Cancels the unclaimed units of a revision."""
+        conditions = (RecomputationRow.revision == revision, RecomputationRow.state == Progress.WAITING)
         query = select(RecomputationRow.unit_id, UnitRow.serial).join(UnitRow, UnitRow.id == RecomputationRow.unit_id)
-        found = self._session.execute(query.where(*own).with_for_update(of=RecomputationRow))
-        units = {Task(revision, serial).key: unit for unit, serial in found}
-        free = [units[key] for key in self._queue.drop_free(units, now)]
-        cancelled = update(RecomputationRow).where(*own, RecomputationRow.unit_id.in_(free))
-        self._session.execute(cancelled.values(state=Progress.CANCELLED, done_at=now))
+        rows = self._session.execute(query.where(*conditions).with_for_update(of=RecomputationRow))
+        units = {Task(revision, serial).key: unit for unit, serial in rows}
+        unclaimed = [units[key] for key in self._queue.drop_free(units, now)]
+        statement = update(RecomputationRow).where(*conditions, RecomputationRow.unit_id.in_(unclaimed))
+        self._session.execute(statement.values(state=Progress.CANCELLED, done_at=now))
 
     def settle(self, task: Task, outcome: Recomputed, now: datetime) -> bool:
-        """Keeps what became of a unit's sessions, once; whether that was now."""
-        told = {
+        """Stores the result of a unit, once; whether that was now."""
+        document = {
             **asdict(outcome),
             "verdicts": [asdict(one) | {"started_at": one.started_at.isoformat()} for one in outcome.verdicts],
         }
-        own = update(RecomputationRow).where(*_of(task), RecomputationRow.state == Progress.WAITING)
-        kept = own.values(state=Progress.DONE, done_at=now, outcome=told).returning(RecomputationRow.unit_id)
-        is_new = self._session.scalar(kept) is not None
+        statement = update(RecomputationRow).where(*_of(task), RecomputationRow.state == Progress.WAITING)
+        stored = statement.values(state=Progress.DONE, done_at=now, outcome=document).returning(
+            RecomputationRow.unit_id
+        )
+        is_new = self._session.scalar(stored) is not None
         self._queue.drop(task.key)
         return is_new
 
     def of(self, revision: int) -> tuple[Recomputation, ...]:
-        """What a revision brought, by serial number."""
+        """Recomputations of a revision, by serial number."""
         query = select(RecomputationRow, UnitRow.serial, WorkRow.failed)
         query = query.join(UnitRow, UnitRow.id == RecomputationRow.unit_id).outerjoin(WorkRow, _WORK)
         rows = self._session.execute(query.where(RecomputationRow.revision == revision).order_by(UnitRow.serial))
@@ -273,15 +275,15 @@ _WORK = and_(WorkRow.kind == WorkKind.RECOMPUTATION, WorkRow.key == _KEY)
 
 
 def concerned(scope: Scope, subject: str) -> ColumnElement[bool]:
-    """Units that a model, or work of this scope, is of."""
+    """Units of a scope."""
     match scope:
         case Scope.UNIT:
             return UnitRow.serial == subject
         case Scope.UNIT_TYPE:
             return UnitRow.unit_type_id.in_(select(UnitTypeRow.id).where(UnitTypeRow.name == subject))
         case Scope.STAND:
-            on = select(SessionRow.unit_id).join(StandRow, StandRow.id == SessionRow.stand_id)
-            return UnitRow.id.in_(on.where(StandRow.name == subject))
+            units = select(SessionRow.unit_id).join(StandRow, StandRow.id == SessionRow.stand_id)
+            return UnitRow.id.in_(units.where(StandRow.name == subject))
 
 
 def _of(task: Task) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
@@ -289,18 +291,18 @@ def _of(task: Task) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     return RecomputationRow.revision == task.revision, RecomputationRow.unit_id == unit
 
 
-def _read(told: dict[str, Any]) -> Recomputed:
-    """What `settle` wrote."""
-    furthest = told["furthest"]
+def _read(document: Json) -> Recomputed:
+    """Reads a document of `settle`."""
+    furthest = document["furthest"]
     return Recomputed(
-        sessions=told["sessions"],
-        recomputed=told["recomputed"],
-        left=told["left"],
-        verdicts=tuple(_moved(one) for one in told["verdicts"]),
+        sessions=document["sessions"],
+        recomputed=document["recomputed"],
+        left=document["left"],
+        verdicts=tuple(_moved(one) for one in document["verdicts"]),
         furthest=None if furthest is None else MovedParameter(**furthest),
     )
 
 
-def _moved(one: dict[str, str]) -> MovedVerdict:
-    at = datetime.fromisoformat(one["started_at"])
-    return MovedVerdict(one["session"], at, Verdict(one["before"]), Verdict(one["after"]))
+def _moved(document: dict[str, str]) -> MovedVerdict:
+    at = datetime.fromisoformat(document["started_at"])
+    return MovedVerdict(document["session"], at, Verdict(document["before"]), Verdict(document["after"]))

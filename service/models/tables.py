@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.tables import Base
 
 
@@ -20,7 +21,7 @@ class ModelRow(Base):
     cause: Mapped[str] = mapped_column(String(60))
     sensors: Mapped[list[Any]]
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
-    evidence: Mapped[dict[str, Any]]
+    evidence: Mapped[Json]
     accepted_by: Mapped[str]
     note: Mapped[str]
     accepted_at: Mapped[datetime]
@@ -28,11 +29,11 @@ class ModelRow(Base):
 
 
 class RecomputationRow(Base):
-    """A unit whose sessions a revision concerns: whether they are computed again, and what moved because of it."""
+    """Recomputation of a unit after a revision: its state, and the result."""
 
     __tablename__ = "recomputations"
     revision: Mapped[int] = mapped_column(ForeignKey("model_revisions.id"), primary_key=True, autoincrement=False)
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
     state: Mapped[str] = mapped_column(String(20))
     done_at: Mapped[datetime | None]
-    outcome: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    outcome: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))

@@ -1,4 +1,4 @@
-"""What another model moved in stored sessions, in words."""
+"""Results of recomputation in words."""
 
 from collections.abc import Sequence
 
@@ -10,57 +10,60 @@ GIVEN_UP = (
     "The program failed at it, several times: its sessions keep what they had. An administrator can try again: see "
     "Failed work on the page Jobs."
 )
-AGAIN = "The last try failed: {why}. It is tried again by itself."
+AGAIN = "The last try failed: {why}. It is retried automatically."
 CANCELLED = "Cancelled before its turn: its sessions keep what they had."
-UNTOUCHED = "no parameter moved"
+NO_CHANGE = "no parameter changed"
 
 
-def progress_of(found: Sequence[Recomputation]) -> str:
-    """How far the sessions of all units have come, and what that moved; empty where none is computed again."""
-    if not found:
+def progress_of(recomputations: Sequence[Recomputation]) -> str:
+    """State of the recomputation of all units, and changed verdicts; empty without any."""
+    if not recomputations:
         return ""
-    done = [one.outcome for one in found if one.outcome is not None]
-    waiting = sum(one.state is Progress.WAITING for one in found)
-    sessions, moved = sum(one.recomputed for one in done), sum(len(one.verdicts) for one in done)
-    units = say("{done} of {found}", done=len(done), found=_counted(len(found), "unit"))
-    verdicts = (
-        say("the verdict of {moved} is another", moved=_counted(moved, "session")) if moved else "no verdict moved"
+    done = [recomputation.outcome for recomputation in recomputations if recomputation.outcome is not None]
+    waiting = sum(recomputation.state is Progress.WAITING for recomputation in recomputations)
+    sessions, changed = (
+        sum(recomputation.recomputed for recomputation in done),
+        sum(len(recomputation.verdicts) for recomputation in done),
     )
-    still = say(" {waiting} still to come.", waiting=_counted(waiting, "unit")) if waiting else ""
+    units = say("{done} of {units}", done=len(done), units=_counted(len(recomputations), "unit"))
+    verdicts = (
+        say("verdict changed: {sessions}", sessions=_counted(changed, "session")) if changed else "no verdict changed"
+    )
+    remaining = say(" {waiting} still to come.", waiting=_counted(waiting, "unit")) if waiting else ""
     return say(
-        "{sessions} of {units} computed again: {verdicts}.{still}",
+        "{sessions} of {units} computed again: {verdicts}.{progress}",
         sessions=_counted(sessions, "session"),
         units=units,
         verdicts=verdicts,
-        still=still,
+        progress=remaining,
     )
 
 
-def left_in_words(one: Recomputation) -> str:
-    """Why a unit's sessions are as before; empty where its turn has not come."""
-    match one.state:
+def left_in_words(recomputation: Recomputation) -> str:
+    """Why a unit's sessions are as before; empty while it waits."""
+    match recomputation.state:
         case Progress.GIVEN_UP:
             return GIVEN_UP
         case Progress.CANCELLED:
             return CANCELLED
         case _:
-            return say(AGAIN, why=without_stop(one.failed)) if one.failed else ""
+            return say(AGAIN, why=without_stop(recomputation.failed)) if recomputation.failed else ""
 
 
 def moved_in_words(moved: MovedParameter | None) -> str:
-    """``bias of A3 by −0.41 µg (U = 4.8 µg)``: the change beside the uncertainty of what changed."""
+    """``bias of A3 by −0.41 µg (U = 4.8 µg)``: the change beside the uncertainty of the parameter."""
     if moved is None:
-        return UNTOUCHED
+        return NO_CHANGE
     u = COVERAGE * moved.u
     measure = deviation_measure(moved.kind, moved.parameter, max(abs(moved.change), u))
-    by, unsure = (_shown(value, measure) for value in (moved.change, u))
+    amplitude, uncertainty = (_shown(value, measure) for value in (moved.change, u))
     return say(
-        "{parameter} of {sensor} by {by} (U{hard}={hard}{unsure})",
+        "{parameter} of {sensor} by {amplitude} (U{nbsp}={nbsp}{uncertainty})",
         parameter=PARAMETER_NAMES[moved.parameter],
         sensor=moved.sensor,
-        by=by,
-        hard=HARD,
-        unsure=unsure,
+        amplitude=amplitude,
+        nbsp=HARD,
+        uncertainty=uncertainty,
     )
 
 
@@ -70,5 +73,5 @@ def _shown(value: float, measure: Measure) -> str:
     return f"{number(shown, decimals(abs(shown)))}{THIN}" + measure.label
 
 
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}{'' if count == 1 else 's'}"

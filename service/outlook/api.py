@@ -12,7 +12,13 @@ from uuid import NAMESPACE_URL, uuid5
 
 from fastapi import APIRouter, Request, Response
 
-from service.outlook.store import Outlooks
+from service.fleet.condition import UnitSummary
+from service.fleet.records import FleetQuery, Order
+from service.fleet.store import Fleet
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
+from service.judging.use import Use, in_words
+from service.outlook.changes import END_OF_TIME
 from service.web.dependencies import Now, Reading
 from service.web.problem_document import errors
 
@@ -92,14 +98,20 @@ TEXT = {"type": "string"}
 @router.get("/due.ics", responses={200: {"content": {CALENDAR: {"schema": TEXT}}}, **errors()}, response_class=Response)
 def read_due_dates(request: Request, store: Reading, now: Now) -> Response:
     """The days on which calibrations are due, as a calendar: of the first 1,000 units, overdue ones before all."""
-    days = [
-        DueDay(
-            unit=one.unit,
-            day=one.at.date(),
-            summary=f"{one.unit}: calibration {'overdue' if one.at < now else 'due'}",
-            description=one.reason,
-            url=f"{request.base_url}units/{quote(one.unit)}",
-        )
-        for one in Outlooks(store).due(MOST_DAYS)
-    ]
+    units = Fleet(store).units(FleetQuery(order=Order.DUE, due_before=END_OF_TIME, limit=MOST_DAYS))
+    uses = usable_of(store, units, now)
+    days = [_due_day(uses[unit.serial], unit, str(request.base_url)) for unit in units]
     return Response(calendar(days, now), media_type=f"{CALENDAR}; charset=utf-8")
+
+
+def _due_day(use: Usable, unit: UnitSummary, base: str) -> DueDay:
+    """The rule that set the date, after what must be known or done first."""
+    assert use.until is not None
+    first = "" if use.use is Use.YES else f"{in_words(use.use, use.action)}. "
+    return DueDay(
+        unit=unit.serial,
+        day=use.until.date(),
+        summary=f"{unit.serial}: calibration {'overdue' if use.is_overdue else 'due'}",
+        description=f"{first}{use.due_reason}",
+        url=f"{base}units/{quote(unit.serial)}",
+    )

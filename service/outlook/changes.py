@@ -9,10 +9,12 @@ from hashlib import sha256
 from estimator.health.pooled import Prior, learn
 from service.kit.lock_order import outside_writing
 from service.kit.measures import COVERAGE
+from service.outlook.explained import left_of
 from service.outlook.records import UnitOutlook
 from service.outlook.rules.forecast import Past, forecast
 from service.outlook.rules.histories import Histories, histories
 from service.outlook.store import Outlooks, unpacked
+from service.outlook.words import explained_in_words
 from service.sessions.store import Sessions
 from service.sessions.words.motion import motions_in_words
 from service.storage.queries import Store
@@ -21,7 +23,7 @@ from service.units.store import Services, Units
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
-RULE = b"5"
+RULE = b"6"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
@@ -38,14 +40,15 @@ class Sources:
     """The unit's own."""
     told: TypeHistories
     together: tuple[str, ...]
-    """What all sensors did together, in words."""
+    """What all sensors did together, and what a diagnosis explains of the latest changes, in words."""
 
 
 def known_of(store: Store, serial: str) -> Histories:
     """A unit's own histories since its last break."""
     unit = Units(store).key(serial)
     since, _ = Services(store).around(unit, END_OF_TIME)
-    return histories(Outlooks(store).changes(unit, since), Outlooks(store).references(unit, since))
+    changes, references = Outlooks(store).changes(unit, since), Outlooks(store).references(unit, since)
+    return histories(changes, references, left_of(store, serial, changes, references))
 
 
 def gathered(store: Store, serial: str, known: Histories) -> Sources:
@@ -61,7 +64,11 @@ def gathered(store: Store, serial: str, known: Histories) -> Sources:
         shown=None if shown is None else Sessions(store).get(shown),
     )
     together = () if last is None else motions_in_words(Sessions(store).motions(last[0]), COVERAGE)
-    return Sources(past, known, of_type(store, unit), tuple(line.text for line in together))
+    said = tuple(line.text for line in together)
+    if past.latest is not None:
+        parts = known.explained_in(past.latest.id)
+        said += (explained_in_words(past.latest.started_at, parts),) if parts else ()
+    return Sources(past, known, of_type(store, unit), said)
 
 
 @outside_writing

@@ -8,6 +8,7 @@ from typing import Any
 
 import altair as alt
 
+from estimator.json_object import Json
 from service.kit.measures import Measure, day_of, deviation_measure, in_measure, limit, measured, signed
 from service.outlook.records import ParameterTrend
 from service.outlook.rules.histories import Change, changes_of
@@ -161,7 +162,7 @@ def trend_of(track: Track, trends: Trends) -> ParameterTrend | None:
 
 def forecast_data(
     track: Track, trends: Trends, iso: Callable[[datetime], str], short: Callable[[float | None], float | None]
-) -> dict[str, list[dict[str, Any]]]:
+) -> dict[str, list[Json]]:
     """The data sets of one panel; empty without a trend."""
     trend = trend_of(track, trends)
     if trend is None or not trend.fan or trend.since is None:
@@ -213,7 +214,7 @@ HEIGHT = 150
 
 
 @cache
-def history_spec() -> dict[str, Any]:
+def history_spec() -> Json:
     """With blanks for the unit and the ranges."""
     points, limits, services, notes = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services", "notes"))
     x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
@@ -269,7 +270,7 @@ def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
     shown = (*CONDITIONS, REFERENCE, NOT_JUDGED)
     names = [c.formal for c in shown]
 
-    def by_verdict(values: list[Any]) -> dict[str, Any]:
+    def by_verdict(values: list[Any]) -> Json:
         return {"legend": None, "scale": alt.Scale(domain=names, range=values)}
 
     chart: alt.Chart = base.mark_point(filled=True, opacity=1, stroke="var(--card)", strokeWidth=0.8).encode(
@@ -322,7 +323,7 @@ def _panel(track: Track, services: Sequence[Service], notes: Sequence[Note], spa
     )
 
 
-def _point(point: TrackPoint) -> dict[str, Any]:
+def _point(point: TrackPoint) -> Json:
     return {
         "t": _iso(point.at),
         "y": _short(point.shown),
@@ -335,7 +336,7 @@ def _point(point: TrackPoint) -> dict[str, Any]:
     }
 
 
-def _limits(track: Track, span: list[str]) -> list[dict[str, Any]]:
+def _limits(track: Track, span: list[str]) -> list[Json]:
     """Tolerance and reference, each stretch until the next one begins, from edge to edge of the chart."""
     starts = [_iso(point.at) for point in track.limits]
     return [
@@ -353,10 +354,10 @@ def _short(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.6g}")
 
 
-def _filled(tracks: Sequence[Track], span: list[str], trends: Trends) -> dict[str, Any]:
+def _filled(tracks: Sequence[Track], span: list[str], trends: Trends) -> Json:
     low, high = _range(tracks, trends)
     values = {UNIT: tracks[0].unit.label, LEFT: span[0], RIGHT: span[1], LOW: low, HIGH: high}
-    found: dict[str, Any] = filled(history_spec(), values)
+    found: Json = filled(history_spec(), values)
     return found
 
 

@@ -40,7 +40,7 @@ def dated(outlook: UnitOutlook | None, now: datetime) -> UnitOutlook | None:
 
 def nothing_known(serial: str) -> UnitOutlook:
     """Of a unit whose sessions were judged before outlooks were kept."""
-    reason = "No outlook yet: it is worked out with the next session."
+    reason = "No outlook yet: it is computed with the next session."
     return UnitOutlook(serial, None, False, reason, None, None, None, None, None, ())
 
 

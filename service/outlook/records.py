@@ -136,6 +136,8 @@ class TemperatureCoefficient:
     """Chance of one this far from zero when there is none."""
     is_found: bool
     """Whether the trend goes on without it."""
+    curvature: float | None = None
+    """SI or relative per °C², of a parabola, whose `value` is that at the mean temperature; null of a straight line."""
 
 
 @answer

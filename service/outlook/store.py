@@ -1,9 +1,8 @@
 """Outlooks, one a unit, the changes that they are made of, and those still to be worked out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
-from typing import Any
 
 import numpy as np
 from sqlalchemy import ColumnElement, Row, Select, delete, func, or_, select
@@ -12,27 +11,28 @@ from estimator.health.error_laws import FREEDOMS
 from estimator.health.fits import PART_KINDS, PARTS, WALKS
 from estimator.health.pooled import Evidence
 from estimator.health.shapes import Kind
+from estimator.json_object import Json
 from estimator.session import IN_SERVICE
 from service.outlook.populations import Placed, Population
 from service.outlook.records import DueDate, ParameterTrend, Rate, UnitOutlook
 from service.outlook.tables import HistoryRow, OutlookRow, PopulationRow
 from service.sessions.states_store import IS_ACCEPTED
-from service.sessions.tables import DecisionRow, SessionRow
+from service.sessions.tables import MOVES_DATES, DecisionRow, ParameterRow, SessionRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
-from service.types.store import tells_of_type
+from service.types.store import counts_for_type
 from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
 
-def outlook_to_dicts(outlook: UnitOutlook) -> tuple[dict[str, Any], dict[str, Any]]:
+def outlook_to_dicts(outlook: UnitOutlook) -> tuple[Json, Json]:
     """What `outlook_from_dicts` reads; times are ISO 8601."""
-    written: dict[str, Any] = STORED.written(outlook)
+    written: Json = STORED.written(outlook)
     fans = [trend.pop("fan") for trend in written["trends"]]
     return written, {"risk": written.pop("risk"), "fans": fans}
 
 
-def outlook_from_dicts(document: dict[str, Any], drawn: dict[str, Any] | None = None) -> UnitOutlook:
+def outlook_from_dicts(document: Json, drawn: Json | None = None) -> UnitOutlook:
     """The outlook that was written; without its fans and its risk where what is drawn was left in the store."""
     if drawn is None:
         return STORED.read(UnitOutlook, document)
@@ -78,9 +78,6 @@ def unpacked(content: bytes) -> tuple[Evidence, ...]:
 MOST_UNITS = 60
 """Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
 
-MOVES_DATES = or_(~SessionRow.is_check, SessionRow.is_reference)
-"""A check moves no date; one that is a reference counts, for all changes are counted from it."""
-
 
 @dataclass(frozen=True)
 class ChangeRow:
@@ -100,6 +97,12 @@ class ChangeRow:
     """Degrees of freedom of the uncertainty; None where all noise is known."""
     temperature: float | None
     """°C"""
+    value: float | None = None
+    """As measured; None of an axis."""
+    reference: float | None = None
+    u: float | None = None
+    """Of the value."""
+    session: str = ""
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,20 @@ class ReferenceRow:
     programme: str
     temperature: float | None
     """°C"""
+    session: str = ""
+    u: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """Of its values that follow the temperature, by sensor and parameter."""
+
+
+FOLLOW = ("scale", "bias")
+"""Parameters that follow the temperature by a law of the sensor's own."""
+OWN = (
+    (ParameterRow.session_id == DecisionRow.session_id)
+    & (ParameterRow.revision == DecisionRow.revision)
+    & (ParameterRow.sensor == DecisionRow.sensor)
+    & (ParameterRow.parameter == DecisionRow.parameter)
+)
+"""The measured parameter that a decision is on."""
 
 
 class Outlooks(Queries):
@@ -122,9 +139,11 @@ class Outlooks(Queries):
             select(
                 SessionRow.started_at, SessionRow.block, SessionRow.programme, DecisionRow.sensor, DecisionRow.kind,
                 DecisionRow.parameter, DecisionRow.tolerance, DecisionRow.change, DecisionRow.change_own,
-                DecisionRow.change_origin, DecisionRow.dof, SessionRow.temperature,
+                DecisionRow.change_origin, DecisionRow.dof, SessionRow.temperature, DecisionRow.value,
+                DecisionRow.reference, ParameterRow.u, SessionRow.id,
             )
             .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
+            .outerjoin(ParameterRow, OWN)
             .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
         )  # fmt: skip
         order = (SessionRow.started_at, SessionRow.id, DecisionRow.position)
@@ -134,11 +153,21 @@ class Outlooks(Queries):
 
     def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
         """The sessions since a time that others are judged against, oldest first."""
-        columns = (SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature)
-        query = select(*columns).where(SessionRow.is_reference)
+        own = (ParameterRow.session_id == SessionRow.id) & (ParameterRow.revision == SessionRow.revision)
+        query = select(
+            SessionRow.id, SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature,
+            ParameterRow.sensor, ParameterRow.parameter, ParameterRow.u,
+        ).outerjoin(ParameterRow, own & ParameterRow.parameter.in_(FOLLOW))  # fmt: skip
         order = (SessionRow.started_at, SessionRow.id)
-        found = self._session.execute(query.where(*_within(unit, since)).order_by(*order))
-        return tuple(ReferenceRow(*row) for row in found)
+        rows = self._session.execute(query.where(SessionRow.is_reference, *_within(unit, since)).order_by(*order))
+        found: dict[str, ReferenceRow] = {}
+        known: dict[str, dict[tuple[str, str], float]] = {}
+        for id, at, block, programme, warm, sensor, parameter, u in rows:
+            u_of = known.setdefault(id, {})
+            found.setdefault(id, ReferenceRow(at, block, programme, warm, id, u_of))
+            if u is not None:
+                u_of[sensor, parameter] = u
+        return tuple(found.values())
 
     def last_calibration(self, unit: int) -> tuple[str, datetime] | None:
         """The session that last measured the unit, recordings in service and checks apart, and when."""
@@ -204,7 +233,7 @@ class Outlooks(Queries):
             select(UnitTypeRow.name, UnitRow.lot, UnitRow.serial, OutlookRow.rates)
             .join(UnitRow, UnitRow.id == OutlookRow.unit_id)
             .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-            .where(UnitTypeRow.id == unit_type, tells_of_type(unit_type))
+            .where(UnitTypeRow.id == unit_type, counts_for_type(unit_type))
             .order_by(UnitRow.serial)
         )
         return tuple(

@@ -1,6 +1,6 @@
 """The tables of outlooks, of histories, and of how the units of types drift.
 
-transaction, and what types and stands show, which is asked for there and made beside the requests. All of it is a
+transaction, and what types and stands show, which is asked for there and made in the background. All of it is a
 function of the other tables and can be made again.
 
     tallied       ──> fleet_tallies     what every unit adds to the counts, and the counts
@@ -14,6 +14,7 @@ from typing import Any
 from sqlalchemy import ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import Sentence
 from service.storage.tables import Base
 
@@ -28,8 +29,8 @@ class OutlookRow(Base):
     """Why then, in one sentence."""
     rates: Mapped[list[Any]]
     """How every parameter drifts, for the type: ``[sensor, kind, parameter, rate, sigma, significance, tolerance]``."""
-    document: Mapped[dict[str, Any]]
-    drawn: Mapped[dict[str, Any]]
+    document: Mapped[Json]
+    drawn: Mapped[Json]
 
 
 class HistoryRow(Base):
@@ -65,6 +66,6 @@ class PopulationRow(Base):
     furthest_lot: Mapped[float]
     most_evident: Mapped[float]
     """Distance of the unit that is furthest out of those whose drift chance does not explain."""
-    far: Mapped[dict[str, Any]]
+    far: Mapped[Json]
     """The furthest units and lots."""
     made_at: Mapped[datetime]

@@ -1,10 +1,11 @@
 """How a unit or a production lot drifts unlike the others of its type, in words."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import floor, log10
 
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.wording import counted
 from service.kit.measures import (
     COVERAGE,
@@ -27,6 +28,7 @@ from service.outlook.records import (
     TemperatureCoefficient,
     UnitOutlook,
 )
+from service.outlook.rules.histories import TrackKey
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession
 
@@ -45,7 +47,7 @@ def drift_stands_out(sensor: str, parameter: str, value: float) -> str:
 def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
     """Of one parameter of a lot."""
     return say(
-        "Lot {lot} of {unit_type}: {parameter_names} drifts unlike that of the other units.",
+        "Lot {lot} of {unit_type}: {parameter_names} drifts unlike in the other units.",
         lot=lot,
         unit_type=unit_type,
         parameter_names=PARAMETER_NAMES[parameter],
@@ -53,11 +55,10 @@ def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
 
 
 CHANGED = {
-    "jump": "{what} has jumped between {after} and {before} by {moved}; {allowed} are allowed.",
-    "drift": "{what} has been drifting since {after} by {moved}; {allowed} are allowed.",
-    "aging": "{what} is aging since {after}, by {moved} in the first year and slower from then on; "
-    "{allowed} are allowed.",
-    "walk": "{what} has moved since {after}, at no steady rate; by {moved} so far; {allowed} are allowed.",
+    "jump": "{what} jumped by {moved} between {after} and {before}; tolerance ±{allowed}.",
+    "drift": "{what} has drifted at {moved} since {after}; tolerance ±{allowed}.",
+    "aging": "{what} has aged since {after}: {moved} in the first year, then more slowly; tolerance ±{allowed}.",
+    "walk": "{what} has changed by {moved} since {after}, at no steady rate; tolerance ±{allowed}.",
 }
 
 
@@ -69,7 +70,7 @@ def changes_of(trend: ParameterTrend) -> tuple[str, ...]:
 
 
 def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
-    """``A3 bias has jumped between 2 Mar 2026 and 4 May 2026 by +40 ± 3 µg; 50 µg are allowed.``"""
+    """``A3 bias jumped by +40 ± 3 µg between 2 Mar 2026 and 4 May 2026; tolerance ±50 µg.``"""
     rate = _sized(trend, change.size, change.sigma, "{rate} a year")
     return say(
         CHANGED[change.kind],
@@ -81,14 +82,45 @@ def change_in_words(trend: ParameterTrend, change: FoundChange) -> str:
     )
 
 
+MOST_NAMED = 6
+"""Parameters, by name, before the rest are counted."""
+
+
+def explained_in_words(at: datetime, parts: Sequence[tuple[TrackKey, float]]) -> str:
+    """What a diagnosis gives to the stand, or to what sensors share, of the changes of a session."""
+    named = [
+        say(
+            "{sensor} {parameter_names} {size}",
+            sensor=key.sensor,
+            parameter_names=PARAMETER_NAMES[key.parameter],
+            size=in_words(key.kind, key.parameter, size),
+        )
+        for key, size in parts[:MOST_NAMED]
+    ]
+    more = [say("{number} more", number=len(parts) - MOST_NAMED)] if len(parts) > MOST_NAMED else []
+    return say(
+        "By its diagnosis, the session of {day} owes these changes to the stand or to another shared cause, and they "
+        "do not count as changes of the sensors: {parts}.",
+        day=day_of(at),
+        parts=joined(", ", [*named, *more]),
+    )
+
+
 def place_of(trend: ParameterTrend) -> str:
     """``A3 bias``."""
     return say("{sensor} {parameter_names}", sensor=trend.sensor, parameter_names=PARAMETER_NAMES[trend.parameter])
 
 
 def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
+    if warm.curvature is not None:
+        return say(
+            "{trend} follows the temperature of the session along a curve, by {trend2} at its middle; its trend goes "
+            "on without that.",
+            trend=place_of(trend),
+            trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
+        )
     return say(
-        "{trend} follows the temperature of the session, by {trend2}; its trend goes on without that.",
+        "{trend} depends on the temperature of the session ({trend2}); the trend is stated without this effect.",
         trend=place_of(trend),
         trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
     )
@@ -102,7 +134,7 @@ def _sized(trend: ParameterTrend, size: float, sigma: float, per: str = "{rate}"
 
 UNFIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 """Verdicts after which no date helps."""
-NOTHING_DUE = "Nothing is due any more."
+NOTHING_DUE = "Nothing is due."
 
 
 def reason_of(basis: DueBasis, due: datetime | None) -> str:
@@ -111,29 +143,29 @@ def reason_of(basis: DueBasis, due: datetime | None) -> str:
         return "No calibration yet."
     if basis.rule is DueRule.RISK and due is not None:
         level = f"{100 * (basis.risk or 0):.0f} %"
-        chance = say("The chance that it is out of tolerance reaches {level} on {due}", level=level, due=day_of(due))
+        chance = say("The risk that it is out of tolerance reaches {level} on {due}", level=level, due=day_of(due))
         return say("{chance}; {basis} contributes most.", chance=chance, basis=_place(basis))
     if basis.rule is DueRule.MAY_BE_OUT:
-        return say("{basis} may be out of its tolerance already. Measure it again.", basis=_place(basis))
+        return say("{basis} may already be out of tolerance. Measure it again.", basis=_place(basis))
     return _since(basis, day_of(basis.at))
 
 
 def _since(basis: DueBasis, day: str) -> str:
     """By a rule that names the day it starts from."""
     interval = say(
-        "calibrate every {interval_days} at least", interval_days=counted(round(basis.interval_days or 0), "day")
+        "calibrate at least every {interval_days}", interval_days=counted(round(basis.interval_days or 0), "day")
     )
     if basis.rule is DueRule.INTERVAL:
         return say("Last calibrated on {day}; {interval}.", day=day, interval=interval)
     if basis.rule is DueRule.NO_TREND:
-        return say("Last calibrated on {day}, which shows no trend yet; {interval}.", day=day, interval=interval)
+        return say("Last calibrated on {day}; no trend known yet; {interval}.", day=day, interval=interval)
     if basis.rule is DueRule.UNFIT:
         return say(
             "Found out of tolerance on {day}: adjust, repair or withdraw it, record the service and measure it again.",
             day=day,
         )
     if basis.rule is DueRule.UNDECIDED:
-        return say("The session of {day} did not decide. {because}", day=day, because=basis.because)
+        return say("The session of {day} is undecided. {because}", day=day, because=basis.because)
     return say("Serviced on {day}: measure it again.", day=day)
 
 
@@ -167,22 +199,13 @@ def calibrated(session: StoredSession) -> str:
 
 def was_due(due: datetime, reason: str) -> str:
     """Of a unit whose date has passed; ``reason`` is that of its date."""
-    return say("Calibration was due on {due}. {reason}", due=day_of(due), reason=reason)
-
-
-def needed_now(verdict: Verdict | None, *, known: bool) -> str:
-    """In a table, of a unit that waits for no date."""
-    if verdict in UNFIT:
-        return "act now"
-    return "repeat" if known else "not known"
+    return say("Calibration was due on {date}. {reason}", date=day_of(due), reason=reason)
 
 
 FAR = 5.0
 """Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
 """From today on: a quarter, half a year and a year, as calibrations are put off."""
-TONES = {Action.NOW: "fail", Action.REPEAT: "conditional-fail"}
-"""Where the unit waits for no date."""
 
 
 @dataclass(frozen=True)
@@ -197,8 +220,6 @@ class Wait:
 class NextCalibration:
     """What a unit's page says of its future."""
 
-    tone: str
-    headline: str
     reason: str
     """The rule that set the date."""
     foreseen: str
@@ -213,8 +234,6 @@ class NextCalibration:
 def next_calibration(outlook: UnitOutlook, now: datetime) -> NextCalibration:
     """The words of an outlook, as of today."""
     return NextCalibration(
-        tone="fail" if outlook.overdue else TONES.get(outlook.action, "reference"),
-        headline=_headline(outlook),
         reason=outlook.reason,
         foreseen=foreseen(outlook),
         moving=_moving(outlook.trends),
@@ -223,22 +242,10 @@ def next_calibration(outlook: UnitOutlook, now: datetime) -> NextCalibration:
     )
 
 
-def _headline(outlook: UnitOutlook) -> str:
-    if outlook.action is Action.NOW:
-        return "Act now"
-    if outlook.action is Action.REPEAT:
-        return "Repeat the calibration"
-    if outlook.due is None:
-        return "Next calibration: not known"
-    if outlook.overdue:
-        return say("Calibration overdue since {due}", due=day_of(outlook.due))
-    return say("Next calibration: {due}", due=day_of(outlook.due))
-
-
 def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:
     found = [text for trend in trends for text in changes_of(trend)]
     found += [_wandered(trend) for trend in trends if has_moved(trend) and not trend.changes]
-    return tuple(found) if found or not trends else ("No parameter has changed beyond what chance explains.",)
+    return tuple(found) if found or not trends else ("No parameter has changed significantly.",)
 
 
 def has_moved(trend: ParameterTrend) -> bool:
@@ -251,10 +258,10 @@ def _wandered(trend: ParameterTrend) -> str:
     moved = signed(trend.level, COVERAGE * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return say(
-        "{trend} has moved by {moved}, at no steady rate; {allowed} are allowed.",
+        "{trend} has changed by {change}, at no steady rate; tolerance ±{tolerance}.",
         trend=place_of(trend),
-        moved=moved,
-        allowed=allowed,
+        change=moved,
+        tolerance=allowed,
     )
 
 
@@ -270,8 +277,8 @@ def _waits(outlook: UnitOutlook, now: datetime) -> tuple[Wait, ...]:
 
 def _percent(risk: float) -> str:
     if risk < 0.001:
-        return say("below{hard}0.1{thin}%", hard=HARD, thin=THIN)
+        return say("below{nbsp}0.1{thin_space}%", nbsp=HARD, thin_space=THIN)
     if risk > 0.99:
-        return say("above{hard}99{thin}%", hard=HARD, thin=THIN)
+        return say("above{nbsp}99{thin_space}%", nbsp=HARD, thin_space=THIN)
     places = max(0, -floor(log10(100 * risk)))
     return f"{100 * risk:.{places}f}{THIN}%"

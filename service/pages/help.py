@@ -103,7 +103,7 @@ WITHOUT = ("401", "403", "422")
 
 
 @dataclass(frozen=True)
-class Field:
+class FieldHelp:
     """A parameter of a call, or a field of a body."""
 
     name: str
@@ -128,7 +128,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Call:
+class CallHelp:
     """One operation."""
 
     anchor: str
@@ -137,7 +137,7 @@ class Call:
     summary: str
     role: str
     """The least role that may; empty where nobody needs one."""
-    fields: tuple[Field, ...]
+    fields: tuple[FieldHelp, ...]
     body: str
     """Name of the schema of what is sent; empty where it is no JSON."""
     body_kinds: tuple[str, ...]
@@ -149,7 +149,7 @@ class Section:
     """The calls of one subject."""
 
     name: str
-    calls: tuple[Call, ...]
+    calls: tuple[CallHelp, ...]
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ class Schema:
 
     name: str
     text: str
-    fields: tuple[Field, ...]
+    fields: tuple[FieldHelp, ...]
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ class ReferencePage:
 
 def reference_page(described: Mapping[str, Any]) -> ReferencePage:
     """The page of an OpenAPI document."""
-    sections: dict[str, list[Call]] = {}
+    sections: dict[str, list[CallHelp]] = {}
     for path, operations in described["paths"].items():
         for method, operation in operations.items():
             call = _call(method.upper(), path, operation)
@@ -185,10 +185,10 @@ def reference_page(described: Mapping[str, Any]) -> ReferencePage:
     )
 
 
-def _call(method: str, path: str, operation: Mapping[str, Any]) -> Call:
+def _call(method: str, path: str, operation: Mapping[str, Any]) -> CallHelp:
     text, _, role = operation.get("description", "").partition("Needs the role ")
     sent = operation.get("requestBody", {}).get("content", {})
-    return Call(
+    return CallHelp(
         anchor=f"{method.lower()}{path}".replace("/", "-").replace("{", "").replace("}", ""),
         method=method,
         path=path,
@@ -203,10 +203,10 @@ def _call(method: str, path: str, operation: Mapping[str, Any]) -> Call:
     )
 
 
-def _parameter(given: Mapping[str, Any]) -> Field:
+def _parameter(given: Mapping[str, Any]) -> FieldHelp:
     schema = given.get("schema", {})
     text = given.get("description") or schema.get("description", "")
-    return Field(given["name"], given["in"], _kind(schema), _schema_of(schema), given.get("required", False), text)
+    return FieldHelp(given["name"], given["in"], _kind(schema), _schema_of(schema), given.get("required", False), text)
 
 
 def _answer(status: str, said: Mapping[str, Any]) -> Answer:
@@ -218,7 +218,7 @@ def _answer(status: str, said: Mapping[str, Any]) -> Answer:
 def _schema(name: str, schema: Mapping[str, Any]) -> Schema:
     needed = schema.get("required", ())
     fields = tuple(
-        Field(field, "", _kind(own), _schema_of(own), field in needed, own.get("description", ""))
+        FieldHelp(field, "", _kind(own), _schema_of(own), field in needed, own.get("description", ""))
         for field, own in schema.get("properties", {}).items()
     )
     return Schema(name, schema.get("description", ""), fields)
@@ -256,7 +256,7 @@ WORDS = (
     ("session", "one file, one block, one day: the rows, what was set and who measured"),
     ("position", "one still setting of the block: an angle β on the stand, or an orientation"),
     ("stand, head", "the two-axis stand; its part that turns by β"),
-    ("input axis", "the direction in which a sensor answers; it differs a little from the nominal one"),
+    ("input axis", "the direction that a sensor measures; it differs slightly from the nominal one"),
     ("reference", "the session that the others of its epoch are judged against: the first by time measured, or the one "
      "that an engineer chose"),
     ("epoch", "the time between two services"),
@@ -266,9 +266,9 @@ WORDS = (
     ("residual", "measured minus modelled, at the input"),
     ("cause", "one physical effect that the baseline lacks: cubic term, eccentric angle scale, exchanged rows"),
     ("baseline", "the model with K, b, c and e of every sensor and the stand's stated random errors, and nothing else"),
-    ("flag", "a matter that somebody must look after, from raised to resolved"),
+    ("flag", "a matter that needs attention, from raised to resolved"),
     ("drift", "a steady change of a parameter; a *step* is a sudden one"),
-    ("risk", "the chance that any parameter of the unit is out of tolerance by a date"),
+    ("risk", "the probability that any parameter of the unit is out of tolerance by a date"),
     ("due", "the date of the next calibration"),
 )  # fmt: skip
 """Term and meaning."""
@@ -276,7 +276,7 @@ MEASURES = (
     ("µg, mg", "of accelerometers' bias: a millionth and a thousandth of standard gravity, 9.80665 m/s²"),
     ("ppm, %", "of scale factors: parts in a million, in a hundred"),
     ("arcsec", "of axes: a 3600th of a degree, 4.85 µrad"),
-    ("°/h, °/s", "of gyros' bias: degrees an hour, a second"),
+    ("°/h, °/s", "of gyros' bias: degrees per hour, per second"),
     ("µg/g²", "of quadratic terms: µg at one g, growing with the square"),
     ("per g, per °/s", "of scale factors: reading units (V, counts, pulses) for one g, for one degree a second"),
     ("± U", "expanded uncertainty: the true value lies within it in about 95 of 100 cases"),
@@ -290,32 +290,32 @@ WHEN = (
      "Do not use it. Adjust or repair it, record the service on its page, and measure it again: the next session is "
      "its new reference."),
     ("A unit is probably unfit, or probably fit",
-     "Its worst parameter lies nearer to the tolerance than the measurement can tell. Measure it once more, at more "
-     "positions: the page Plan says how many."),
+     "Its worst parameter is closer to the tolerance than the uncertainty of the measurement. Measure it again at "
+     "more positions: the page Plan says how many."),
     ("A session is undecided",
-     "It did not see what it should, or not well enough; its first sentence says which. Repeat it as the page Plan "
-     "proposes."),
-    ("A verdict is said with a reservation",
-     "Something that was found about the session speaks against it. Read what, and do what it advises before you "
-     "rely on the verdict."),
+     "A parameter was not observed, or not well enough; the first sentence says which. Repeat the session as the "
+     "page Plan proposes."),
+    ("A verdict has a reservation",
+     "A finding about the session qualifies the verdict. Read it, and follow its advice before you rely on the "
+     "verdict."),
     ("A session is questioned",
-     "It cannot be as its file says: a wrong unit, sign, channel or clock. Correct the file, or let an engineer accept "
-     "it with a reason. Until then it counts for nothing."),
+     "It cannot be as its file states: a wrong unit, sign, channel or clock. Correct the file, or let an engineer "
+     "accept it with a reason. Until then it does not count."),
     ("A file is refused",
      "Nothing was stored. Every problem is listed with its place and what to do: correct the file and send it again."),
     ("The wrong file was uploaded",
-     "An engineer withdraws the session on its page. It stays readable, and nothing rests on it any more."),
+     "An engineer withdraws the session on its page. It stays readable but no longer counts."),
     ("A unit is overdue",
-     "Measure it, or take it out of use: the chance that it is out of tolerance grows."),
-    ("A stand says: check before use",
-     "All units that were measured on it moved together, or a diagnosis found it at fault. Check stand and fixture; "
-     "then an engineer resolves its flags."),
+     "Measure it, or take it out of use: the risk that it is out of tolerance grows."),
+    ("A stand is marked: check before use",
+     "All units measured on it changed together, or a diagnosis found it at fault. Check stand and fixture; then an "
+     "engineer resolves its flags."),
     ("A stand's certificate has expired",
      "Traceability of sessions since then is interrupted. Have the stand calibrated, or record its new certificate on "
      "its page."),
     ("A flag is open",
-     "An engineer acknowledges it, with a name and why, does what it asks for, and resolves it. The unit's page shows "
-     "its life."),
+     "An engineer acknowledges it with a name and a reason, does what it asks for, and resolves it. The unit's page "
+     "shows its history."),
 )  # fmt: skip
 """What one meets, and what to do."""
 
@@ -334,7 +334,7 @@ def plainly(meaning: str) -> str:
     return meaning.replace("\\|", "|").replace("*", "")
 
 
-COUNTS = "It counts: what is known of its unit rests on it."
+COUNTS = "It counts."
 """Of an accepted record, where others say what they are not."""
 
 
@@ -361,7 +361,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/help")
 def show_help(request: Request) -> HTMLResponse:
-    """What to do when, and what the words mean."""
+    "What to do, and what the terms mean."
     return render(request, "help.html", help_page())
 
 

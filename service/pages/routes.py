@@ -12,6 +12,7 @@ from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
 from service.groups.sections import MOST_FOUND, found_line, group_section
 from service.ingest import is_own_layout
+from service.judging.usable_reading import usable_of
 from service.kit.arriving_files import where
 from service.kit.limits import in_force
 from service.models.rules import model_as_of
@@ -19,7 +20,7 @@ from service.models.store import Models
 from service.outlook.reading import dated
 from service.outlook.rules.populations import fleet_standouts
 from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
-from service.pages.fleet.view import FleetAsked, FleetView
+from service.pages.fleet.view import FleetView
 from service.pages.saved import saved
 from service.pages.session.pages import session_page
 from service.pages.unit.pages import unit_page
@@ -33,6 +34,8 @@ from service.people.dependencies import Key, StorageOf
 from service.people.view_store import SavedViews
 from service.people.views import ListPage
 from service.planning.pattern import type_names
+from service.queue.store import PendingWork
+from service.queue.words import pending_in_words
 from service.records.dependencies import ReceptionOf
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.doubt import Remedies
@@ -65,22 +68,23 @@ def show_fleet(
     store: ReadingFleet,
     now: Now,
     person: PersonOf,
-    asked: Annotated[FleetAsked, Query()],
+    view: Annotated[FleetView, Query()],
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
-    view, announced = FleetView.of(asked), Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
-    condition = Fleet(store).condition_at(now)
+    announced = Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
+    condition, units = Fleet(store).condition_at(now), Fleet(store).units(view.query(now))
     shown = fleet_page(
         condition,
-        Fleet(store).units(view.query(now)),
+        units,
+        usable_of(store, units, now),
         view,
-        now,
         overdue=condition.overdue,
         together=found_line(announced),
         unlike=fleet_standouts(store, MOST_STANDOUTS),
         stands=announced.stands,
         questioned=announced.questioned,
         choices=Fleet(store).choices(),
+        pending=pending_in_words(PendingWork(store).counts()),
         kept=saved(SavedViews(store).of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
     )
     return render(request, "fleet.html", shown)
@@ -98,21 +102,21 @@ def show_unit(
     """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
     report = unit_report(store, serial, now)
     is_judged_later = report.waiting and not report.summary.failed
-    is_coming = report.summary.is_undated and not report.summary.failed
+    is_pending = report.summary.is_undated and not report.summary.failed
     return render(
         request,
         "unit.html",
         unit_page(
             report,
             recent_history(store, serial, HISTORY_LIMIT, raw=raw, noise=True),
-            now=now,
+            usable_of(store, (report.summary,), now)[serial],
             raw=raw,
             flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
-            follow=SOONEST if is_judged_later or (is_coming and settings.diagnosis_workers) else None,
+            follow=SOONEST if is_judged_later or (is_pending and settings.diagnosis_workers) else None,
             said=remarks(serial, "", (), report.said.files, in_force().attached),
         ),
     )

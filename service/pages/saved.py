@@ -2,29 +2,28 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 from urllib.parse import parse_qsl, urlsplit
 
 from fastapi import APIRouter, Form
 from fastapi.responses import RedirectResponse
-from pydantic import BaseModel
 
-from service.flags.view import FlagsAsked, FlagsView
+from service.flags.view import FlagsView
 from service.kit.person import Person
-from service.pages.fleet.view import FleetAsked, FleetView
-from service.pages.session.view import SessionsAsked, SessionsView
+from service.pages.fleet.view import FleetView
+from service.pages.session.view import SessionsView
 from service.people.admission import PersonOf
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Number, StorageOf
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Number, StorageOf
 from service.people.keep_view import may_remove, may_share, remove_view, save_view
 from service.people.views import ListPage, NewView, SavedView
 from service.web.dependencies import Now
 from service.web.fields import NO_NUL
-from service.web.list_view import ListView
+from service.web.list_view import PLACE, ListView
 
-LISTS: Mapping[ListPage, tuple[type[BaseModel], Any]] = {
-    ListPage.FLEET: (FleetAsked, FleetView),
-    ListPage.SESSIONS: (SessionsAsked, SessionsView),
-    ListPage.FLAGS: (FlagsAsked, FlagsView),
+LISTS: Mapping[ListPage, type[ListView]] = {
+    ListPage.FLEET: FleetView,
+    ListPage.SESSIONS: SessionsView,
+    ListPage.FLAGS: FlagsView,
 }
 """How the address of each list is read."""
 LONGEST = 200
@@ -71,7 +70,7 @@ class Saved:
 
 def saved(found: Sequence[SavedView], view: ListView, page: ListPage, person: Person) -> Saved:
     """The links above a list."""
-    first = view.url(**view.FIRST)
+    first = view.first()
     return Saved(page, tuple(_link(one, first, person) for one in found), query_of(first), bool(person.login),
                  may_share(person))  # fmt: skip
 
@@ -88,11 +87,8 @@ def address(view: SavedView) -> str:
 
 def view_of(page: ListPage, query: str) -> ListView:
     """The view that a query asks for, from its first page on; what of it cannot be asked is left out."""
-    asked, view = LISTS[page]
-    places = {view.NAMES[field] for field in view.FIRST}
-    given = {k: v[:LONGEST].replace("\x00", "") for k, v in parse_qsl(query) if k not in places}
-    found: ListView = view.of(asked(**given))
-    return found
+    given = {k: v[:LONGEST].replace("\x00", "") for k, v in parse_qsl(query) if k not in PLACE}
+    return LISTS[page].model_validate(given)
 
 
 def query_of(url: str) -> str:
@@ -101,7 +97,7 @@ def query_of(url: str) -> str:
 
 
 router = APIRouter(prefix="/views", include_in_schema=False)
-Name = Annotated[str, Form(max_length=100, pattern=SAYS_SOMETHING)]
+Name = Annotated[str, Form(max_length=100, pattern=NOT_BLANK)]
 Query = Annotated[str, Form(max_length=20_000, pattern=NO_NUL)]
 """An address's, percent signs included: nine parts of 200 characters."""
 

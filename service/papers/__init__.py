@@ -1,1 +1,1 @@
-"""What is handed to people and programs: certificates, corrections, labels, exports."""
+"""Documents for people and programs: certificates, corrections, labels, exports."""

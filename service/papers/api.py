@@ -2,17 +2,27 @@
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.store import Fleet
+from service.judging.usable_reading import usable_of
 from service.papers.changes import Signing
 from service.papers.correction import correction_document
 from service.papers.dependencies import DeskOf
-from service.papers.desk import HandedOut, Papers, hand_out, hand_out_approved, hand_out_together, papers_of, sign
+from service.papers.desk import (
+    CertificateDocument,
+    Papers,
+    hand_out,
+    hand_out_approved,
+    hand_out_together,
+    papers_of,
+    sign,
+)
 from service.papers.label import Label, label_of, label_pdf, label_svg
 from service.papers.records import NOT_STATED, Signature
 from service.papers.schemas import CorrectionDocument, NewSignature
@@ -30,7 +40,7 @@ PDF, XML = "application/pdf", "application/xml"
 """Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
 """How OpenAPI describes a file."""
-FILES: dict[int | str, dict[str, Any]] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
+FILES: dict[int | str, Json] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
 Format = Annotated[
     Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
 ]
@@ -96,7 +106,7 @@ def sign_certificate(
     return signature
 
 
-def _file(paper: HandedOut, format: str) -> Response:
+def _file(paper: CertificateDocument, format: str) -> Response:
     media, ending = (XML, "xml") if format == "dcc" else (PDF, "pdf")
     return as_file(paper.content, media, f"{paper.name}.{ending}")
 
@@ -136,7 +146,7 @@ LABEL_PDF, SVG = "application/pdf", "image/svg+xml"
 """Media types of the two forms."""
 
 
-Due = Annotated[bool, Query(description="Whether it says when the calibration is due.")]
+Due = Annotated[bool, Query(description="Whether it says if the unit may be used and when its calibration is due.")]
 
 
 @dataclass(frozen=True)
@@ -154,7 +164,8 @@ class Labels:
         if unit is None:
             raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
         base = self.settings.public_url or str(self.request.base_url)
-        return label_of(unit, base, self.now, with_due=due)
+        use = usable_of(self.store, (unit,), self.now)[serial]
+        return label_of(unit, use, base, with_due=due)
 
 
 def _labels(request: Request, store: Reading, settings: SettingsOf, now: Now) -> Labels:
@@ -170,7 +181,7 @@ LabelsOf = Annotated[Labels, Depends(_labels)]
     response_class=Response,
 )
 def read_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
-    """A small label: serial number, due date, and a QR code that opens the unit's page.
+    """A small label: serial number, `DO NOT USE` or the due date, and a QR code that opens the unit's page.
 
     Its address is that of the setting `IMU_HEALTH_PUBLIC_URL`, or the one that this request was sent to.
     """

@@ -1,4 +1,4 @@
-"""Everything that a certificate of a session states, read from what is stored."""
+"""Everything stated in a certificate of a session, read from the store."""
 
 from dataclasses import dataclass
 from datetime import timedelta
@@ -35,22 +35,22 @@ from service.units.store import Services, Units
 def traceability_of(store: Store, session: StoredSession) -> Traceability:
     """By the certificate of its stand at the day of measurement, UTC."""
     day = session.started_at.date()
-    found = None if session.stand is None else StandCertificates(store).on(session.stand, day)
-    return traceability(session.stand, found, day)
+    certificate = None if session.stand is None else StandCertificates(store).on(session.stand, day)
+    return traceability(session.stand, certificate, day)
 
 
 MOST_POINTS = 10_000
 """Points of the unit's history that are read, of the newest sessions up to the certified one."""
 MOST_EARLIER = 50
-"""Earlier sessions among which the one is looked for that shows the unit as found."""
+"""Earlier sessions that are searched for the one as found."""
 NOT_ACCEPTED = "This session is {state}: no certificate is issued of a record that does not count."
 JUST_AFTER = timedelta(microseconds=1)
-"""The finest step of a stored time."""
+"""Resolution of a stored time."""
 
 
 @dataclass(frozen=True)
 class ReferenceSession:
-    """The session that another was judged against."""
+    """The reference of a judged session."""
 
     session: StoredSession
     calibration: Calibration
@@ -59,19 +59,19 @@ class ReferenceSession:
 
 @dataclass(frozen=True)
 class CertifiedSession:
-    """Everything that a certificate states. It rests on the session and on what came before it, never on later ones."""
+    """Everything stated in a certificate. It depends on the session and earlier ones, never on later ones."""
 
     report: SessionReport
     source: CalibrationSession
-    """What the file says."""
+    """The session in the file."""
     unit_type: UnitType
     reference: ReferenceSession | None
-    """None of a session that is the reference itself."""
+    """None for a reference."""
     pair: FoundAndLeft | None
-    """Of a session that shows the unit as left: with the one that shows it as found."""
+    """Of a session as left: with the one as found."""
     diagnosis: StoredDiagnosis
     revisions: tuple[ModelRevision, ...]
-    """The accepted causes that its calibration takes into account."""
+    """The accepted causes in its calibration."""
     services: tuple[Service, ...]
     """Of the unit, up to the session."""
     history: tuple[HistoryPoint, ...]
@@ -79,13 +79,13 @@ class CertifiedSession:
     customer: Customer
     traceability: Traceability
     calibration_json: bytes
-    """imu-calibration/1 as it was written: every number that the certificate rests on."""
+    """imu-calibration/1 as it was written: the numbers behind the certificate."""
     software: str
     """Version."""
 
 
 def laboratory_of(settings: Settings) -> Laboratory:
-    """Who calibrates, as the operator set it."""
+    """The laboratory from the settings."""
     return Laboratory(
         name=settings.laboratory_name.strip(),
         address=settings.laboratory_address.strip(),
@@ -95,7 +95,7 @@ def laboratory_of(settings: Settings) -> Laboratory:
 
 
 def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: Laboratory) -> CertifiedSession:
-    """The session of a diagnosis with all that its certificate needs; ConflictError where it does not count."""
+    """The session of a diagnosis with everything for its certificate; ConflictError where it does not count."""
     id = diagnosis.session
     with storage.database.reading() as store:
         report = session_report(store, id)
@@ -122,19 +122,19 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
 
 
 def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
-    """What the session was judged against."""
+    """The reference of the session."""
     if stored.is_reference:
         return None
     unit, block = Units(store).key(stored.unit), UnitTypes(store).of_unit(stored.unit).block
-    found = reference_of(store, unit, block, stored.programme, stored.started_at).session
-    if found is None:
+    reference_id = reference_of(store, unit, block, stored.programme, stored.started_at).session
+    if reference_id is None:
         return None
-    session = Sessions(store).get(found)
-    return ReferenceSession(session, Calibrations(store).get(found), traceability_of(store, session))
+    session = Sessions(store).get(reference_id)
+    return ReferenceSession(session, Calibrations(store).get(reference_id), traceability_of(store, session))
 
 
 def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:
-    """The unit as found and as left, where the session is the latter."""
+    """The unit as found and as left, for a session as left."""
     stored = report.session
     if stored.stage != AS_LEFT:
         return None

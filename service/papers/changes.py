@@ -1,7 +1,7 @@
-"""A certificate gets its number, and is signed as reviewed or approved.
+"""Numbers and signatures of certificates.
 
-A certificate is reviewed first and approved by somebody else. What is signed is what it states, by its hash, and only
-while that is still what is stored; an approved certificate is kept byte by byte.
+A certificate is reviewed first and approved by somebody else. The signature is bound to the hash of the contents, and
+possible only while the stored data are the same; an approved certificate is kept byte by byte.
 """
 
 from collections.abc import Sequence
@@ -22,24 +22,24 @@ from service.storage.queries import Store
 from service.units.store import Units
 
 SPECIMEN = "specimen-"
-"""Begins the number of what is written of a simulated session: no such number is a certificate's."""
+"""Prefix of the number of a simulated session's specimen: no certificate has such a number."""
 
 
 @dataclass(frozen=True)
 class Statement:
-    """What a certificate is about to state."""
+    """Contents of a certificate to be issued."""
 
     unit: str
     session: str
     revision: int
     content_hash: str
-    """SHA-256 of all of it."""
+    """SHA-256 of the contents."""
     is_specimen: bool = False
     """Whether the session was simulated, so that it certifies nothing."""
 
 
 def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, who: str) -> Issue:
-    """The issue that states this: the latest one of the session, or a new one that names the one it replaces."""
+    """The issue with these contents: the latest one of the session, or a new one that replaces it."""
     with storage.database.writing() as store:
         Units(store).hold(statement.unit)
         issued = Certificates(store).of_session(statement.session)
@@ -59,46 +59,44 @@ def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, 
     return new
 
 
-NEEDED = Role.ENGINEER
-"""Who judges may also put a name under it."""
+NEEDED_ROLE = Role.ENGINEER
+"""Whoever may judge may also sign."""
 WRONG = "The password is wrong. Nothing was signed."
-NO_ACCOUNT = "A signature is an account's: make an account and sign in with it."
+NO_ACCOUNT = "Signing requires an account: make one and sign in with it."
 NOT_ISSUED = "There is no certificate to sign yet: ask for it, read it, then sign it."
 REPLACED = "Certificate {number} is not the latest one: {latest} is. Read that one."
 CHANGED = (
-    "What certificate {number} rests on has changed since it was issued. Ask for the certificate again, read it, and "
+    "The data of certificate {number} have changed since it was issued. Request the certificate again, read it, and "
     "sign the new one."
 )
 NOT_REVIEWED = "Certificate {number} must be reviewed before it is approved."
-SAME_PERSON = (
-    "You have reviewed certificate {number}: somebody else must approve it, so that two people have looked at it."
-)
-IS_SPECIMEN = "The session is simulated: its certificate is a specimen, and nobody puts a name under it."
+SAME_PERSON = "You have reviewed certificate {number}: another person must approve it."
+IS_SPECIMEN = "The session is simulated: its certificate is a specimen and cannot be signed."
 ALREADY = "Certificate {number} is {meaning} already, by {name}."
 
 
 @dataclass(frozen=True)
 class Signing:
-    """What somebody is about to sign."""
+    """A signature to be made."""
 
     session: str
     number: str
-    """Of the certificate that they read."""
+    """Of the certificate that was read."""
     meaning: Meaning
     login: str
     password: str
 
 
 @dataclass(frozen=True)
-class Rules:
-    """How a laboratory signs."""
+class SigningRules:
+    """Signing rules of a laboratory."""
 
     four_eyes: bool = True
     """Whether reviewer and approver must be two people."""
 
 
 def require_signer(storage: Storage, signing: Signing) -> str:
-    """The name that will be printed; SignInError where the password is not the account's."""
+    """The name to be printed; SignInError for a wrong password."""
     if not signing.login:
         raise ConflictError(NO_ACCOUNT)
     with storage.database.reading() as store:
@@ -106,11 +104,11 @@ def require_signer(storage: Storage, signing: Signing) -> str:
         account = Accounts(store).get(signing.login)
     if not is_password(stored, signing.password):
         raise SignInError(WRONG)
-    if not account.role.may(NEEDED):
+    if not account.role.may(NEEDED_ROLE):
         raise ForbiddenError(
             say(
-                "To sign a certificate needs the role {needed}; {login} is {role}.",
-                needed=NEEDED,
+                "To sign a certificate needs the role {needed_role}; {login} is {role}.",
+                needed_role=NEEDED_ROLE,
                 login=account.login,
                 role=account.role,
             )
@@ -118,8 +116,8 @@ def require_signer(storage: Storage, signing: Signing) -> str:
     return account.name
 
 
-def signature_of(store: Store, signing: Signing, statement: Statement, rules: Rules, now: datetime) -> Signature:
-    """The signature as it would be written; ConflictError where it may not be."""
+def signature_of(store: Store, signing: Signing, statement: Statement, rules: SigningRules, now: datetime) -> Signature:
+    """The signature to be written; ConflictError where it is not allowed."""
     if statement.is_specimen:
         raise ConflictError(IS_SPECIMEN)
     issue = _latest(store, signing)
@@ -127,8 +125,8 @@ def signature_of(store: Store, signing: Signing, statement: Statement, rules: Ru
         raise ConflictError(say(CHANGED, number=issue.number))
     before = {signature.meaning: signature for signature in Signatures(store).of_certificate(issue.number)}
     if signing.meaning in before:
-        given = before[signing.meaning]
-        raise ConflictError(say(ALREADY, number=issue.number, meaning=given.meaning, name=given.name))
+        existing = before[signing.meaning]
+        raise ConflictError(say(ALREADY, number=issue.number, meaning=existing.meaning, name=existing.name))
     account = Accounts(store).get(signing.login)
     if signing.meaning is Meaning.APPROVED:
         _require_review(before.get(Meaning.REVIEWED), issue, account.login, rules)
@@ -144,7 +142,7 @@ def _latest(store: Store, signing: Signing) -> Issue:
     return issued[-1]
 
 
-def _require_review(review: Signature | None, issue: Issue, login: str, rules: Rules) -> None:
+def _require_review(review: Signature | None, issue: Issue, login: str, rules: SigningRules) -> None:
     if review is None:
         raise ConflictError(say(NOT_REVIEWED, number=issue.number))
     if rules.four_eyes and review.login == login:
@@ -155,16 +153,16 @@ def sign_certificate(
     storage: Storage,
     signing: Signing,
     statement: Statement,
-    rules: Rules,
+    rules: SigningRules,
     signature: Signature,
     *,
     files: Sequence[CertificateFile] = (),
 ) -> Signature:
-    """Writes a signature; with it, of an approved certificate, the files that are handed out from now on."""
+    """Writes a signature, and for an approval the files of the certificate."""
     with storage.database.writing() as store:
         Units(store).hold(statement.unit)
-        again = signature_of(store, signing, statement, rules, signature.signed_at)
-        if again != signature:
+        current = signature_of(store, signing, statement, rules, signature.signed_at)
+        if current != signature:
             raise ConflictError(say(CHANGED, number=signature.certificate))
         Signatures(store).add(signature, Accounts(store).get(signature.login).id)
         Signatures(store).keep(signature.certificate, files)

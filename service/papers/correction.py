@@ -1,8 +1,7 @@
-"""The correction that a session's calibration gives, for firmware: formula, numbers and a worked example."""
+"""The correction from a session's calibration, for firmware: formula, numbers and a worked example."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from estimator.applied_vector import magnitude, stand_geometry
 from estimator.calibration.calibrate import averaged
 from estimator.codec import json_numbers
 from estimator.correction import BlockCorrection, Correction, SensorCorrection, correction_of
+from estimator.json_object import Json
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array, CalibrationSession
 from service.errors import NotFoundError
@@ -34,14 +34,14 @@ ALWAYS_LEFT = (
     "temperature: the parameters are those at the session's temperature",
     "nonlinearity beyond the quadratic term, asymmetry, hysteresis, cross-coupling",
 )
-"""What no such correction can take out."""
+"""Errors that no such correction can remove."""
 DIGITS = 9
 """Of the worked example's numbers in words."""
 
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """A stored session with the correction that it gives."""
+    """A stored session with its correction."""
 
     stored: StoredSession
     calibration: Calibration
@@ -49,7 +49,7 @@ class Corrected:
     """Averaged."""
     found: Correction
     revisions: tuple[ModelRevision, ...]
-    """Accepted causes that the parameters were estimated with."""
+    """Accepted causes in the estimation of the parameters."""
 
 
 def corrected(storage: Storage, id: str) -> Corrected:
@@ -60,30 +60,30 @@ def corrected(storage: Storage, id: str) -> Corrected:
     if stored.programme not in CALIBRATIONS:
         raise NotFoundError(f"Session {id!r} gives no correction: {stored.programme} does not calibrate a block.")
     session = averaged(read_upload(storage.files.content(stored.sha256), stored.filename))
-    found = correction_of(session, calibration)
-    if not found.blocks:
-        raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(found))}.")
-    return Corrected(stored, calibration, session, found, revisions)
+    correction = correction_of(session, calibration)
+    if not correction.blocks:
+        raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(correction))}.")
+    return Corrected(stored, calibration, session, correction, revisions)
 
 
-def correction_document(storage: Storage, id: str) -> dict[str, Any]:
+def correction_document(storage: Storage, id: str) -> Json:
     """imu-correction/1; NotFoundError where the session's programme gives none."""
-    one = corrected(storage, id)
+    result = corrected(storage, id)
     return {
-        **_identity(one.stored, one.calibration),
+        **_identity(result.stored, result.calibration),
         "formula": list(FORMULA),
-        "blocks": [_block(block, one.session) for block in one.found.blocks],
-        "left_out": [{"sensor": name, "why": why} for name, why in one.found.left_out],
-        "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in one.found.blocks if _assumed(block)],
-        "extended_model": [_revision(revision) for revision in one.revisions],
+        "blocks": [_block(block, result.session) for block in result.found.blocks],
+        "left_out": [{"sensor": name, "why": why} for name, why in result.found.left_out],
+        "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in result.found.blocks if _assumed(block)],
+        "extended_model": [_revision(revision) for revision in result.revisions],
     }
 
 
-def _reasons(found: Correction) -> Iterator[str]:
-    yield from (f"{name}: {why}" for name, why in found.left_out)
+def _reasons(correction: Correction) -> Iterator[str]:
+    yield from (f"{name}: {why}" for name, why in correction.left_out)
 
 
-def _identity(stored: StoredSession, calibration: Calibration) -> dict[str, Any]:
+def _identity(stored: StoredSession, calibration: Calibration) -> Json:
     return {
         "format": "imu-correction/1",
         "unit": stored.unit,
@@ -99,7 +99,7 @@ def _identity(stored: StoredSession, calibration: Calibration) -> dict[str, Any]
     }
 
 
-def _block(block: BlockCorrection, session: CalibrationSession) -> dict[str, Any]:
+def _block(block: BlockCorrection, session: CalibrationSession) -> Json:
     unit = _unit(block)
     return {
         "kind": block.kind,
@@ -114,7 +114,7 @@ def _unit(block: BlockCorrection) -> str:
     return "m/s²" if block.kind == ACCELEROMETER else "rad/s"
 
 
-def _sensor(sensor: SensorCorrection, unit: str) -> dict[str, Any]:
+def _sensor(sensor: SensorCorrection, unit: str) -> Json:
     per = "rad" if sensor.count_time else unit
     return {
         "name": sensor.name,
@@ -135,7 +135,7 @@ def _sensor(sensor: SensorCorrection, unit: str) -> dict[str, Any]:
     }
 
 
-def _example(block: BlockCorrection, session: CalibrationSession) -> dict[str, Any]:
+def _example(block: BlockCorrection, session: CalibrationSession) -> Json:
     """The first row of the session, corrected step by step."""
     names = [sensor.name for sensor in session.sensors]
     readings = session.readings[0, [names.index(sensor.name) for sensor in block.sensors]]
@@ -196,7 +196,7 @@ def _assumed(block: BlockCorrection) -> str:
     return f"quadratic term of {', '.join(names)}: not observed by this session, taken as zero" if names else ""
 
 
-def _revision(revision: ModelRevision) -> dict[str, Any]:
+def _revision(revision: ModelRevision) -> Json:
     """An accepted cause: the parameters were estimated with it in the model, the formula does not contain it."""
     evidence = evidence_to_dict(revision.evidence)
     return {

@@ -1,4 +1,4 @@
-"""What routes ask for by type: the desk where certificates are issued and signed."""
+"""Dependency of routes: the desk for certificates."""
 
 from typing import Annotated
 
@@ -6,7 +6,7 @@ from fastapi import Depends, Request
 
 from service.languages.language import asked
 from service.papers.certified import laboratory_of
-from service.papers.changes import Rules
+from service.papers.changes import SigningRules
 from service.papers.desk import Desk
 from service.papers.sealing import Seal
 from service.people.dependencies import StorageOf
@@ -15,12 +15,17 @@ from service.work.readers import Reader
 
 
 def _desk(request: Request, storage: StorageOf) -> Desk:
-    own = application_of(request)
-    laboratory = laboratory_of(own.settings)
+    application = application_of(request)
+    laboratory = laboratory_of(application.settings)
     return Desk(
-        storage, own.part(Reader).made, laboratory, Rules(own.settings.four_eyes), own.find(Seal), asked(request.scope)
+        storage,
+        application.part(Reader).made,
+        laboratory,
+        SigningRules(application.settings.four_eyes),
+        application.find(Seal),
+        asked(request.scope),
     )
 
 
 DeskOf = Annotated[Desk, Depends(_desk)]
-"""Where certificates are handed out and signed."""
+"""Desk for issuing and signing certificates."""

@@ -1,4 +1,4 @@
-"""Where certificates are handed out and signed: a new one is made of what is stored, an approved one is kept."""
+"""Issues and signs certificates: a new one is made from stored data, an approved one is kept."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -19,8 +19,8 @@ from service.papers.certificate import certificate_pdf
 from service.papers.certificate.words import Signed, certificate
 from service.papers.certified import CertifiedSession, certified_session
 from service.papers.changes import (
-    Rules,
     Signing,
+    SigningRules,
     Statement,
     issue_certificate,
     require_signer,
@@ -32,18 +32,18 @@ from service.papers.records import CertificateFile, Issue, Laboratory, Meaning, 
 from service.papers.sealing import Seal
 from service.papers.store import Certificates, Signatures
 from service.papers.words import CHANGED_HASH, NO_LONGER, NOT_COUNTED
-from service.people.changes import Attempt, attempting
+from service.people.changes import SignInAttempt, attempting
 from service.sessions.store import Sessions
 from service.storage import Storage
 
 UNISSUED = Issue("", "", 0, datetime(1970, 1, 1, tzinfo=UTC), "", None, "")
-"""Stands in for an issue while what it states is being hashed."""
+"""Placeholder for an issue while its contents are hashed."""
 
 
 def statement_of(found: CertifiedSession) -> Statement:
-    """What is about to be issued: the words of the paper, and every number in full that paper or XML rests on.
+    """Contents to be issued: the words of the paper, and every number of paper and XML in full.
 
-    When its records were received is no part of it: the same records state the same, in whatever order they came.
+    The time of upload is not included: the same records have the same contents, in any order of arrival.
     """
     session = found.report.session
     report = replace(found.report, session=replace(session, uploaded_at=UNISSUED.issued_at))
@@ -58,22 +58,24 @@ def statement_of(found: CertifiedSession) -> Statement:
     return Statement(session.unit, session.id, session.revision, digest, is_specimen=session.simulated)
 
 
-DAMAGED = "The approved certificate {number} is not what was kept, and is not given out: the database was changed."
+DAMAGED = (
+    "The approved certificate {number} differs from the stored one and cannot be downloaded: the database was changed."
+)
 NOT_KEPT = "There is no approved certificate {number} of this session."
 
 
 @dataclass(frozen=True)
 class Desk:
-    """What certificates are made from."""
+    """Source of certificates."""
 
     storage: Storage
     diagnosed: Callable[[str], StoredDiagnosis]
     """The diagnosis of a session."""
     laboratory: Laboratory
-    rules: Rules
+    rules: SigningRules
     seal: Seal | None
     language: Language = Language.ENGLISH
-    """Of what is made for people; a certificate for programs speaks English."""
+    """Of documents for people; a certificate for programs is in English."""
 
     def written(self, format: str, found: CertifiedSession, issue: Issue, signed: Signed) -> bytes:
         """A certificate in one of its two forms."""
@@ -83,59 +85,61 @@ class Desk:
 
 
 @dataclass(frozen=True)
-class HandedOut:
+class CertificateDocument:
     """A certificate as a file."""
 
     name: str
-    """Without its ending."""
+    """Without extension."""
     content: bytes
 
 
 def certified(desk: Desk, id: str) -> tuple[CertifiedSession, Statement]:
-    """What a certificate of the session would state now; ConflictError where the session does not count."""
+    """Current contents of a session's certificate; ConflictError where the session does not count."""
     found = certified_session(desk.storage, desk.diagnosed(id), desk.laboratory)
     return found, statement_of(found)
 
 
-def hand_out(desk: Desk, id: str, format: str, now: datetime, *, who: str) -> HandedOut:
-    """The certificate that holds, under a new number where it states something new."""
+def hand_out(desk: Desk, id: str, format: str, now: datetime, *, who: str) -> CertificateDocument:
+    """The current certificate, with a new number where its contents are new."""
     return issued(desk, certified(desk, id), format, now, who=who)
 
 
 def issued(
-    desk: Desk, stated: tuple[CertifiedSession, Statement], format: str, now: datetime, *, who: str
-) -> HandedOut:
-    """The same of what a certificate would state."""
-    found, statement = stated
+    desk: Desk, certified_contents: tuple[CertifiedSession, Statement], format: str, now: datetime, *, who: str
+) -> CertificateDocument:
+    """The same for given contents."""
+    found, statement = certified_contents
     issue = issue_certificate(desk.storage, statement, now, who=who)
     with desk.storage.database.reading() as store:
-        kept = Signatures(store).kept(issue.number, format)
+        approved = Signatures(store).kept(issue.number, format)
         signatures = Signatures(store).of_certificate(issue.number)
-    content = desk.written(format, found, issue, Signed(signatures)) if kept is None else _intact(kept, issue.number)
-    return HandedOut(_name(found.report.session.unit, issue.number), content)
+    content = (
+        desk.written(format, found, issue, Signed(signatures)) if approved is None else _intact(approved, issue.number)
+    )
+    return CertificateDocument(_name(found.report.session.unit, issue.number), content)
 
 
-def hand_out_approved(desk: Desk, id: str, number: str, format: str) -> HandedOut:
+def hand_out_approved(desk: Desk, id: str, number: str, format: str) -> CertificateDocument:
     """An approved certificate as it was approved, whatever has changed since."""
     with desk.storage.database.reading() as store:
         unit = Sessions(store).get(id).unit
         of_session = any(issue.number == number for issue in Certificates(store).of_session(id))
-        kept = Signatures(store).kept(number, format) if of_session else None
-    if kept is None:
+        approved = Signatures(store).kept(number, format) if of_session else None
+    if approved is None:
         raise NotFoundError(say(NOT_KEPT, number=repr(number)))
-    return HandedOut(_name(unit, number), _intact(kept, number))
+    return CertificateDocument(_name(unit, number), _intact(approved, number))
 
 
-def sign(desk: Desk, signing: Signing, attempt: Attempt, now: datetime) -> Signature:
-    """Puts a name under the certificate that somebody read, once their password is right."""
+def sign(desk: Desk, signing: Signing, attempt: SignInAttempt, now: datetime) -> Signature:
+    """Signs the certificate that somebody read, after checking the password."""
     with attempting(desk.storage, attempt, now):
         require_signer(desk.storage, signing)
     found, statement = certified(desk, signing.session)
     with desk.storage.database.reading() as store:
         signature = signature_of(store, signing, statement, desk.rules, now)
-        given = Signatures(store).of_certificate(signing.number)
+        existing = Signatures(store).of_certificate(signing.number)
         issue = Certificates(store).of_session(signing.session)[-1]
-    files = _files(desk, found, issue, (*given, signature)) if signature.meaning is Meaning.APPROVED else ()
+    files = _files(desk, found, issue, (*existing, signature)) if signature.meaning is Meaning.APPROVED else ()
     return sign_certificate(desk.storage, signing, statement, desk.rules, signature, files=files)
 
 
@@ -157,10 +161,10 @@ def _files(
     )
 
 
-def _intact(kept: CertificateFile, number: str) -> bytes:
-    if sha256(kept.content).hexdigest() != kept.sha256:
+def _intact(file: CertificateFile, number: str) -> bytes:
+    if sha256(file.content).hexdigest() != file.sha256:
         raise DamagedError(say(DAMAGED, number=number))
-    return kept.content
+    return file.content
 
 
 def _name(unit: str, number: str) -> str:
@@ -195,25 +199,25 @@ class Papers:
 
 
 def papers_of(desk: Desk, id: str) -> Papers:
-    """Every issue; of the latest one what it rests on is worked out again and compared."""
+    """Every issue; the contents of the latest one are compared with the stored data."""
     with desk.storage.database.reading() as store:
         Sessions(store).get(id)
         issued, signatures = Certificates(store).of_session(id), Signatures(store).of_session(id)
     issues = tuple(
-        SignedIssue(**vars(one), signatures=tuple(s for s in signatures if s.certificate == one.number))
-        for one in issued
+        SignedIssue(**vars(issue), signatures=tuple(s for s in signatures if s.certificate == issue.number))
+        for issue in issued
     )
     if not issues:
         return Papers((), is_current=False, concerns=())
     latest = issues[-1]
-    counts, is_current = _compared(desk, id, latest)
-    told = ((CHANGED_HASH, _is_other(latest)), (NOT_COUNTED, not counts), (NO_LONGER, counts and not is_current))
-    concerns = (say(words, number=latest.number, done=_done(latest)) for words, holds in told if holds)
+    counts, is_current = _is_current(desk, id, latest)
+    checks = ((CHANGED_HASH, _is_altered(latest)), (NOT_COUNTED, not counts), (NO_LONGER, counts and not is_current))
+    concerns = (say(words, number=latest.number, done=_done(latest)) for words, holds in checks if holds)
     return Papers(issues, is_current=is_current, concerns=tuple(concerns))
 
 
-def _compared(desk: Desk, id: str, issue: Issue) -> tuple[bool, bool]:
-    """Whether the session counts, and whether its certificate would state the same today."""
+def _is_current(desk: Desk, id: str, issue: Issue) -> tuple[bool, bool]:
+    """Whether the session counts, and whether its certificate would have the same contents today."""
     try:
         _, statement = certified(desk, id)
     except ConflictError:
@@ -221,8 +225,8 @@ def _compared(desk: Desk, id: str, issue: Issue) -> tuple[bool, bool]:
     return True, statement.content_hash == issue.content_hash
 
 
-def _is_other(latest: SignedIssue) -> bool:
-    """Whether something else was signed than is on record."""
+def _is_altered(latest: SignedIssue) -> bool:
+    """Whether the signed contents differ from those on record."""
     return any(signature.content_hash != latest.content_hash for signature in latest.signatures)
 
 
@@ -233,30 +237,30 @@ def _done(latest: SignedIssue) -> str:
 NOT_ALL = "Not every one of these sessions has a certificate: leave out those named here. Nothing was issued."
 
 
-def hand_out_together(desk: Desk, ids: Sequence[str], now: datetime, *, who: str) -> HandedOut:
-    """The certificates that hold, each under its number, page after page.
+def hand_out_together(desk: Desk, ids: Sequence[str], now: datetime, *, who: str) -> CertificateDocument:
+    """The current certificates, each under its number, in one document.
 
     Raises
     ------
     RefusedError
         A session is not stored or does not count; every such one is named.
     """
-    stated, problems = [], list[Problem]()
+    contents, problems = [], list[Problem]()
     for id in dict.fromkeys(ids):
         try:
-            stated.append(certified(desk, id))
+            contents.append(certified(desk, id))
         except (ConflictError, NotFoundError) as error:
             problems.append(Problem(id, error.detail))
     if problems:
         raise RefusedError(NOT_ALL, tuple(problems))
-    papers = [issued(desk, one, "pdf", now, who=who) for one in stated]
+    papers = [issued(desk, item, "pdf", now, who=who) for item in contents]
     if len(papers) == 1:
         return papers[0]
-    return HandedOut(f"certificates-{now:%Y-%m-%d}", joined([paper.content for paper in papers]))
+    return CertificateDocument(f"certificates-{now:%Y-%m-%d}", joined([paper.content for paper in papers]))
 
 
 def joined(documents: Sequence[bytes]) -> bytes:
-    """PDF documents as one, without what is filled in or signed in them."""
+    """PDF documents as one, without form fields and signatures."""
     writer = PdfWriter()
     for document in documents:
         for page in PdfReader(BytesIO(document)).pages:

@@ -1,4 +1,4 @@
-"""A unit as it was found and as it was left, both against the reference that held when it was found."""
+"""A unit as found and as left, both against the reference in force when it was found."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from service.units.store import Units, epoch
 
 
 @dataclass(frozen=True)
-class Moved:
+class JudgedChange:
     """One parameter of one sensor."""
 
     name: str
@@ -31,16 +31,16 @@ class Moved:
     condition: Condition
 
 
-def moved(decision: Decision) -> Moved:
-    """The decision in people's units."""
+def moved(decision: Decision) -> JudgedChange:
+    """The decision in practical units."""
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
     unit = deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
     one_sided = decision.parameter == "axis"
-    write = measured if one_sided else signed
-    seen = decision.deviation is not None
-    return Moved(
+    format_value = measured if one_sided else signed
+    is_observed = decision.deviation is not None
+    return JudgedChange(
         name=say("{sensor} {parameter}", sensor=decision.sensor, parameter=decision.parameter),
-        deviation=write(decision.deviation, decision.expanded, unit) if seen else "not observable",
+        deviation=format_value(decision.deviation, decision.expanded, unit) if is_observed else "not observable",
         tolerance=limit(decision.tolerance, unit, one_sided),
         condition=condition_of(decision.verdict),
     )
@@ -48,10 +48,10 @@ def moved(decision: Decision) -> Moved:
 
 @dataclass(frozen=True)
 class FoundAndLeft:
-    """The latest pair of a unit; a session that is still to be measured is None."""
+    """The latest pair of a unit; a session still to be measured is None."""
 
     reference: str | None
-    """The session that both are judged against; None where the unit was found at its reference."""
+    """The common reference; None where the unit was found at its reference."""
     found: StoredSession
     left: StoredSession | None
     decisions: tuple[tuple[Decision, Decision | None], ...]
@@ -65,32 +65,38 @@ def found_and_left(
     services: Sequence[Service],
     coverage_factor: float,
 ) -> FoundAndLeft | None:
-    """The latest as-found session among some, and the first as-left one after it; None where nothing was found."""
+    """The latest as-found session among some, and the first as-left one after it; None without an as-found session."""
     sessions = [s for s in sessions if s.state is RecordState.ACCEPTED]
-    found = max((s for s in sessions if s.stage == AS_FOUND), key=_when, default=None)
+    found = max((s for s in sessions if s.stage == AS_FOUND), key=_started_at, default=None)
     if found is None:
         return None
-    later = (s for s in sessions if s.stage == AS_LEFT and _when(s) > _when(found) and s.programme in CALIBRATIONS)
-    left = min(later, key=_when, default=None)
+    later = (
+        s
+        for s in sessions
+        if s.stage == AS_LEFT and _started_at(s) > _started_at(found) and s.programme in CALIBRATIONS
+    )
+    left = min(later, key=_started_at, default=None)
     since, until = epoch(tuple(service.at for service in services), found.started_at)
     unit = Units(store).key(found.unit)
     pair = (found.id,) if left is None else (found.id, left.id)
-    reference, known = Calibrations(store).beside_reference(pair, reference_query(unit, unit_type.block, since, until))
+    reference, calibrations = Calibrations(store).beside_reference(
+        pair, reference_query(unit, unit_type.block, since, until)
+    )
 
     def judged(session: StoredSession | None) -> tuple[Decision, ...]:
-        """By the tolerances that hold now."""
+        """By the current tolerances."""
         if session is None or reference is None:
             return ()
-        return decisions_of(known[session.id], known[reference], unit_type, coverage_factor)
+        return decisions_of(calibrations[session.id], calibrations[reference], unit_type, coverage_factor)
 
-    return FoundAndLeft(None if reference == found.id else reference, found, left, _beside(judged(found), judged(left)))
+    return FoundAndLeft(None if reference == found.id else reference, found, left, _paired(judged(found), judged(left)))
 
 
-def _beside(found: Sequence[Decision], left: Sequence[Decision]) -> tuple[tuple[Decision, Decision | None], ...]:
+def _paired(found: Sequence[Decision], left: Sequence[Decision]) -> tuple[tuple[Decision, Decision | None], ...]:
     """Every judged parameter as found, with the same as left."""
     by_key = {(d.sensor, d.parameter): d for d in left}
     return tuple((d, by_key.get((d.sensor, d.parameter))) for d in found)
 
 
-def _when(session: StoredSession) -> datetime:
+def _started_at(session: StoredSession) -> datetime:
     return session.started_at

@@ -1,4 +1,4 @@
-"""The label of a unit: serial number, when its calibration is due, and a QR code that opens its page."""
+"""The label of a unit: serial number, may it be used, next calibration, and a QR code that opens its page."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -6,8 +6,10 @@ from urllib.parse import quote
 
 import segno
 
-from estimator.message import say
+from estimator.message import capitalised, say
 from service.fleet.condition import UnitSummary
+from service.judging.records import Usable
+from service.judging.use import Use, in_words
 from service.kit.measures import HARD, day_of
 from service.languages.language import Language
 from service.papers.typeset import typeset, typeset_svg
@@ -23,12 +25,15 @@ class Label:
 
     serial: str
     unit_type: str
+    use: str
+    """What must be said before anything else; empty where the unit is plainly usable, or the state was not wanted."""
+    is_usable: bool
     due: str
-    """Empty where it was not wanted."""
+    """Empty where it was not wanted, or where something else must be done first."""
     why: str
-    """The rule that set the date; empty where the label states none."""
+    """The rule that set the date, what to do, or what speaks against the use; empty where the label states none."""
     stated: str
-    """The day on which it was printed: the due date is that of this day."""
+    """The day on which it was printed: everything else is that of this day."""
     address: str
     """Of the unit's page."""
     code: str
@@ -36,34 +41,53 @@ class Label:
     simulated: bool
 
 
-def label_of(unit: UnitSummary, base: str, now: datetime, *, with_due: bool) -> Label:
-    """The label of a unit; ``base`` is the address under which people reach the pages."""
+def label_of(unit: UnitSummary, use: Usable, base: str, *, with_due: bool) -> Label:
+    """The label of a unit; ``base`` is the address under which people reach the pages. Without a date it tells nothing
+    that changes."""
     address = f"{base.rstrip('/')}/units/{quote(unit.serial)}"
     return Label(
         serial=unit.serial,
         unit_type=unit.unit_type,
-        due=_due(unit.due, now) if with_due else "",
-        why=unit.due_reason if with_due and unit.due is not None else "",
-        stated=day_of(now),
+        use=_use(use) if with_due else "",
+        is_usable=use.usable,
+        due=_due(use) if with_due else "",
+        why=_why(use) if with_due else "",
+        stated=day_of(use.as_of),
         address=address,
         code=segno.make_qr(address, error="l").svg_inline(border=QUIET, omitsize=True),
         simulated=unit.simulated,
     )
 
 
-def _due(due: datetime | None, now: datetime) -> str:
-    if due is None:
-        return "Calibration due: not known"
-    return (
-        say("Calibration overdue since {due}", due=_held(due))
-        if due < now
-        else say("Calibration due {due}", due=_held(due))
-    )
+def _use(use: Usable) -> str:
+    return "" if use.use is Use.YES else in_words(use.use, "")
+
+
+def _due(use: Usable) -> str:
+    if use.due is None:
+        return ""
+    if use.is_overdue:
+        return say("Calibration overdue since {date}", date=_held(use.due))
+    return say("Calibration due {date}", date=_held(use.due))
+
+
+def _why(use: Usable) -> str:
+    if use.use is Use.RESERVED and use.action:
+        return say("{action}.", action=capitalised(use.action))
+    if use.usable:
+        return use.due_reason
+    return "" if use.due is not None and len(use.reasons) == 1 else use.why
 
 
 def _held(day: datetime) -> str:
     """The day on one line."""
-    return say("{day}{hard}{month}{hard}{year}", day=day.day, month=f"{day:%b}", year=day.year, hard=HARD)
+    return say(
+        "{day}{nbsp}{month}{nbsp}{year}",
+        day=day.day,
+        month=f"{day:%b}",
+        year=day.year,
+        nbsp=HARD,
+    )
 
 
 def label_pdf(label: Label, now: datetime, language: Language = Language.ENGLISH) -> bytes:

@@ -16,7 +16,7 @@ from service.papers.desk import Papers, SignedIssue, papers_of, sign
 from service.papers.records import Meaning, Signature
 from service.papers.words import STATES, done_by, moment_of
 from service.people.admission import PersonOf, attempt_of
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
 from service.people.secret import LONGEST
 from service.records.unit_changes import set_customer
 from service.sessions.records import StoredSession
@@ -31,7 +31,7 @@ RELEASED, REVIEWED, OPEN = "Approved", "Reviewed, not approved yet", "Not signed
 
 
 @dataclass(frozen=True)
-class SignatureRow:
+class SignatureView:
     """One signature in words."""
 
     by: str
@@ -50,13 +50,13 @@ class IssueRow:
     who: str
     state: str
     is_approved: bool
-    signatures: tuple[SignatureRow, ...]
+    signatures: tuple[SignatureView, ...]
     content_hash: str
 
 
 @dataclass(frozen=True)
 class CertificatePage:
-    """Everything the page of a certificate shows."""
+    """Contents of the page of a certificate."""
 
     session: StoredSession
     counts: bool
@@ -66,24 +66,24 @@ class CertificatePage:
     """The newest first."""
     concerns: tuple[str, ...]
     signs: Meaning | None
-    """What can be signed next; None where nothing can."""
+    """The next signature; None where nothing can be signed."""
     states: str
-    """What whoever signs states."""
+    """Statement of the signer."""
     by: str
     is_account: bool
-    """Whether the one who looks has an account to sign with."""
+    """Whether the visitor has an account to sign with."""
     four_eyes: bool
     is_own: bool
-    """Whether the one who looks has reviewed it, and somebody else must approve."""
+    """Whether the visitor has reviewed it, and somebody else must approve."""
     wrong: str
-    """What was wrong with the last try to sign; empty where nothing was."""
+    """Error of the last attempt to sign; empty without one."""
 
 
 def certificate_page(
     session: StoredSession, papers: Papers, person: Person, *, four_eyes: bool, wrong: str = ""
 ) -> CertificatePage:
-    """The page of a session's certificate as somebody sees it."""
-    rows = tuple(_issue(one) for one in papers.certificates)
+    """The page of a session's certificate for a visitor."""
+    rows = tuple(_issue(issue) for issue in papers.certificates)
     signs = None if session.simulated else _next(papers)
     return CertificatePage(
         session=session,
@@ -102,27 +102,33 @@ def certificate_page(
 
 
 def _next(papers: Papers) -> Meaning | None:
-    """The first that nobody has signed, of an issue that states what is stored."""
+    """The first missing signature, of an issue with current contents."""
     if not papers.is_current:
         return None
-    given = {signature.meaning for signature in papers.certificates[-1].signatures}
-    return next((meaning for meaning in Meaning if meaning not in given), None)
+    existing = {signature.meaning for signature in papers.certificates[-1].signatures}
+    return next((meaning for meaning in Meaning if meaning not in existing), None)
 
 
-def _issue(one: SignedIssue) -> IssueRow:
+def _issue(issue: SignedIssue) -> IssueRow:
     return IssueRow(
-        number=one.number,
-        issued=day_of(one.issued_at),
-        who=one.who,
-        state=RELEASED if one.is_approved else REVIEWED if one.signatures else OPEN,
-        is_approved=one.is_approved,
-        signatures=tuple(_signature(signature) for signature in one.signatures),
-        content_hash=one.content_hash,
+        number=issue.number,
+        issued=day_of(issue.issued_at),
+        who=issue.who,
+        state=RELEASED if issue.is_approved else REVIEWED if issue.signatures else OPEN,
+        is_approved=issue.is_approved,
+        signatures=tuple(_signature(signature) for signature in issue.signatures),
+        content_hash=issue.content_hash,
     )
 
 
-def _signature(one: Signature) -> SignatureRow:
-    return SignatureRow(done_by(one.meaning), one.name, one.login, moment_of(one.signed_at), STATES[one.meaning])
+def _signature(signature: Signature) -> SignatureView:
+    return SignatureView(
+        done_by(signature.meaning),
+        signature.name,
+        signature.login,
+        moment_of(signature.signed_at),
+        STATES[signature.meaning],
+    )
 
 
 router = APIRouter(include_in_schema=False)
@@ -140,7 +146,7 @@ def show_certificate(request: Request, id: Key, store: Reading, desk: DeskOf, pe
 def take_signature(
     request: Request,
     id: Key,
-    number: Annotated[str, Form(max_length=60, pattern=SAYS_SOMETHING)],
+    number: Annotated[str, Form(max_length=60, pattern=NOT_BLANK)],
     meaning: Annotated[Meaning, Form()],
     password: Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)],
     *,
@@ -148,7 +154,7 @@ def take_signature(
     person: PersonOf,
     now: Now,
 ) -> Response:
-    """Puts a name under the certificate; the page again where the password is wrong."""
+    """Signs the certificate; the page again for a wrong password."""
     signing = Signing(id, number, meaning, person.login, password)
     try:
         sign(desk, signing, attempt_of(request, person.login), now)

@@ -8,19 +8,19 @@ from service.kit.answer import answer
 from service.stands.records import StandCertificate
 
 NOT_STATED = "not stated"
-"""Stands in a paper where a name is wanted and nobody gave one: nothing is ever made up."""
+"""Stands in a paper for a name that was not given: nothing is made up."""
 
 
 @dataclass(frozen=True)
 class Laboratory:
-    """Who calibrates, as the operator of the service set it; empty texts are not stated."""
+    """The laboratory, from the settings; empty texts are not stated."""
 
     name: str = ""
     address: str = ""
     country: str = ""
     """ISO 3166-1 alpha-2."""
     place: str = ""
-    """Where it measures, if that is not at its address."""
+    """Place of measurement, if not at its address."""
 
 
 class TraceState(StrEnum):
@@ -75,7 +75,7 @@ class Issue:
 
 
 class Meaning(StrEnum):
-    """What a signature says; in the order in which they are given."""
+    """Meaning of a signature; in the order in which they are given."""
 
     REVIEWED = "reviewed"
     APPROVED = "approved"

@@ -1,13 +1,13 @@
 """Shapes of corrections, signatures and traceability."""
 
 from datetime import datetime
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from estimator.json_object import Json
 from service.papers.records import Meaning
 from service.sessions.decision import Verdict
-from service.web.fields import TEXT, LongText, Said, Text
+from service.web.fields import TEXT, LongText, NonBlankName, Text
 
 
 class BlockCorrectionSchema(BaseModel):
@@ -15,11 +15,11 @@ class BlockCorrectionSchema(BaseModel):
 
     kind: str = Field(description="`accelerometer` or `gyroscope`.")
     gives: str = Field(description="What comes out, its unit and axes.")
-    sensors: list[dict[str, Any]] = Field(
+    sensors: list[Json] = Field(
         description="Of each sensor `offset`, `count_time`, `scale`, `bias`, `quadratic`, `axis` and their units."
     )
     matrix: list[list[float]] = Field(description="Three rows, one column a sensor: least squares of the components.")
-    example: dict[str, Any] = Field(
+    example: Json = Field(
         description="The session's first row, step by step in numbers and words; the uncertainty is the calibration's."
     )
 
@@ -42,7 +42,7 @@ class CorrectionDocument(BaseModel):
     blocks: list[BlockCorrectionSchema] = Field(description="One a kind of sensor.")
     left_out: list[dict[str, str]] = Field(description="Sensors that cannot be corrected, and why.")
     not_corrected: list[str] = Field(description="What the formula leaves in the readings.")
-    extended_model: list[dict[str, Any]] = Field(
+    extended_model: list[Json] = Field(
         description="Accepted causes in force: the parameters are free of them, the formula does not correct them."
     )
 
@@ -62,6 +62,6 @@ class NewSignature(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    number: Said = Field(description="Of the certificate that you read; one that is not the latest is refused.")
+    number: NonBlankName = Field(description="Of the certificate that you read; one that is not the latest is refused.")
     meaning: Meaning = Field(description="A certificate is reviewed first, and approved by somebody else.")
     password: str = Field(max_length=1000, pattern=TEXT, description="Of your account, asked again.")

@@ -27,7 +27,7 @@ LONGEST_TEXT = 32_767
 Cell = str | float | int | bool | datetime | None
 
 
-class Kind(Enum):
+class CellKind(Enum):
     """How a column is written: the format of its numbers, and whether verdicts stand in it."""
 
     TEXT = "@"
@@ -45,7 +45,7 @@ class Column:
     """One column of a table."""
 
     name: str
-    kind: Kind = Kind.TEXT
+    kind: CellKind = CellKind.TEXT
     width: float = 14.0
     is_named: bool = False
     """Whether people name what stands in it: that is written as they did, in every language."""
@@ -72,7 +72,9 @@ class Workbook:
         self._book = xlsxwriter.Workbook(target, OPTIONS)
         self._book.set_properties({"title": self._say(title), "author": "imu-health", "created": naive(made)})
         self._head = self._book.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
-        self._formats: dict[Kind, Format] = {kind: self._book.add_format({"num_format": kind.value}) for kind in Kind}
+        self._formats: dict[CellKind, Format] = {
+            kind: self._book.add_format({"num_format": kind.value}) for kind in CellKind
+        }
         self._quoted = self._book.add_format({"quote_prefix": True})
         self._tones = {
             self._say(word): self._tone(c.key) for c in (*CONDITIONS, REFERENCE) for word in (c.formal, c.word)
@@ -103,7 +105,7 @@ class Workbook:
             case None:
                 pass
             case str():
-                text_look = self._quoted if FORMULA.match(cell) else self._formats[Kind.TEXT]
+                text_look = self._quoted if FORMULA.match(cell) else self._formats[CellKind.TEXT]
                 write_text(sheet, place, say(cell), text_look)
             case bool():
                 sheet.write_string(*place, say("yes" if cell else "no"))
@@ -116,7 +118,7 @@ class Workbook:
         """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits. No word of one
         begins as another's does, and what is added to it, a reservation, changes no colour."""
         for place, column in enumerate(columns):
-            if column.kind is Kind.VERDICT and last:
+            if column.kind is CellKind.VERDICT and last:
                 for word, tone in self._tones.items():
                     rule = {"type": "text", "criteria": "begins with", "value": word, "format": tone}
                     sheet.conditional_format(1, place, last, place, rule)

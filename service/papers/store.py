@@ -1,4 +1,4 @@
-"""Numbers of certificates, signatures under them, and certificates as they were approved."""
+"""Numbers of certificates, their signatures, and approved certificates."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -67,12 +67,12 @@ class Signatures(Queries):
             )
 
     def keep(self, number: str, files: Sequence[CertificateFile]) -> None:
-        """Stores an issue as it is handed out from now on."""
+        """Stores the files of an approved issue."""
         key = self._key(number)
         self._session.add_all(CertificateFileRow(certificate_id=key, **vars(file)) for file in files)
 
     def kept(self, number: str, format: str) -> CertificateFile | None:
-        """An issue as it was approved; None where it was not."""
+        """The file of an approved issue; None without approval."""
         query = select(CertificateFileRow).join(CertificateRow).where(CertificateRow.number == number)
         row = self._session.scalar(query.where(CertificateFileRow.format == format))
         return None if row is None else CertificateFile(row.format, row.content, row.sha256, row.sealed_by)

@@ -9,7 +9,7 @@ from service.storage.tables import Base
 
 
 class CertificateRow(Base):
-    """One issue of a session's certificate: its number, and the hash of all that it states. Append-only."""
+    """One issue of a session's certificate: its number, and the hash of its contents. Append-only."""
 
     __tablename__ = "certificates"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -23,7 +23,7 @@ class CertificateRow(Base):
 
 
 class SignatureRow(Base):
-    """Who put their name under an issue, and what it means; bound to the hash of what was stated. Append-only."""
+    """A signature under an issue and its meaning; bound to the hash of the contents. Append-only."""
 
     __tablename__ = "certificate_signatures"
     __table_args__ = (UniqueConstraint("certificate_id", "meaning"),)
@@ -37,7 +37,7 @@ class SignatureRow(Base):
 
 
 class CertificateFileRow(Base):
-    """An approved issue as it is handed out, byte by byte. Append-only."""
+    """An approved issue as handed out, byte by byte. Append-only."""
 
     __tablename__ = "certificate_files"
     __table_args__ = (UniqueConstraint("certificate_id", "format"),)

@@ -1,4 +1,4 @@
-"""From a frozen record to a PDF by typst, which is given what the record says as data, never as part of its source."""
+"""From a frozen record to a PDF by typst; the record is passed as data, never as part of the source."""
 
 import json
 import re
@@ -11,6 +11,7 @@ from typing import Any
 import typst
 import vl_convert
 
+from estimator.json_object import Json
 from service.kit.printable import printable_data
 from service.languages import typst_sources
 from service.languages.catalogue import catalogue_of
@@ -24,7 +25,7 @@ ENGLISH = Language.ENGLISH
 
 
 def typeset(template: str, record: Any, at: datetime, language: Language = ENGLISH) -> bytes:
-    """The document of a frozen record; the same record gives the same bytes. ``at`` is the date that it carries."""
+    """The document of a frozen record; the same record always gives the same bytes. ``at`` is its date."""
     return _compiled(template, record, language, format="pdf", timestamp=at.replace(microsecond=0))
 
 
@@ -33,17 +34,17 @@ def typeset_svg(template: str, record: Any, language: Language = ENGLISH) -> byt
     return _compiled(template, record, language, format="svg")
 
 
-def _compiled(template: str, record: Any, language: Language, **wanted: Any) -> bytes:
+def _compiled(template: str, record: Any, language: Language, **options: Any) -> bytes:
     data = printable_data(record)
     if language is not ENGLISH:
         data = document_in(data, catalogue_of(language).say)
-    given = {"data": data, "words": {"language": language.value, "said": _words(language)}}
+    inputs = {"data": data, "words": {"language": language.value, "said": _words(language)}}
     document = typst.compile(
         TEMPLATES / template,
         root=TEMPLATES,
-        sys_inputs={name: json.dumps(one, ensure_ascii=False, allow_nan=False) for name, one in given.items()},
+        sys_inputs={name: json.dumps(value, ensure_ascii=False, allow_nan=False) for name, value in inputs.items()},
         ignore_system_fonts=True,
-        **wanted,
+        **options,
     )
     assert isinstance(document, bytes)
     return document
@@ -51,12 +52,12 @@ def _compiled(template: str, record: Any, language: Language, **wanted: Any) -> 
 
 @lru_cache
 def _words(language: Language) -> Mapping[str, str]:
-    """What the templates say themselves, in a language; English is what stands in them."""
+    """Translations of the templates' own texts; English is in the templates."""
     if language is ENGLISH:
         return {}
     sources = (path.read_text("utf-8") for path in sorted(TEMPLATES.glob("*.typ")))
-    found = [one for source in sources for one in typst_sources.messages(source, "")]
-    return {one.text: forms[0] for one in found if (forms := catalogue_of(language).forms(one))}
+    entries = [entry for source in sources for entry in typst_sources.messages(source, "")]
+    return {entry.text: forms[0] for entry in entries if (forms := catalogue_of(language).forms(entry))}
 
 
 PALETTE = {
@@ -76,19 +77,19 @@ PALETTE = {
     "reference": "#0d5878",
     "none": "#626d75",
 }
-"""The light colours of the pages' style; a test holds them to it."""
+"""The light colours of the pages' style; a test compares them."""
 VARIABLE = re.compile(r"var\(--([\w-]+)\)")
-"""How a specification names a colour of the pages' style."""
-MEASURED, PRINTED = "Liberation Sans", "Libertinus Serif"
-"""The font that charts are laid out with, a little wider, and the one that they are printed in."""
+"""Reference to a colour of the pages' style in a specification."""
+LAYOUT_FONT, PRINT_FONT = "Liberation Sans", "Libertinus Serif"
+"""The font for the layout of charts, a little wider, and the one in which they are printed."""
 
 
 def picture(charts: ChartSet, panel: Panel, width: int, language: Language = Language.ENGLISH) -> str:
-    """One panel as SVG, ``width`` pixels wide, its words in a language."""
-    told = {**charts.spec, "datasets": {**charts.spec.get("datasets", {}), **panel.datasets}, "width": width}
+    """One panel as SVG, ``width`` pixels wide, with translated words."""
+    definition = {**charts.spec, "datasets": {**charts.spec.get("datasets", {}), **panel.datasets}, "width": width}
     if language is not Language.ENGLISH:
-        told = catalogue_of(language).chart(told)
-    spec: dict[str, Any] = json.loads(VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(told)))
-    spec["config"]["font"] = MEASURED
-    drawn: str = vl_convert.vegalite_to_svg(spec)
-    return drawn.replace(MEASURED, PRINTED)
+        definition = catalogue_of(language).chart(definition)
+    spec: Json = json.loads(VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(definition)))
+    spec["config"]["font"] = LAYOUT_FONT
+    svg: str = vl_convert.vegalite_to_svg(spec)
+    return svg.replace(LAYOUT_FONT, PRINT_FONT)

@@ -1,4 +1,4 @@
-"""What certificates state: signatures, traceability, uncertainty."""
+"""Statements of certificates: signatures, traceability, uncertainty."""
 
 from datetime import date, datetime
 
@@ -17,9 +17,9 @@ RECEIVED = "not stated (not critical to the results)"
 DRAFT = "Draft, not an accredited certificate: {missing} not stated."
 
 
-def lacks(laboratory: Laboratory, customer: Customer, *, dated: bool) -> tuple[str, ...]:
-    """What nobody stated of all that a calibration certificate must name."""
-    wanted = (
+def missing_facts(laboratory: Laboratory, customer: Customer, *, dated: bool) -> tuple[str, ...]:
+    """Required facts of a calibration certificate that are not stated."""
+    required = (
         ("name of the laboratory", laboratory.name),
         ("address of the laboratory", laboratory.address),
         ("country of the laboratory", laboratory.country),
@@ -27,19 +27,19 @@ def lacks(laboratory: Laboratory, customer: Customer, *, dated: bool) -> tuple[s
         ("address of the customer", customer.address),
         ("day of measurement", dated),
     )
-    return tuple(name for name, given in wanted if not given)
+    return tuple(name for name, value in required if not value)
 
 
 def draft_in_words(missing: tuple[str, ...]) -> str:
     """That the paper is a draft, and why; empty where nothing is missing."""
     if not missing:
         return ""
-    listed = (
+    names = (
         missing[0]
         if len(missing) == 1
-        else say("{missing} and {missing2}", missing=joined(", ", missing[:-1]), missing2=missing[-1])
+        else say("{first} and {last}", first=joined(", ", missing[:-1]), last=missing[-1])
     )
-    return say(DRAFT, missing=listed)
+    return say(DRAFT, missing=names)
 
 
 def stated(text: str) -> str:
@@ -52,13 +52,13 @@ STATES = {
     "found nothing against them.",
     Meaning.APPROVED: "I release this certificate in the name of the laboratory.",
 }
-"""What whoever signs states."""
+"""Statement of a signer."""
 BOUND = "Signed in imu-health with the password asked again; holds for the content with SHA-256 {hash}."
 NO_LONGER = (
-    "What certificate {number} rests on has changed since it was {done}: it no longer states what is stored. "
-    "The next certificate will have another number, and must be signed anew."
+    "The data of certificate {number} have changed since it was {done}: it no longer states what is stored. The next "
+    "certificate has another number and must be signed again."
 )
-CHANGED_HASH = "Certificate {number} was signed under another content than is on record: the database was changed."
+CHANGED_HASH = "Certificate {number} was signed for other content than is stored: the database was changed."
 NOT_COUNTED = "The session no longer counts: certificate {number} should not be used."
 
 
@@ -81,14 +81,13 @@ EXPIRED = (
     "{until}, before the day of measurement, {day}."
 )
 NOT_ON_RECORD = (
-    "Traceability is not stated: no certificate of stand {stand} that was issued by the day of measurement, {day}, is "
-    "on record."
+    "Traceability is not stated: no certificate of stand {stand} issued by the day of measurement, {day}, is recorded."
 )
 NO_STAND = "Traceability is not stated: no stand was used, and gravity at the site carries no certificate."
 
 
 def traceability(stand: str | None, certificate: StandCertificate | None, day: date) -> Traceability:
-    """Of a session measured on a day; the certificate is the latest of its stand that was issued by then."""
+    """Of a session measured on a day; the certificate is the latest of its stand issued by then."""
     if stand is None:
         return Traceability(TraceState.NO_STAND, NO_STAND, None)
     if certificate is None:
@@ -121,8 +120,12 @@ BY = "The standard uncertainty of measurement has been determined in accordance 
 
 
 def uncertainty_in_words(calibration: Calibration, k: float) -> str:
-    """With the coverage factor that the session was judged with."""
+    """With the coverage factor of the decisions."""
     percent = number(100 * (2.0 * chance(k, None) - 1.0), 0)
     if noise_is_estimated(calibration):
-        return say("{student} {by}", student=say(STUDENT, k=coverage_in_words(calibration, k), percent=percent), by=BY)
-    return say("{normal} {by}", normal=say(NORMAL, k=number(k), percent=percent), by=BY)
+        return say(
+            "{coverage} {source}",
+            coverage=say(STUDENT, k=coverage_in_words(calibration, k), percent=percent),
+            source=BY,
+        )
+    return say("{coverage} {source}", coverage=say(NORMAL, k=number(k), percent=percent), source=BY)

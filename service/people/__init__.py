@@ -1,1 +1,1 @@
-"""Who may sign in, what each may do, and who did what when."""
+"""Accounts, roles and permissions, and the audit trail."""

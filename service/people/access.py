@@ -1,15 +1,17 @@
-"""What each route asks of whoever calls it. Every route stands here once; one that does not is closed to everybody, so
-that no new route is open because somebody forgot it.
-"""
+"""The role that each route needs. Every route is listed once; an unlisted route is closed to everybody, so that no new
+route is open by oversight."""
 
 from collections.abc import Iterable, Mapping
 
 from service.kit.person import Role
+from service.sessions.records import MARKS
 from service.web.headers import API
 
 UNIT, SESSION = f"{API}/units/{{serial:path}}", f"{API}/sessions/{{id}}"
+MARKED = "\n".join(f"POST /sessions/{{id}}/{word}\nPUT {SESSION}/{word}" for word in MARKS)
+"""What is said of a session with yes or no."""
 Route = tuple[str, str]
-"""Method and path as the route table writes it."""
+"""Method and path as in the route table."""
 
 PUBLIC = """
 GET /healthz
@@ -23,7 +25,7 @@ POST /sign-out
 GET /oidc/start
 GET /oidc/callback
 """
-"""What somebody may who has not signed in."""
+"""Open without signing in."""
 
 VIEWER = f"""
 GET /
@@ -127,7 +129,7 @@ POST /sessions/{{id}}/notes
 POST /attachments
 POST /attachments/{{id}}/withdraw
 POST /sessions/{{id}}/stage
-POST /sessions/{{id}}/check
+{MARKED}
 POST {API}/sessions
 POST {API}/layouts/preview
 GET {API}/uploads
@@ -137,7 +139,6 @@ POST {API}/plan/ready
 POST /ready
 POST /missing
 PUT {SESSION}/stage
-PUT {SESSION}/check
 GET {SESSION}/certificate
 GET {API}/certificates
 POST {UNIT}/services
@@ -217,7 +218,7 @@ GET {API}/webhooks/{{id}}/deliveries
 DELETE {API}/webhooks/{{id}}
 """
 METRICS: Route = ("GET", "/metrics")
-"""That a token of its own opens as well."""
+"""Also open to a token of its own."""
 
 
 def _routes(text: str) -> Iterable[Route]:
@@ -234,4 +235,4 @@ NEEDED: Mapping[Route, Role | None] = {
     **dict.fromkeys(_routes(ENGINEER), Role.ENGINEER),
     **dict.fromkeys(_routes(ADMIN), Role.ADMIN),
 }
-"""The least role of every route; None where nobody needs one."""
+"""Lowest role for every route; None for public ones."""

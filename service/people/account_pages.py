@@ -11,11 +11,10 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from estimator.message import say
 from service.errors import ForbiddenError, SignInError
 from service.kit.person import Account, Role, Token
-from service.people.admission import COOKIE, Gate, PersonOf, attempt_of, cookie_of, proof_for
-from service.people.admission import LASTS as KNOWN
+from service.people.admission import COOKIE, PROOF_LIFETIME, Gate, PersonOf, attempt_of, cookie_of, proof_for
 from service.people.changes import (
-    LASTS,
-    Chosen,
+    SIGN_IN_LIFETIME,
+    LinkForm,
     attempting,
     change_password,
     link_of,
@@ -42,20 +41,20 @@ class SignInPage:
     """Login and password."""
 
     next: str
-    """Where it leads, an address of this service."""
+    """Address of this service to which it leads."""
     wrong: str
-    """What was wrong the last time; empty the first time."""
+    """The last error; empty the first time."""
     provider: str
-    """What the provider that people may sign in at is called; empty where none is set."""
+    """Name of the sign-in provider; empty where none is configured."""
 
 
 @dataclass(frozen=True)
 class LinkPage:
-    """What somebody fills in who opened a link."""
+    """The form behind a sign-in link."""
 
     secret: str
     account: Account | None
-    """None where the first account of all is made."""
+    """None where the first account is made."""
     shortest: int
     """Characters of a password."""
 
@@ -95,7 +94,9 @@ def _line(token: Token, now: datetime) -> TokenLine:
         else say("last used on {last_used_at}", last_used_at=f"{token.last_used_at:%Y-%m-%d}")
     )
     return TokenLine(
-        token, say("holds until {expires_at}, {used}", expires_at=f"{token.expires_at:%Y-%m-%d}", used=used), holds=True
+        token,
+        say("holds until {expires_at}, {last_use}", expires_at=f"{token.expires_at:%Y-%m-%d}", last_use=used),
+        holds=True,
     )
 
 
@@ -109,7 +110,7 @@ Label = Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)]
 @router.get("/sign-in")
 def show_sign_in(request: Request, next: Annotated[str, Query(max_length=2000)] = "/") -> HTMLResponse:
     """Login and password."""
-    return render(request, "sign_in.html", SignInPage(inside(next), "", _provider(request)))
+    return render(request, "sign_in.html", SignInPage(local_address(next), "", _provider(request)))
 
 
 @router.post("/sign-in")
@@ -122,18 +123,20 @@ def take_sign_in(
     now: Now,
     next: Annotated[str, Form(max_length=2000)] = "/",
 ) -> Response:
-    """Signs in, or says that it was wrong."""
+    """Signs in, or shows the error."""
     try:
         with attempting(storage, attempt_of(request, login), now):
             secret = sign_in(storage, login, password, now)
-    except SignInError as wrong:
-        return render(request, "sign_in.html", SignInPage(inside(next), wrong.detail, _provider(request)), wrong.status)
-    return _known(signed_in(request, settings, secret, inside(next)), request, login)
+    except SignInError as fault:
+        return render(
+            request, "sign_in.html", SignInPage(local_address(next), fault.detail, _provider(request)), fault.status
+        )
+    return _remembered(signed_in(request, settings, secret, local_address(next)), request, login)
 
 
 @router.get("/sign-in/{secret}")
 def show_link(request: Request, secret: Secret, storage: StorageOf, now: Now) -> HTMLResponse:
-    """What somebody fills in who opened a link; looking at it does not use it up."""
+    """The form behind a sign-in link; showing it does not use the link."""
     return render(request, "link.html", LinkPage(secret, link_of(storage, secret, now), SHORTEST))
 
 
@@ -150,13 +153,13 @@ def take_link(
 ) -> Response:
     """Sets the password and signs in."""
     owner = link_of(storage, secret, now)
-    answer = signed_in(request, settings, use_link(storage, secret, Chosen(login, name, password), now), "/")
-    return _known(answer, request, login if owner is None else owner.login)
+    answer = signed_in(request, settings, use_link(storage, secret, LinkForm(login, name, password), now), "/")
+    return _remembered(answer, request, login if owner is None else owner.login)
 
 
 @router.post("/sign-out")
 def take_sign_out(request: Request, storage: StorageOf, now: Now) -> RedirectResponse:
-    """The browser is nobody's any more."""
+    """Signs the browser out."""
     sign_out(storage, request.cookies.get(COOKIE, ""), now)
     answer = RedirectResponse("/sign-in", SEE_OTHER)
     answer.delete_cookie(COOKIE)
@@ -173,11 +176,11 @@ def show_account(request: Request, store: Reading, person: PersonOf, now: Now) -
 def take_password(
     request: Request, old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now
 ) -> RedirectResponse:
-    """Another password; browsers must sign in again, and tokens are revoked. Whoever found a browser open may not
-    guess."""
+    """Changes the password; browsers must sign in again, and tokens are revoked. Guessing in an open browser is limited
+    too."""
     with attempting(storage, attempt_of(request, person.login), now):
         change_password(storage, person.login, old, new, now)
-    return _known(RedirectResponse("/sign-in", SEE_OTHER), request, person.login)
+    return _remembered(RedirectResponse("/sign-in", SEE_OTHER), request, person.login)
 
 
 @router.post("/account/tokens")
@@ -196,14 +199,14 @@ def take_token(
         raise ForbiddenError(
             say("{account} cannot make a token for {role}.", account=person.account or "Nobody", role=role)
         )
-    _, secret = make_token(storage, person.login, label, role, now, lasts=timedelta(days=days), who=person.name)
+    _, secret = make_token(storage, person.login, label, role, now, lifetime=timedelta(days=days), who=person.name)
     with storage.database.reading() as store:
         return render(request, "account.html", account_page(Tokens(store).every(person.login), now, secret))
 
 
 @router.post("/account/tokens/{id}/revoke")
 def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
-    """Nobody gets in with it any more."""
+    """Revokes a token."""
     with storage.database.reading() as store:
         require_may_revoke(person, Tokens(store).get(id))
     revoke_token(storage, id, now, who=person.signs("admin"))
@@ -211,36 +214,36 @@ def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> Red
 
 
 def _provider(request: Request) -> str:
-    """What the provider that people may sign in at is called."""
+    """Name of the sign-in provider."""
     provider = application_of(request).part(Gate).provider
     return provider.name if provider else ""
 
 
-def inside(address: str) -> str:
-    """An address of this service; any other is the fleet's, so that no link to the sign-in leads elsewhere."""
+def local_address(address: str) -> str:
+    """An address of this service; the fleet's for any other, so that no sign-in link leads elsewhere."""
     return address if address.startswith("/") and not address.startswith(("//", "/\\")) else "/"
 
 
 def signed_in(request: Request, settings: Settings, secret: str, to: str) -> RedirectResponse:
-    """The browser is somebody's from now on."""
+    """Signs the browser in."""
     answer = RedirectResponse(to, SEE_OTHER)
-    age = int(LASTS.total_seconds())
+    age = int(SIGN_IN_LIFETIME.total_seconds())
     answer.set_cookie(COOKIE, secret, max_age=age, httponly=True, samesite="lax", secure=is_secure(request, settings))
     return answer
 
 
-def _known(answer: RedirectResponse, request: Request, login: str) -> RedirectResponse:
-    """The browser has just shown the account's password: from now on its attempts are counted apart from others'."""
-    own = application_of(request)
-    with own.storage.database.reading() as store:
+def _remembered(answer: RedirectResponse, request: Request, login: str) -> RedirectResponse:
+    """The browser has just shown the account's password: from now on its attempts are counted separately."""
+    application = application_of(request)
+    with application.storage.database.reading() as store:
         stored = Accounts(store).password_hash(login.strip())
     if stored is not None:
-        proof, age = proof_for(login, stored, own.clock()), int(KNOWN.total_seconds())
-        secure = is_secure(request, own.settings)
+        proof, age = proof_for(login, stored, application.clock()), int(PROOF_LIFETIME.total_seconds())
+        secure = is_secure(request, application.settings)
         answer.set_cookie(cookie_of(login), proof, max_age=age, httponly=True, samesite="lax", secure=secure)
     return answer
 
 
 def is_secure(request: Request, settings: Settings) -> bool:
-    """Whether browsers reach the service by https, so that cookies need never go otherwise."""
+    """Whether browsers reach the service by https, so that cookies need never be sent otherwise."""
     return request.url.scheme == "https" or settings.public_url.startswith("https:")

@@ -22,31 +22,31 @@ from service.web.render import render
 
 @dataclass(frozen=True)
 class AccountsPage:
-    """Everybody who may sign in, or once might."""
+    """All accounts, active or not."""
 
     accounts: tuple[Account, ...]
     roles: tuple[Role, ...]
     login: str
-    """Whose link was just made; empty otherwise."""
+    """Owner of the new link; empty otherwise."""
     link: str
 
 
 @dataclass(frozen=True)
-class AuditPage:
+class AuditView:
     """A part of the trail."""
 
     lines: tuple[tuple[AuditLine, str], ...]
-    """With what else is known of each, in words."""
+    """With its details in words."""
     check: AuditCheck | None
     subject: str
     before: int | None
-    """Where the next part begins."""
+    """Start of the next part."""
 
 
-def audit_page(lines: Sequence[AuditLine], check: AuditCheck | None, subject: str, most: int) -> AuditPage:
+def audit_page(lines: Sequence[AuditLine], check: AuditCheck | None, subject: str, limit: int) -> AuditView:
     """The page of some lines of the trail."""
-    told = tuple((line, _in_words(line)) for line in lines)
-    return AuditPage(told, check, subject, lines[-1].id if len(lines) == most else None)
+    lines_in_words = tuple((line, _in_words(line)) for line in lines)
+    return AuditView(lines_in_words, check, subject, lines[-1].id if len(lines) == limit else None)
 
 
 def _in_words(line: AuditLine) -> str:
@@ -67,7 +67,7 @@ Written = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
 
 @router.get("/accounts")
 def show_accounts(request: Request, store: Reading) -> HTMLResponse:
-    """Everybody who may sign in, or once might."""
+    """All accounts, active or not."""
     return render(request, "accounts.html", AccountsPage(Accounts(store).every(), tuple(Role), "", ""))
 
 
@@ -97,7 +97,7 @@ def change(
     now: Now,
     is_active: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
-    """Another name or role, or the account may no longer sign in."""
+    """Changes name, role or whether the account may sign in."""
     change_account(storage, login, AccountChange(name, role, is_active), now, who=person.signs(UNNAMED))
     return RedirectResponse("/accounts", SEE_OTHER)
 

@@ -26,7 +26,7 @@ from service.people.dependencies import StorageOf
 from service.people.store import Accounts, Tokens
 from service.storage.audit import Audit, AuditCheck, AuditLine
 from service.web.dependencies import Now, Reading
-from service.web.fields import TEXT, Limit, Number, Said, Text
+from service.web.fields import TEXT, Limit, NonBlankName, Number, Text
 from service.web.problem_document import errors
 
 Login = Annotated[str, Path(pattern=TEXT, max_length=60, description="The account's login.", examples=["k.ito"])]
@@ -56,7 +56,7 @@ class NewAccount(BaseModel):
         extra="forbid", json_schema_extra={"example": {"login": "k.ito", "name": "K. Ito", "role": "crew"}}
     )
 
-    login: Said = Field(
+    login: NonBlankName = Field(
         description="Letters a to z, digits and . _ @ -; at most 60. Capitals are made small.",
         json_schema_extra={"pattern": r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,59}$"},
     )
@@ -93,7 +93,7 @@ class NewToken(BaseModel):
         extra="forbid", json_schema_extra={"example": {"label": "bench 3", "role": "crew", "days": 90}}
     )
 
-    label: Said = Field(description="What it is for.")
+    label: NonBlankName = Field(description="What it is for.")
     role: Role = Field(description="What it may do; at most what its account may.")
     days: int = Field(default=90, ge=1, le=366, description="How long it holds.")
 
@@ -168,14 +168,14 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
     if not person.may(new.role):
         raise ForbiddenError(
             say(
-                "{account} is {role} and cannot make a token for {role2}.",
+                "{account} is {role} and cannot make a token for {wanted_role}.",
                 account=person.account,
                 role=person.role,
-                role2=new.role,
+                wanted_role=new.role,
             )
         )
     lasts = timedelta(days=new.days)
-    token, secret = make_token(storage, person.login, new.label, new.role, now, lasts=lasts, who=person.name)
+    token, secret = make_token(storage, person.login, new.label, new.role, now, lifetime=lasts, who=person.name)
     return MadeToken(**vars(token), secret=secret)
 
 

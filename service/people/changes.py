@@ -1,9 +1,10 @@
-"""Accounts, passwords, sign-in links and tokens are made and changed; accounts are never deleted.
+"""Changes of accounts, passwords, sign-in links and tokens; accounts are never deleted.
 
-By account and address together, so that whoever guesses keeps out nobody but those at the same address; by address, so
-that trying one password on everybody does not get far; by account, far more slowly, so that many addresses do not
-either. A browser that has signed in to the account before has a count of its own and passes whatever others do. Counted
-in the database, before the password is looked at: many processes, or many requests at once, get no more than one.
+Attempts to sign in are limited by account and address together, so that guessing locks out nobody but those at the same
+address; by address, against one password on many accounts; and by account, with a far higher limit, against many
+addresses. A browser that has signed in to the account before has its own count, and is not affected by others. Attempts
+are counted in the database, before the password is checked: many processes or concurrent requests get no more attempts
+than one.
 """
 
 import re
@@ -24,14 +25,14 @@ from service.storage.audit import Audit
 from service.storage.queries import Store
 
 LOGIN = re.compile(r"[a-z0-9][a-z0-9._@-]{0,59}")
-"""What a login is made of; it stands in addresses and logs."""
+"""Pattern of a login; it appears in addresses and logs."""
 LAST_ADMIN = "This is the only account that may administer the service: make another one an admin first."
 UNCHANGED = "is the one that the account has; choose another"
 
 
 @dataclass(frozen=True)
 class AccountChange:
-    """What is to be otherwise; None stays."""
+    """Changed fields; None stays."""
 
     name: str | None = None
     role: Role | None = None
@@ -39,66 +40,66 @@ class AccountChange:
 
 
 def require_login(login: str) -> str:
-    """The login in small letters; RefusedError where it cannot be one."""
-    small = login.strip().lower()
-    if not LOGIN.fullmatch(small):
+    """The login in lower case; RefusedError for an invalid one."""
+    lower = login.strip().lower()
+    if not LOGIN.fullmatch(lower):
         fault = (
             "is made of letters a to z, digits and . _ @ -, begins with a letter or digit, and has at most 60 of them"
         )
         raise RefusedError("The login cannot be used.", (Problem("login", fault),))
-    return small
+    return lower
 
 
 def add_account(storage: Storage, login: str, name: str, role: Role, now: datetime, *, who: str) -> Account:
-    """Makes an account that nobody can sign in to yet: a link lets its owner choose a password."""
-    small = require_login(login)
+    """Makes an account without a password: a link lets its owner choose one."""
+    lower = require_login(login)
     with storage.database.writing() as store:
         if not Accounts(store).any() and role is not Role.ADMIN:
             raise ConflictError("The first account must be an admin: from then on everybody has to sign in.")
-        shown = name.strip() or small
-        if not Accounts(store).add(small, shown, role, now):
-            raise ConflictError(say("There is an account {small} already.", small=repr(small)))
-        Audit(store).write(now, who, "add account", small, {"name": shown, "role": role})
-        return Accounts(store).get(small)
+        shown_name = name.strip() or lower
+        if not Accounts(store).add(lower, shown_name, role, now):
+            raise ConflictError(say("There is an account {small} already.", small=repr(lower)))
+        Audit(store).write(now, who, "add account", lower, {"name": shown_name, "role": role})
+        return Accounts(store).get(lower)
 
 
 def change_account(storage: Storage, login: str, change: AccountChange, now: datetime, *, who: str) -> Account:
-    """Another name or role; or the account may no longer sign in, which ends browsers, links and tokens for good."""
+    """Changes name or role; or deactivates the account, which ends browsers, links and tokens for good."""
     with storage.database.writing() as store:
         Accounts(store).hold_admins()
-        was = Accounts(store).get(login)
-        name = was.name if change.name is None else change.name.strip() or was.login
-        role = was.role if change.role is None else change.role
-        is_active = was.is_active if change.is_active is None else change.is_active
-        loses = was.role is Role.ADMIN and was.is_active and not (role is Role.ADMIN and is_active)
-        if loses and Accounts(store).admins() == 1:
+        before = Accounts(store).get(login)
+        name = before.name if change.name is None else change.name.strip() or before.login
+        role = before.role if change.role is None else change.role
+        is_active = before.is_active if change.is_active is None else change.is_active
+        loses_admin = before.role is Role.ADMIN and before.is_active and not (role is Role.ADMIN and is_active)
+        if loses_admin and Accounts(store).admins() == 1:
             raise ConflictError(LAST_ADMIN)
-        Accounts(store).put(was.login, name=name, role=role, is_active=is_active)
-        ended = {} if is_active and was.is_active else end_access(store, was, now)
-        found = Accounts(store).get(was.login)
-        if found != was:
-            details = {"before": _plain(was), "after": _plain(found), **ended}
-            Audit(store).write(now, who, "change account", was.login, details)
-        return found
+        Accounts(store).put(before.login, name=name, role=role, is_active=is_active)
+        ended = {} if is_active and before.is_active else end_access(store, before, now)
+        after = Accounts(store).get(before.login)
+        if after != before:
+            details = {"before": _plain(before), "after": _plain(after), **ended}
+            Audit(store).write(now, who, "change account", before.login, details)
+        return after
 
 
 def change_password(storage: Storage, login: str, old: str, new: str, now: datetime) -> None:
-    """Another password, with the old one as proof; ends every browser, link and token of the account."""
+    """Changes the password, with the old one as proof; ends every browser, link and token of the account."""
     with storage.database.reading() as store:
         stored = Accounts(store).password_hash(login)
     if not is_password(stored, old):
         raise SignInError("The old password is wrong.")
     require_new_password(stored, new)
-    replacing = hashed(new)
+    new_hash = hashed(new)
     with storage.database.writing() as store:
         account = Accounts(store).get(login)
-        Accounts(store).put_password_hash(login, replacing)
+        Accounts(store).put_password_hash(login, new_hash)
         ended = end_access(store, account, now)
         Audit(store).write(now, account.name, "password", account.login, ended)
 
 
 def require_new_password(stored: str | None, new: str) -> None:
-    """RefusedError where a password cannot be the next one of an account whose present one is stored as given."""
+    """RefusedError where a new password is invalid or the same as the stored one."""
     fault = fault_of(new)
     if fault is None and is_password(stored, new):
         fault = UNCHANGED
@@ -107,8 +108,7 @@ def require_new_password(stored: str | None, new: str) -> None:
 
 
 def end_access(store: Store, account: Account, now: datetime) -> dict[str, object]:
-    """Signs every browser of an account out, spends its links and revokes its tokens; returns what the audit trail
-    says of it."""
+    """Signs out all browsers of an account, ends its links and revokes its tokens; returns audit details."""
     SignIns(store).end_all(account)
     SignIns(store).end_links(account)
     revoked = Tokens(store).revoke_all(account, now)
@@ -120,13 +120,13 @@ def _plain(account: Account) -> dict[str, object]:
 
 
 MINUTE, DAY = timedelta(minutes=1), timedelta(days=1)
-BY_LOGIN, BY_ADDRESS = 5, 20
-"""Wrong attempts within a minute: who knows a password mistypes it once or twice; several people share an address."""
-A_DAY = 20
-"""Wrong attempts a day at one account from one address, or from one browser that it knows."""
-FROM_EVERYWHERE = 100
-"""Wrong attempts a day at one account from all browsers that it does not know: of a million common passwords, however
-many addresses try them, 0.01 % a day."""
+LOGIN_LIMIT, ADDRESS_LIMIT = 5, 20
+"""Wrong attempts a minute: an owner mistypes a password once or twice; several people share an address."""
+DAILY_LIMIT = 20
+"""Wrong attempts a day at one account from one address, or from one remembered browser."""
+DAILY_LIMIT_OF_ALL = 100
+"""Wrong attempts a day at one account from all other browsers: of a million common passwords 0.01 % a day, however many
+addresses try them."""
 TOO_OFTEN = "Too many wrong attempts. Wait a minute, then try again."
 ENOUGH_TODAY = (
     "Too many wrong attempts today. Try again tomorrow, from a browser that has signed in to this account before, "
@@ -135,38 +135,38 @@ ENOUGH_TODAY = (
 
 
 @dataclass(frozen=True)
-class Attempt:
-    """Somebody tries a password."""
+class SignInAttempt:
+    """An attempt at a password."""
 
     login: str
     address: str
-    """That the request came from."""
+    """Address of the client."""
     browser: str = ""
-    """Of one that has signed in to this account before, its identifier; empty of any other."""
+    """Identifier of a browser that has signed in to this account before; empty for any other."""
 
 
 @dataclass(frozen=True)
-class _Bound:
-    """How many attempts may be wrong within a time."""
+class _Limit:
+    """A limit of wrong attempts within a time."""
 
     key: str
-    """What is counted: a hash, for people type passwords as logins too."""
+    """A hash, since people also type passwords as logins."""
     most: int
     window: timedelta
     is_own: bool = True
-    """Whether a right password forgets all that were wrong before: nobody else's are counted there."""
+    """Whether a right password resets the count: it has no other account's attempts."""
 
 
 @contextmanager
-def attempting(storage: Storage, attempt: Attempt, now: datetime) -> Iterator[None]:
-    """Around the look at the password: TooOftenError where there were too many, SignInError is a wrong one."""
-    bounds = _bounds(attempt)
+def attempting(storage: Storage, attempt: SignInAttempt, now: datetime) -> Iterator[None]:
+    """Context of checking a password: TooOftenError above a limit; a SignInError counts as wrong."""
+    limits = _limits(attempt)
     with storage.database.writing() as store:
         Attempts(store).forget_old(now)
         # One that is refused here does not count against the bounds behind it, or one address could use them up.
-        over = next((b for b in bounds if Attempts(store).count(b.key, b.window, now) > b.most), None)
-    if over is not None:
-        raise TooOftenError(TOO_OFTEN if over.window == MINUTE else ENOUGH_TODAY)
+        exceeded = next((b for b in limits if Attempts(store).count(b.key, b.window, now) > b.most), None)
+    if exceeded is not None:
+        raise TooOftenError(TOO_OFTEN if exceeded.window == MINUTE else ENOUGH_TODAY)
     is_wrong = False
     try:
         yield
@@ -175,21 +175,21 @@ def attempting(storage: Storage, attempt: Attempt, now: datetime) -> Iterator[No
         raise
     finally:
         if not is_wrong:
-            _forgive(storage, bounds)
+            _reset(storage, limits)
 
 
-def _bounds(attempt: Attempt) -> tuple[_Bound, ...]:
+def _limits(attempt: SignInAttempt) -> tuple[_Limit, ...]:
     """Always in the same order, the narrowest first, so that no two requests wait for each other."""
     login = attempt.login.strip().lower()
     if attempt.browser:
-        own = ("browser", attempt.browser, login)
-        return _Bound(_key("minute", *own), BY_LOGIN, MINUTE), _Bound(_key("day", *own), A_DAY, DAY)
-    own = ("address", attempt.address, login)
+        parts = ("browser", attempt.browser, login)
+        return _Limit(_key("minute", *parts), LOGIN_LIMIT, MINUTE), _Limit(_key("day", *parts), DAILY_LIMIT, DAY)
+    parts = ("address", attempt.address, login)
     return (
-        _Bound(_key("address", attempt.address), BY_ADDRESS, MINUTE, is_own=False),
-        _Bound(_key("minute", *own), BY_LOGIN, MINUTE),
-        _Bound(_key("day", *own), A_DAY, DAY),
-        _Bound(_key("login", login), FROM_EVERYWHERE, DAY, is_own=False),
+        _Limit(_key("address", attempt.address), ADDRESS_LIMIT, MINUTE, is_own=False),
+        _Limit(_key("minute", *parts), LOGIN_LIMIT, MINUTE),
+        _Limit(_key("day", *parts), DAILY_LIMIT, DAY),
+        _Limit(_key("login", login), DAILY_LIMIT_OF_ALL, DAY, is_own=False),
     )
 
 
@@ -197,24 +197,24 @@ def _key(*parts: str) -> str:
     return sha256("\n".join(parts).encode()).hexdigest()
 
 
-def _forgive(storage: Storage, bounds: tuple[_Bound, ...]) -> None:
-    """It was right: what was tried before from here is forgotten, and this one where others are counted too."""
+def _reset(storage: Storage, limits: tuple[_Limit, ...]) -> None:
+    """After a right password: resets own counts, and subtracts this attempt from shared ones."""
     with storage.database.writing() as store:
-        for bound in bounds:
-            if bound.is_own:
-                Attempts(store).forget(bound.key)
+        for limit in limits:
+            if limit.is_own:
+                Attempts(store).forget(limit.key)
             else:
-                Attempts(store).take_back(bound.key)
+                Attempts(store).take_back(limit.key)
 
 
-LASTS = timedelta(hours=12)
-"""That a browser stays signed in: a shift."""
+SIGN_IN_LIFETIME = timedelta(hours=12)
+"""Lifetime of a sign-in: a shift."""
 WRONG = "Login or password is wrong, or the account may no longer sign in."
-"""Says not which, so that nobody learns who has an account."""
+"""Does not state which, so that nobody learns who has an account."""
 
 
 def sign_in(storage: Storage, login: str, password: str, now: datetime) -> str:
-    """The secret that the browser shows from now on; SignInError where the password is wrong."""
+    """The secret of the browser; SignInError for a wrong password."""
     with storage.database.reading() as store:
         stored = Accounts(store).password_hash(login)
     if not is_password(stored, password):
@@ -224,15 +224,15 @@ def sign_in(storage: Storage, login: str, password: str, now: datetime) -> str:
 
 
 def begin(store: Store, account: Account, now: datetime, elsewhere: str = "") -> str:
-    """Signs a browser in, within the transaction that let somebody in; ``elsewhere``: the provider that did."""
+    """Signs a browser in, within the transaction that admitted it; ``elsewhere``: the provider that did."""
     secret = new_secret()
-    SignIns(store).add(account, stored_hash(secret), now, now + LASTS)
+    SignIns(store).add(account, stored_hash(secret), now, now + SIGN_IN_LIFETIME)
     Audit(store).write(now, account.name, "sign in", account.login, {"issuer": elsewhere} if elsewhere else {})
     return secret
 
 
 def sign_out(storage: Storage, secret: str, now: datetime) -> None:
-    """The secret is worth nothing from now on."""
+    """Invalidates the secret."""
     with storage.database.writing() as store:
         account = SignIns(store).shown(stored_hash(secret), now)
         if account is not None:
@@ -240,8 +240,8 @@ def sign_out(storage: Storage, secret: str, now: datetime) -> None:
         SignIns(store).end(stored_hash(secret))
 
 
-HOLDS = timedelta(hours=1)
-"""That a link can be used; the one who asked for it is at hand."""
+LINK_LIFETIME = timedelta(hours=1)
+"""Lifetime of a link; its owner is present."""
 SPENT = (
     "This link was used already, or its hour is over. Ask an administrator for another; "
     "while there is no account, start the service again."
@@ -249,60 +249,60 @@ SPENT = (
 
 
 @dataclass(frozen=True)
-class Chosen:
-    """What somebody fills in who opened a link."""
+class LinkForm:
+    """The form behind a sign-in link."""
 
     login: str
-    """Only of the first account; others have theirs."""
+    """For the first account only."""
     name: str
     password: str
 
 
 def make_link(storage: Storage, login: str | None, now: datetime, who: str) -> str:
-    """The secret of a new link for an account, or, without a login, for the first account of all."""
+    """The secret of a new link for an account, or, without a login, for the first account."""
     with storage.database.writing() as store:
         account = None if login is None else Accounts(store).get(login)
         if account is None and Accounts(store).any():
             raise ConflictError("There are accounts already: name the one that the link is for.")
         secret = new_secret()
-        SignIns(store).add_link(account, stored_hash(secret), now, now + HOLDS)
+        SignIns(store).add_link(account, stored_hash(secret), now, now + LINK_LIFETIME)
         Audit(store).write(now, who, "sign-in link", account.login if account else "the first account", {})
         return secret
 
 
 def link_of(storage: Storage, secret: str, now: datetime) -> Account | None:
-    """Whom a link signs in, None for the first account of all; SignInError where it holds no longer."""
+    """The account of a link, None for the first account; SignInError for an invalid one."""
     with storage.database.reading() as store:
         return _owner(store, secret, now)
 
 
-def use_link(storage: Storage, secret: str, chosen: Chosen, now: datetime) -> str:
-    """Sets the password, ends what the account had open, signs in, and returns what the browser shows from now on."""
+def use_link(storage: Storage, secret: str, chosen: LinkForm, now: datetime) -> str:
+    """Sets the password, ends existing access, signs in, and returns the secret of the browser."""
     with storage.database.reading() as store:
         owner = _owner(store, secret, now)
         stored = None if owner is None else Accounts(store).password_hash(owner.login)
     require_new_password(stored, chosen.password)
-    replacing = hashed(chosen.password)
+    new_hash = hashed(chosen.password)
     with storage.database.writing() as store:
         owner = _owner(store, secret, now)
         if not SignIns(store).use_link(stored_hash(secret), now):
             raise SignInError(SPENT)
         login = _first(store, chosen, now) if owner is None else owner.login
-        Accounts(store).put_password_hash(login, replacing)
+        Accounts(store).put_password_hash(login, new_hash)
         account = Accounts(store).get(login)
         Audit(store).write(now, account.name, "password", login, end_access(store, account, now))
         return begin(store, account, now)
 
 
 def _owner(store: Store, secret: str, now: datetime) -> Account | None:
-    holds, owner = SignIns(store).link(stored_hash(secret), now)
-    if not holds or (owner is None and Accounts(store).any()) or (owner is not None and not owner.is_active):
+    is_valid, owner = SignIns(store).link(stored_hash(secret), now)
+    if not is_valid or (owner is None and Accounts(store).any()) or (owner is not None and not owner.is_active):
         raise SignInError(SPENT)
     return owner
 
 
-def _first(store: Store, chosen: Chosen, now: datetime) -> str:
-    """The account of the one who set the service up."""
+def _first(store: Store, chosen: LinkForm, now: datetime) -> str:
+    """The account of the person who set the service up."""
     login = require_login(chosen.login)
     name = chosen.name.strip() or login
     if not Accounts(store).add(login, name, Role.ADMIN, now):
@@ -312,7 +312,7 @@ def _first(store: Store, chosen: Chosen, now: datetime) -> str:
 
 
 LONGEST = timedelta(days=366)
-"""That a token may hold: what nobody remembers should end by itself."""
+"""Longest lifetime of a token: what is forgotten should end by itself."""
 
 
 OUTLIVES = "A token makes no tokens and no sign-in links, which would outlive it: sign in with a browser."
@@ -321,13 +321,13 @@ NOT_ITSELF = "A token revokes none but itself: sign in with a browser."
 
 
 def require_no_token(person: Person) -> None:
-    """ForbiddenError where a token asks for something that lets somebody in for longer than the token does."""
+    """ForbiddenError where a token requests access that outlives it."""
     if person.token:
         raise ForbiddenError(OUTLIVES)
 
 
 def require_may_revoke(person: Person, token: Token) -> None:
-    """ForbiddenError unless a token is somebody's own, or an administrator asks; a token revokes only itself."""
+    """ForbiddenError unless a token is the person's own, or an administrator asks; a token revokes only itself."""
     if token.login != person.login and not person.may(Role.ADMIN):
         raise ForbiddenError(OTHERS)
     if person.token and person.token_id != token.id:
@@ -335,10 +335,10 @@ def require_may_revoke(person: Person, token: Token) -> None:
 
 
 def make_token(
-    storage: Storage, login: str, label: str, role: Role, now: datetime, *, lasts: timedelta, who: str
+    storage: Storage, login: str, label: str, role: Role, now: datetime, *, lifetime: timedelta, who: str
 ) -> tuple[Token, str]:
-    """A token for an account with the secret to show, which is not kept; it may do at most what its account may."""
-    if not timedelta(0) < lasts <= LONGEST:
+    """A token for an account with its secret, which is not stored; its role is at most that of its account."""
+    if not timedelta(0) < lifetime <= LONGEST:
         fault = Problem("days", say("must be from 1 to {days}", days=LONGEST.days))
         raise RefusedError("The token cannot be made.", (fault,))
     secret = TOKEN_PREFIX + new_secret()
@@ -347,13 +347,13 @@ def make_token(
         if not account.is_active or not account.role.may(role):
             raise ConflictError(
                 say(
-                    "{login} is {role} and cannot have a token for {role2}.",
+                    "{login} is {role} and cannot have a token for {wanted_role}.",
                     login=account.login,
                     role=account.role,
-                    role2=role,
+                    wanted_role=role,
                 )
             )
-        new = Token(0, account.login, label.strip() or "token", role, now, now + lasts, None, None)
+        new = Token(0, account.login, label.strip() or "token", role, now, now + lifetime, None, None)
         token = Tokens(store).add(account, new, stored_hash(secret))
         details = {"token": token.id, "label": token.label, "role": role, "until": token.expires_at.isoformat()}
         Audit(store).write(now, who, "make token", account.login, details)
@@ -361,7 +361,7 @@ def make_token(
 
 
 def revoke_token(storage: Storage, id: int, now: datetime, *, who: str) -> Token:
-    """Nobody gets in with it any more; again it changes nothing."""
+    """Revokes a token; again it changes nothing."""
     with storage.database.writing() as store:
         token = Tokens(store).get(id)
         if token.revoked_at is None:

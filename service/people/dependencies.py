@@ -1,4 +1,4 @@
-"""What routes ask for by type: both stores, for changes in the name of whoever asks."""
+"""Dependencies of routes: both stores, with the sender's name in the audit trail."""
 
 from dataclasses import replace
 from typing import Annotated
@@ -12,7 +12,7 @@ from service.web.application import application_of
 from service.web.fields import NO_NUL
 
 CREW = "crew"
-"""Who uploads, where nobody says who they are."""
+"""Default name of an uploader without an account."""
 
 
 def _storage(request: Request, person: PersonOf) -> Storage:
@@ -20,7 +20,7 @@ def _storage(request: Request, person: PersonOf) -> Storage:
 
 
 def _acting(storage: Storage, person: Person) -> Storage:
-    """The same stores; the audit trail names who acts."""
+    """The same stores; the audit trail names the person."""
     return replace(storage, database=storage.database.acting(person.account))
 
 
@@ -28,19 +28,19 @@ StorageOf = Annotated[Storage, Depends(_storage)]
 """Both stores, for flows that write."""
 
 SEE_OTHER = 303
-"""What a form answers, so that loading its page again sends nothing twice (RFC 9110)."""
-SAYS_SOMETHING = r"^[^\x00]*\S[^\x00]*$"
+"""Answer to a form, so that reloading its page sends nothing twice (RFC 9110)."""
+NOT_BLANK = r"^[^\x00]*\S[^\x00]*$"
 
 Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
 Number = Annotated[int, Path(ge=1, le=2_000_000_000)]
 
 
-def _by(person: PersonOf, by: Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)]) -> str:
+def _by(person: PersonOf, by: Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]) -> str:
     return person.signs(by)
 
 
 By = Annotated[str, Depends(_by)]
-"""Somebody's name: the account's, or as they wrote it where nobody signs in."""
-Perhaps = Annotated[str, Form(max_length=2000, pattern=NO_NUL)]
-"""What may be said and need not."""
-Why = Annotated[str, Form(max_length=2000, pattern=SAYS_SOMETHING)]
+"""A name: the account's, or as written where there are no accounts."""
+OptionalText = Annotated[str, Form(max_length=2000, pattern=NO_NUL)]
+"""An optional text."""
+Why = Annotated[str, Form(max_length=2000, pattern=NOT_BLANK)]

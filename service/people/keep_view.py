@@ -1,4 +1,4 @@
-"""Flow: a view of a list is kept under a name, for oneself or for everybody, or removed."""
+"""Flow: a view of a list is saved under a name, for oneself or for everybody, or removed."""
 
 from datetime import datetime
 
@@ -10,29 +10,31 @@ from service.people.views import NewView, SavedView
 from service.storage import Storage
 from service.storage.audit import Audit
 
-MOST = 50
-"""Views of one list that one person, or everybody together, has: as many as still can be chosen from."""
+MAX_VIEWS = 50
+"""Views of one list of one person, or shared ones: as many as can be chosen from."""
 
 
 def may_share(person: Person) -> bool:
-    """Whether somebody may keep views that everybody has."""
+    """Whether somebody may save shared views."""
     return person.may(Role.CREW)
 
 
 def may_remove(view: SavedView, person: Person) -> bool:
-    """One's own; of those that everybody has, whoever may share them."""
+    """One's own; shared ones by whoever may share."""
     return may_share(person) if view.shared else view.owner == person.login
 
 
 def save_view(storage: Storage, new: NewView, person: Person, who: str, now: datetime) -> SavedView:
-    """Keeps a view; under a name that is there already it replaces the other. Where nobody signs in, all are shared."""
+    """Saves a view; an existing one of the same name is replaced. Without accounts all are shared."""
     owner = "" if new.shared or not person.login else person.login
     if not owner and not may_share(person):
         raise ForbiddenError("Only who may upload keeps views for everybody; keep it for yourself, signed in.")
     with storage.database.writing() as store:
-        known = SavedViews(store).named(new.page, owner, new.name)
-        if known is None and SavedViews(store).count(new.page, owner) >= MOST:
-            raise ConflictError(say("There are {most} saved views of this list already. Remove one first.", most=MOST))
+        existing = SavedViews(store).named(new.page, owner, new.name)
+        if existing is None and SavedViews(store).count(new.page, owner) >= MAX_VIEWS:
+            raise ConflictError(
+                say("There are {number} saved views of this list already. Remove one first.", number=MAX_VIEWS)
+            )
         view = SavedViews(store).put(new.page, owner, new.name, query=new.query, who=who, at=now)
         details = {"view": view.id, "page": view.page, "query": view.query, "shared": view.shared}
         Audit(store).write(now, who, "save view", view.name, details)
@@ -40,7 +42,7 @@ def save_view(storage: Storage, new: NewView, person: Person, who: str, now: dat
 
 
 def remove_view(storage: Storage, id: int, person: Person, who: str, now: datetime) -> SavedView:
-    """Removes a view; NotFoundError for another person's own, which nobody else knows of."""
+    """Removes a view; NotFoundError for another person's."""
     with storage.database.writing() as store:
         view = SavedViews(store).get(id)
         if not may_remove(view, person):

@@ -1,6 +1,7 @@
-"""Signing in at an OpenID provider that the operator has set: what it tells of somebody, and what it is asked with.
+"""Signing in at an OpenID provider that the operator has configured: requests, answers and claims.
 
-The library that checks its tokens comes with ``pip install 'imu-health[oidc]'`` and is imported when a provider is set.
+The library that checks its tokens comes with ``pip install 'imu-health[oidc]'`` and is imported when a provider is
+configured.
 """
 
 import hmac
@@ -19,38 +20,38 @@ from service.errors import ServiceError
 from service.kit.person import Role
 from service.settings import Settings
 
-ROOM = "service.people.oidc.protocol"
+MODULE = "service.people.oidc.protocol"
 WITHOUT = "A provider to sign in at is set, but a library is missing: {fault}. Run pip install 'imu-health[oidc]'."
 EVERYBODY = "*"
 """Stands for every value of the claim, and for none."""
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
-"""Where a provider may be asked without encryption: nobody listens in between."""
+"""Hosts of a provider that may be used without encryption: nobody can listen in between."""
 
 
 @dataclass(frozen=True)
 class Journey:
-    """One way to the provider and back. All of it follows from a secret that only this browser holds."""
+    """One sign-in at the provider. All of it is derived from a secret held by this browser only."""
 
     secret: str
 
     @property
     def state(self) -> str:
-        """Brought back by the browser: the answer is to a question that this browser asked."""
+        """Returned by the browser: the answer is to a request of this browser."""
         return self._part(b"state")
 
     @property
     def nonce(self) -> str:
-        """Brought back in the token: it was made for this question."""
+        """Returned in the token: it was made for this request."""
         return self._part(b"nonce")
 
     @property
     def verifier(self) -> str:
-        """Shown with the code: nobody else can exchange it (RFC 7636)."""
+        """Sent with the code: nobody else can exchange it (RFC 7636)."""
         return self._part(b"verifier")
 
     @property
     def challenge(self) -> str:
-        """The verifier's SHA-256, which the provider is told before."""
+        """The verifier's SHA-256, sent to the provider first."""
         return urlsafe_b64encode(sha256(self.verifier.encode()).digest()).rstrip(b"=").decode()
 
     def _part(self, purpose: bytes) -> str:
@@ -59,20 +60,20 @@ class Journey:
 
 @dataclass(frozen=True)
 class Claims:
-    """What a provider says of somebody, checked."""
+    """Checked claims of a provider about a person."""
 
     issuer: str
     subject: str
-    """By which the provider knows the person for good; names and addresses may change hands."""
+    """Permanent identifier of the person at the provider; names and addresses may change hands."""
     login: str
     name: str
     groups: tuple[str, ...]
-    """Values of the claim that gives roles."""
+    """Values of the claim for roles."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What the browser brought back."""
+    """Parameters of the callback."""
 
     code: str
     state: str
@@ -81,56 +82,56 @@ class Answer:
 
 
 class Provider(Protocol):
-    """Where somebody signs in."""
+    """A sign-in provider."""
 
     name: str
 
     def address(self, journey: Journey, back: str) -> str:
-        """To which the browser is sent; AwayError where the provider does not answer."""
+        """Address of the sign-in page; AwayError where the provider does not answer."""
 
     def claims(self, answer: Answer, journey: Journey, back: str, now: datetime) -> Claims:
-        """Who it was; SignInError where what came back cannot be believed."""
+        """The person's claims; SignInError for an invalid answer."""
 
 
 @dataclass(frozen=True)
-class ProviderSet:
-    """The provider as the operator set it."""
+class ProviderSettings:
+    """Configuration of the provider."""
 
     issuer: str
     client: str
     secret: str
-    """Empty of a client that has none."""
+    """Empty for a public client."""
     role_claim: str
     hosts: frozenset[str]
-    """That it may name in its own description."""
+    """Allowed in its metadata."""
 
 
 @dataclass(frozen=True)
 class Joining:
-    """Who of those that the provider knows gets in, and as what."""
+    """Who may join from the provider, and in which role."""
 
     everybody: Role | None
-    """Of all whom the provider knows; None lets only those in who have a role, or an account already."""
+    """Role of everybody at the provider; None admits only people with a role or an existing account."""
     by_claim: bool
-    """Whether the role is the provider's to say, at every sign-in."""
+    """Whether the provider decides the role, at every sign-in."""
     roles: Mapping[str, Role]
     """By value of the claim."""
 
     def role_of(self, groups: tuple[str, ...]) -> Role | None:
-        """The furthest-reaching role of somebody's groups."""
-        given = [self.roles[group] for group in groups if group in self.roles]
-        given += [] if self.everybody is None else [self.everybody]
-        return max(given, key=list(Role).index, default=None)
+        """The highest role of a person's groups."""
+        roles = [self.roles[group] for group in groups if group in self.roles]
+        roles += [] if self.everybody is None else [self.everybody]
+        return max(roles, key=list(Role).index, default=None)
 
 
 def joining_of(settings: Settings) -> Joining:
-    """As the operator set it."""
+    """From the settings."""
     roles = {value: Role(role) for value, role in settings.oidc_roles}
     return Joining(roles.get(EVERYBODY), bool(settings.oidc_role_claim), roles)
 
 
 def provider_of(settings: Settings) -> Provider | None:
-    """The provider; None where none is set, ServiceError where it cannot be used."""
+    """The provider; None where none is configured, ServiceError for an invalid configuration."""
     if not settings.oidc_issuer:
         return None
     parts = urlsplit(settings.oidc_issuer)
@@ -142,7 +143,7 @@ def provider_of(settings: Settings) -> Provider | None:
         )
     if not settings.oidc_client_id:
         raise ServiceError("A provider to sign in at is set, but no IMU_HEALTH_OIDC_CLIENT_ID.")
-    own = ProviderSet(
+    provider_settings = ProviderSettings(
         issuer=settings.oidc_issuer,
         client=settings.oidc_client_id,
         secret=_read(settings.oidc_client_secret_file),
@@ -150,11 +151,11 @@ def provider_of(settings: Settings) -> Provider | None:
         hosts=frozenset({parts.netloc, *settings.oidc_hosts}),
     )
     try:
-        room = import_module(ROOM)
+        module = import_module(MODULE)
     except ModuleNotFoundError as fault:
         raise ServiceError(say(WITHOUT, fault=fault)) from fault
-    made: Provider = room.OpenIdProvider(own, str(parts.hostname))
-    return made
+    provider: Provider = module.OpenIdProvider(provider_settings, str(parts.hostname))
+    return provider
 
 
 def _read(file: Path | None) -> str:

@@ -1,6 +1,6 @@
-"""Secrets that the service gives out: of tokens, of signed-in browsers, of one-time links. Only hashes are stored.
+"""Secrets of tokens, of signed-in browsers, of one-time links. Only hashes are stored.
 
-Each holds 256 random bits, so that a plain SHA-256 hides it: there is nothing to guess, unlike with passwords.
+Each has 256 random bits, so that a plain SHA-256 suffices: unlike passwords they cannot be guessed.
 """
 
 import hmac
@@ -14,21 +14,21 @@ from argon2.exceptions import InvalidHashError, VerifyMismatchError
 from estimator.message import say
 
 TOKEN_PREFIX = "imuh_"
-"""Of every token, so that one that slipped into a repository or a log is recognised."""
+"""Prefix of every token, so that one leaked into a repository or a log is recognised."""
 
 
 def new_secret() -> str:
-    """43 characters that fit into addresses and cookies."""
+    """43 characters for addresses and cookies."""
     return token_urlsafe(32)
 
 
 def stored_hash(secret: str) -> str:
-    """What is stored of a secret, 64 hexadecimal digits; looked up by equality of hashes, so time tells nothing."""
+    """Stored form of a secret, 64 hexadecimal digits; looked up by hash, so timing reveals nothing."""
     return sha256(secret.encode()).hexdigest()
 
 
 def csrf_of(secret: str) -> str:
-    """What the forms of a signed-in browser bring back; it follows from the cookie and does not tell it."""
+    """CSRF token of a signed-in browser's forms; derived from the cookie, and does not reveal it."""
     return hmac.new(secret.encode(), b"forms of imu-health", sha256).hexdigest()
 
 
@@ -38,9 +38,9 @@ def is_same(given: str, expected: str) -> bool:
 
 
 SHORTEST = 12
-"""Characters: length, not a mixture of signs, is what makes a password hard to guess (NIST SP 800-63B)."""
+"""Characters: length, not variety, makes a password hard to guess (NIST SP 800-63B)."""
 LONGEST = 1000
-"""Characters; hashing a longer one is work that anybody could ask for."""
+"""Characters; hashing a longer one would be work on anybody's request."""
 
 
 @cache
@@ -54,12 +54,12 @@ def _nobody() -> str:
 
 
 def hashed(password: str) -> str:
-    """What is stored of a password."""
+    """Stored form of a password."""
     return _hasher().hash(password)
 
 
 def is_password(stored: str | None, password: str) -> bool:
-    """Whether a password is the stored one. Where there is none it takes as long, so that time tells nothing."""
+    """Whether a password matches the stored one. Without one it takes as long, so that timing reveals nothing."""
     try:
         _hasher().verify(stored or _nobody(), password[:LONGEST])
     except (VerifyMismatchError, InvalidHashError):

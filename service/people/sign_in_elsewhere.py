@@ -1,6 +1,5 @@
-"""Flow: somebody signs in at a provider. Their account is found by issuer and subject, never by a name or an address,
-which change hands; or it is made, where the operator lets it be.
-"""
+"""Flow: sign-in at an external provider. The account is found by issuer and subject, never by a name or an address,
+which change hands; or it is made, where the operator allows it."""
 
 import re
 from collections.abc import Iterator
@@ -21,11 +20,11 @@ FIRST = "There is no account yet, and the first one must be an admin's: make it 
 NO_ROLE = "The provider knows you, but gives you no role here. Ask an administrator."
 NOT_INVITED = "The provider knows you, but there is no account for you here. Ask an administrator."
 LONGEST_LOGIN = 50
-"""Characters of a login that is made of a claim; a number may come behind it."""
+"""Characters of a login derived from a claim; a number may be appended."""
 
 
 def sign_in_elsewhere(storage: Storage, claims: Claims, joining: Joining, now: datetime) -> str:
-    """The secret that the browser shows from now on."""
+    """The secret of the browser."""
     role = _claimed(claims, joining)
     with storage.database.writing() as store:
         Accounts(store).hold_admins()
@@ -38,7 +37,7 @@ def sign_in_elsewhere(storage: Storage, claims: Claims, joining: Joining, now: d
 
 
 def _claimed(claims: Claims, joining: Joining) -> Role | None:
-    """The role that the provider gives; None where that is not its to say."""
+    """The role given by the provider; None where the provider does not decide it."""
     if not joining.by_claim:
         return None
     role = joining.role_of(claims.groups)
@@ -48,7 +47,7 @@ def _claimed(claims: Claims, joining: Joining) -> Role | None:
 
 
 def connect(storage: Storage, login: str, issuer: str, subject: str, now: datetime, *, who: str) -> Account:
-    """An account that is here already is somebody's at the provider."""
+    """Connects an existing account with a person at the provider."""
     with storage.database.writing() as store:
         account = Accounts(store).get(login)
         if not Identities(store).add(account, issuer, subject, now):
@@ -59,31 +58,35 @@ def connect(storage: Storage, login: str, issuer: str, subject: str, now: dateti
 
 def _made(store: Store, claims: Claims, joining: Joining, role: Role | None, now: datetime) -> Account:
     """A new account."""
-    own = role or joining.everybody
-    if own is None:
+    new_role = role or joining.everybody
+    if new_role is None:
         raise ForbiddenError(NOT_INVITED)
-    if not Accounts(store).any() and own is not Role.ADMIN:
+    if not Accounts(store).any() and new_role is not Role.ADMIN:
         raise ConflictError(FIRST)
-    login = next(one for one in _logins(claims.login) if Accounts(store).add(one, claims.name or one, own, now))
+    login = next(
+        candidate
+        for candidate in _logins(claims.login)
+        if Accounts(store).add(candidate, claims.name or candidate, new_role, now)
+    )
     account = Accounts(store).get(login)
     if not Identities(store).add(account, claims.issuer, claims.subject, now):
         raise ConflictError("You are signing in twice at once. Try again.")
-    details = {"name": account.name, "role": own, "issuer": claims.issuer, "subject": claims.subject}
+    details = {"name": account.name, "role": new_role, "issuer": claims.issuer, "subject": claims.subject}
     Audit(store).write(now, account.name, "add account", login, details)
     return account
 
 
 def _logins(claimed: str) -> Iterator[str]:
-    """What the claim makes as a login, then the same with numbers: one that is taken is another person's."""
+    """The login derived from the claim, then with numbers: one that exists belongs to another person."""
     plain = re.sub(r"[^a-z0-9._@-]+", "-", claimed.lower()).lstrip("._@-")[:LONGEST_LOGIN]
-    own = plain if LOGIN.fullmatch(plain) else "user"
-    yield own
+    base = plain if LOGIN.fullmatch(plain) else "user"
+    yield base
     for number in count(2):
-        yield f"{own}-{number}"
+        yield f"{base}-{number}"
 
 
 def _with_role(store: Store, account: Account, role: Role, claims: Claims, now: datetime) -> Account:
-    """The role that the provider gives today."""
+    """The account with the role that the provider gives today."""
     if account.role is Role.ADMIN and Accounts(store).admins() == 1:
         raise ConflictError(LAST_ADMIN)
     Accounts(store).put(account.login, name=account.name, role=role, is_active=True)

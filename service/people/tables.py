@@ -1,4 +1,4 @@
-"""The tables of who may sign in, and of saved views. Of every secret only a hash is stored."""
+"""The tables of accounts and of saved views. Of every secret only a hash is stored."""
 
 from datetime import datetime
 
@@ -9,7 +9,7 @@ from service.storage.tables import Base
 
 
 class AccountRow(Base):
-    """Somebody who may sign in; never deleted."""
+    """An account; never deleted."""
 
     __tablename__ = "accounts"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -22,7 +22,7 @@ class AccountRow(Base):
 
 
 class TokenRow(Base):
-    """What a program shows instead of a password."""
+    """A program's credential."""
 
     __tablename__ = "tokens"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -37,7 +37,7 @@ class TokenRow(Base):
 
 
 class SignInRow(Base):
-    """A browser that is signed in; removed when it signs out or the time is over."""
+    """A signed-in browser; removed when it signs out or expires."""
 
     __tablename__ = "sign_ins"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -60,7 +60,7 @@ class SignInLinkRow(Base):
 
 
 class AttemptRow(Base):
-    """How often somebody tried to sign in within a minute or a day, by what they tried; kept for two days."""
+    """Number of attempts to sign in within a minute or a day, by key; kept for two days."""
 
     __tablename__ = "attempts"
     key: Mapped[str] = mapped_column(String(64), primary_key=True)
@@ -69,7 +69,7 @@ class AttemptRow(Base):
 
 
 class IdentityRow(Base):
-    """Who an account is to a provider that signs people in."""
+    """Identity of an account at a sign-in provider."""
 
     __tablename__ = "identities"
     __table_args__ = (UniqueConstraint("issuer", "subject"),)
@@ -81,8 +81,7 @@ class IdentityRow(Base):
 
 
 class SavedViewRow(Base):
-    """What one list is asked for, under a name; of somebody's own views and of the shared ones each name is there
-    once."""
+    """Query of a list, under a name; names are unique among a person's own views and among the shared ones."""
 
     __tablename__ = "saved_views"
     __table_args__ = (UniqueConstraint("page", "owner", "name"),)
@@ -90,7 +89,7 @@ class SavedViewRow(Base):
     page: Mapped[str] = mapped_column(String(20))
     name: Mapped[str] = mapped_column(String(100))
     owner: Mapped[str] = mapped_column(String(60))
-    """Login of whose it is; empty where everybody has it."""
+    """Login of its owner; empty for a shared view."""
     query: Mapped[str]
     who: Mapped[str]
     saved_at: Mapped[datetime]

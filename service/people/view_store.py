@@ -1,4 +1,4 @@
-"""Views of lists that people keep."""
+"""Saved views of lists."""
 
 from datetime import datetime
 
@@ -15,10 +15,10 @@ class SavedViews(Queries):
     """Views by list and owner."""
 
     def of(self, login: str, page: ListPage | None = None) -> tuple[SavedView, ...]:
-        """Those that everybody has and somebody's own, by name."""
+        """Shared views and a person's own, by name."""
         query = select(SavedViewRow).where(SavedViewRow.owner.in_(("", login)))
-        wanted = query if page is None else query.where(SavedViewRow.page == page)
-        ordered = wanted.order_by(SavedViewRow.page, func.lower(SavedViewRow.name), SavedViewRow.id)
+        filtered = query if page is None else query.where(SavedViewRow.page == page)
+        ordered = filtered.order_by(SavedViewRow.page, func.lower(SavedViewRow.name), SavedViewRow.id)
         return tuple(_view(row) for row in self._session.scalars(ordered))
 
     def get(self, id: int) -> SavedView:
@@ -30,20 +30,20 @@ class SavedViews(Queries):
 
     def named(self, page: ListPage, owner: str, name: str) -> SavedView | None:
         """The view of a name; None where there is none."""
-        own = (SavedViewRow.page == page, SavedViewRow.owner == owner, SavedViewRow.name == name)
-        row = self._session.scalar(select(SavedViewRow).where(*own))
+        conditions = (SavedViewRow.page == page, SavedViewRow.owner == owner, SavedViewRow.name == name)
+        row = self._session.scalar(select(SavedViewRow).where(*conditions))
         return None if row is None else _view(row)
 
     def count(self, page: ListPage, owner: str) -> int:
-        """How many somebody has of a list."""
-        own = (SavedViewRow.page == page, SavedViewRow.owner == owner)
-        return self._session.scalar(select(func.count()).select_from(SavedViewRow).where(*own)) or 0
+        """Number of an owner's views of a list."""
+        conditions = (SavedViewRow.page == page, SavedViewRow.owner == owner)
+        return self._session.scalar(select(func.count()).select_from(SavedViewRow).where(*conditions)) or 0
 
     def put(self, page: ListPage, owner: str, name: str, *, query: str, who: str, at: datetime) -> SavedView:
-        """Keeps a view; one of that name asks for this from now on."""
+        """Saves a view; an existing one of that name is replaced."""
         self.insert_once(SavedViewRow, page=page, owner=owner, name=name, query=query, who=who, saved_at=at)
-        own = (SavedViewRow.page == page, SavedViewRow.owner == owner, SavedViewRow.name == name)
-        row = self._session.scalars(select(SavedViewRow).where(*own)).one()
+        conditions = (SavedViewRow.page == page, SavedViewRow.owner == owner, SavedViewRow.name == name)
+        row = self._session.scalars(select(SavedViewRow).where(*conditions)).one()
         row.query, row.who, row.saved_at = query, who, at
         self._session.flush()
         return _view(row)

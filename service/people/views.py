@@ -1,4 +1,4 @@
-"""Views of lists that people keep."""
+"""Saved views of lists."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,7 +10,7 @@ from service.kit.answer import Hidden, answer
 
 
 class ListPage(StrEnum):
-    """Lists of which views are kept."""
+    """Lists with saved views."""
 
     FLEET = "fleet"
     SESSIONS = "sessions"
@@ -18,7 +18,7 @@ class ListPage(StrEnum):
 
     @property
     def path(self) -> str:
-        """Of the list's address."""
+        """Path of the list."""
         return "/" if self is ListPage.FLEET else f"/{self}"
 
 
@@ -57,7 +57,7 @@ class SavedView:
 
 @dataclass(frozen=True)
 class NewView:
-    """A view to be kept."""
+    """A view to be saved."""
 
     page: ListPage
     name: str

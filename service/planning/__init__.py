@@ -1,1 +1,1 @@
-"""Plans: what a session would tell, and whether a unit is ready, before it is measured."""
+"""Planning of sessions and readiness of units, before a measurement."""

@@ -1,10 +1,11 @@
 """Plans: what a session would tell before it is measured."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
+from estimator.json_object import Json
 from service.people.dependencies import StorageOf
 from service.planning.question import PlanQuestion, ReadyQuestion
 from service.planning.rules import missing_of, plan, readiness_of
@@ -21,7 +22,7 @@ class PlanDocument(BaseModel):
     model_config = {"extra": "allow"}
 
     format: str = Field(description="`imu-plan/1`.")
-    question: dict[str, Any] = Field(description="What was asked, in people's units, with the type's tolerances.")
+    question: Json = Field(description="What was asked, in people's units, with the type's tolerances.")
 
 
 class Setting(BaseModel):

@@ -1,11 +1,11 @@
 """Expected uncertainty over the plan, and the drift of the first minutes."""
 
 from functools import cache
-from typing import Any
 
 import altair as alt
 import numpy as np
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.planning import Plan, Sweep
 from estimator.readiness import Readiness
@@ -50,7 +50,7 @@ def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Array, chosen: float) -
     return panels
 
 
-def _panel(title: str, measure: Measure, points: list[dict[str, Any]], chosen: float) -> Panel:
+def _panel(title: str, measure: Measure, points: list[Json], chosen: float) -> Panel:
     words = (
         say("U of the worst sensor, {label}", label=measure.label)
         if measure.label
@@ -64,7 +64,7 @@ def _panel(title: str, measure: Measure, points: list[dict[str, Any]], chosen: f
     )
 
 
-def _points(series: str, at: Array, values: Array) -> list[dict[str, Any]]:
+def _points(series: str, at: Array, values: Array) -> list[Json]:
     """Finite values over where they hold, both of shape (points,), in the units of the panel's axes (number or °)."""
     return [
         {"x": round(float(x), 2), "y": float(f"{y:.4g}"), "series": series}
@@ -82,7 +82,7 @@ def _rho(plan: Plan, degrees: Array) -> list[Panel]:
     return [panel]
 
 
-def _spec(across: str) -> dict[str, Any]:
+def _spec(across: str) -> Json:
     points, chosen = (alt.NamedData(name=n) for n in (DATA_FORM, "chosen"))
     x = alt.X("x:Q", title=across, axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
     y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=True))
@@ -126,12 +126,12 @@ def _drift_panel(found: Readiness, column: int, kind: str, allowed: float | None
     ]
     limits = [] if allowed is None else [{"y": float(f"{side * allowed * measure.factor:.4g}")} for side in (-1, 1)]
     low, high = (number(float(f"{edge * measure.factor:.2g}")) for edge in (change.min(), change.max()))
-    words = say("from {low} to {high}{thin}{label}", low=low, high=high, thin=THIN, label=measure.label)
+    words = say("from {low} to {high}{thin_space}{label}", low=low, high=high, thin_space=THIN, label=measure.label)
     return Panel(found.names[column], words, None, {DATA_FORM: points, "allowed": limits})
 
 
 @cache
-def _drift_spec() -> dict[str, Any]:
+def _drift_spec() -> Json:
     points, limits = (alt.NamedData(name=name) for name in (DATA_FORM, "allowed"))
     x = alt.X("x:Q", title="minutes", axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
     y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=False))

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
 from estimator.message import joined, say
-from estimator.planning import Judged, Plan, proposed_orientations, rank_of_orientations
+from estimator.planning import JudgedParameter, Plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind
 from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER
@@ -46,8 +46,8 @@ OPEN = Condition("none", "Not judged", "not judged", "circle", "No tolerance was
 
 
 @dataclass(frozen=True)
-class Field:
-    """A number that the form asks for."""
+class NumberField:
+    """A number field of the form."""
 
     name: str
     label: str
@@ -57,8 +57,8 @@ class Field:
 
 
 @dataclass(frozen=True)
-class Cell:
-    """What is expected of one parameter of one sensor."""
+class ExpectedCell:
+    """Expectation for one parameter of one sensor."""
 
     heading: str
     value: str
@@ -68,15 +68,15 @@ class Cell:
 
 @dataclass(frozen=True)
 class Row:
-    """One sensor, or several that are expected to be known alike."""
+    """One sensor, or several with the same expectations."""
 
     name: str
-    cells: tuple[Cell, ...]
+    cells: tuple[ExpectedCell, ...]
 
 
 @dataclass(frozen=True)
-class Line:
-    """A fact of the plan: what, and in words."""
+class PlanFact:
+    """A fact of the plan in words."""
 
     name: str
     words: str
@@ -84,26 +84,26 @@ class Line:
 
 @dataclass(frozen=True)
 class PlanPage:
-    """Everything the page of a plan shows."""
+    """Contents of the page of a plan."""
 
     question: PlanQuestion
     types: tuple[tuple[str, str], ...]
     """Stored unit types to choose from."""
     query: str
     """The question as the query of an address."""
-    block: tuple[Field, ...]
-    session: tuple[Field, ...]
-    tolerances: tuple[Field, ...]
+    block: tuple[NumberField, ...]
+    session: tuple[NumberField, ...]
+    tolerances: tuple[NumberField, ...]
     condition: Condition
     headline: str
-    facts: tuple[Line, ...]
+    facts: tuple[PlanFact, ...]
     rows: tuple[Row, ...]
     charts: tuple[ChartSet, ...]
     over_positions: tuple[tuple[str, ...], ...]
     over_elevation: tuple[tuple[str, ...], ...]
     detected: tuple[SeenCause, ...]
     unseen: tuple[BlindCauses, ...]
-    optimal: tuple[Line, ...]
+    optimal: tuple[PlanFact, ...]
     orientations: tuple[tuple[str, ...], ...]
     """Without a stand: directions of up that identify everything; none for gyros."""
     headings: tuple[str, ...]
@@ -136,21 +136,21 @@ def plan_page(question: PlanQuestion, plan: Plan, types: Sequence[str] = ()) -> 
     )
 
 
-def _field(question: PlanQuestion, name: str, label: str, hint: str = "") -> Field:
+def _field(question: PlanQuestion, name: str, label: str, hint: str = "") -> NumberField:
     value = getattr(question, name)
-    return Field(name, label, "" if value is None else f"{value:g}", hint)
+    return NumberField(name, label, "" if value is None else f"{value:g}", hint)
 
 
-def _block(q: PlanQuestion) -> tuple[Field, ...]:
+def _block(q: PlanQuestion) -> tuple[NumberField, ...]:
     zero = MEASURES[q.kind, "bias"].label
     return (
         _field(q, "sensors", "Sensors on the cone"),
         _field(q, "noise", say("Noise of a reading, 1σ, {zero}", zero=zero), f"{NOISE[q.kind]:g}"),
-        _field(q, "variation", say("Variation of the zero, 1σ, {zero}", zero=zero), f"{VARIATION[q.kind]:g}"),
+        _field(q, "variation", say("Variation of the bias, 1σ, {zero}", zero=zero), f"{VARIATION[q.kind]:g}"),
     )
 
 
-def _session(q: PlanQuestion) -> tuple[Field, ...]:
+def _session(q: PlanQuestion) -> tuple[NumberField, ...]:
     return (
         _field(q, "elevation", "Elevation of the head, °", "proposed"),
         _field(q, "positions", "Positions a run", "proposed"),
@@ -162,22 +162,22 @@ def _session(q: PlanQuestion) -> tuple[Field, ...]:
     )
 
 
-def _tolerances(q: PlanQuestion) -> tuple[Field, ...]:
+def _tolerances(q: PlanQuestion) -> tuple[NumberField, ...]:
     return tuple(
         _field(q, name, say("{name}, {label}", name=heading(name), label=MEASURES[q.kind, name].label), "not judged")
         for name in PARAMETERS
     )
 
 
-def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
+def _facts(question: PlanQuestion, plan: Plan) -> tuple[PlanFact, ...]:
     ours, formula = (number(float(np.degrees(a)), 1) for a in (plan.elevation, plan.formula_elevation))
     return (
-        Line(
+        PlanFact(
             "Elevation of the head",
             f"{ours}°" if question.elevation is not None else say("{angle}°, proposed", angle=ours),
         ),
-        Line("By the formula for the stand alone", f"{formula}°"),
-        Line(
+        PlanFact("By the formula for the stand alone", f"{formula}°"),
+        PlanFact(
             "Positions a run",
             (
                 say("{positions}", positions=plan.positions)
@@ -185,49 +185,49 @@ def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
                 else say("{positions}, proposed", positions=plan.positions)
             ),
         ),
-        Line("Time", duration(plan.seconds)),
-        Line("Conditioning ρ", number(plan.conditioning, 1)),
-        Line("Equal steps against the best", f"{number(100 * plan.optimal.efficiency, 1)} %"),
+        PlanFact("Time", duration(plan.seconds)),
+        PlanFact("Conditioning ρ", number(plan.conditioning, 1)),
+        PlanFact("Equal steps against the best", f"{number(100 * plan.optimal.efficiency, 1)} %"),
     )
 
 
 def _rows(plan: Plan) -> tuple[Row, ...]:
-    """Sensors whose cells read the same share a row."""
-    size, alike = len(PARAMETERS), dict[tuple[Cell, ...], list[str]]()
+    """Sensors with equal cells share a row."""
+    size, sensors_by_cells = len(PARAMETERS), dict[tuple[ExpectedCell, ...], list[str]]()
     for i in range(0, len(plan.judged), size):
         cells = tuple(_cell(one, plan.request.coverage) for one in plan.judged[i : i + size])
-        alike.setdefault(cells, []).append(plan.judged[i].sensor)
-    return tuple(Row(joined(", ", names), cells) for cells, names in alike.items())
+        sensors_by_cells.setdefault(cells, []).append(plan.judged[i].sensor)
+    return tuple(Row(joined(", ", names), cells) for cells, names in sensors_by_cells.items())
 
 
-def _cell(one: Judged, coverage: float) -> Cell:
-    return Cell(
+def _cell(one: JudgedParameter, coverage: float) -> ExpectedCell:
+    return ExpectedCell(
         heading(one.parameter), sigma_in_words(one, coverage), tolerance_in_words(one), CONDITIONS.get(one.verdict)
     )
 
 
 def _sweep(plan: Plan, kind: str, name: str) -> tuple[tuple[str, ...], ...]:
-    """The numbers of a chart: where, U of every parameter, ρ."""
+    """The numbers of a chart: abscissa, U of every parameter, ρ."""
     sweep = getattr(plan, name)
-    at = sweep.at if name == "over_positions" else np.degrees(sweep.at)
+    abscissa = sweep.at if name == "over_positions" else np.degrees(sweep.at)
     factors = np.array([MEASURES[kind, p].factor for p in PARAMETERS]) * plan.request.coverage
     return tuple(
         (number(float(x)), *(number(float(f"{u:.3g}")) for u in row), number(float(rho), 1))
-        for x, row, rho in zip(at, sweep.total * factors, sweep.conditioning, strict=True)
+        for x, row, rho in zip(abscissa, sweep.total * factors, sweep.conditioning, strict=True)
     )
 
 
 def _unseen(plan: Plan) -> tuple[BlindCauses, ...]:
-    """The causes that are not seen, and first the parameters that are not observed."""
+    """Causes that are not seen, after parameters that are not observed."""
     missing = unobserved(plan)
     return (*([BlindCauses(missing, UNSEEN)] if missing else []), *blind(plan))
 
 
-def _optimal(plan: Plan) -> tuple[Line, ...]:
+def _optimal(plan: Plan) -> tuple[PlanFact, ...]:
     best = plan.optimal
     degrees = np.round(np.degrees(best.beta)).astype(int)
     return tuple(
-        Line(name, joined(", ", (f"{d}°" for d in degrees[best.flipped == flipped])))
+        PlanFact(name, joined(", ", (f"{d}°" for d in degrees[best.flipped == flipped])))
         for name, flipped in (("direct", False), ("flipped", True))
         if (best.flipped == flipped).any()
     )
@@ -247,5 +247,5 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 @router.get("/plan")
 def show_plan(request: Request, question: Annotated[PlanQuestion, Query()], storage: StorageOf) -> HTMLResponse:
     """What a session would tell before it is measured."""
-    asked, found = plan(storage, question)
-    return render(request, "plan.html", plan_page(asked, found, plannable_types(storage)))
+    completed_question, result = plan(storage, question)
+    return render(request, "plan.html", plan_page(completed_question, result, plannable_types(storage)))

@@ -1,4 +1,4 @@
-"""A session to go by: the last one of a unit or of a type's units, or where there is none yet, a simulated one."""
+"""A pattern for a session: the last one of a unit or of a type's units, or, without any, a simulated one."""
 
 from dataclasses import replace
 
@@ -22,11 +22,11 @@ from service.types.records import UnitType
 from service.types.store import UnitTypes
 
 MOST_SENSORS = 48
-"""As many as `imu-health simulate` makes; larger blocks are not tried."""
+"""As many as `imu-health simulate` makes; larger blocks are not planned."""
 
 
 def why_not(unit_type: UnitType) -> tuple[Problem, ...]:
-    """Why units of a type cannot be planned for on a two-axis stand."""
+    """Why units of a type cannot be planned on a two-axis stand."""
     if unit_type.gyro_tolerances is not None or unit_type.block not in ("accelerometer", "gyroscope"):
         return (
             Problem(
@@ -52,31 +52,33 @@ def why_not(unit_type: UnitType) -> tuple[Problem, ...]:
 
 
 def sensors_of(unit_type: UnitType) -> tuple[Sensor, ...]:
-    """The type's sensors as its maker describes them."""
-    described = zip(unit_type.sensors, unit_type.nominal_axes, unit_type.nominal_scales, strict=True)
-    return tuple(Sensor(name, unit_type.block, unit(np.array([axis]))[0], scale, "") for name, axis, scale in described)
+    """The type's sensors with their nominal values."""
+    specifications = zip(unit_type.sensors, unit_type.nominal_axes, unit_type.nominal_scales, strict=True)
+    return tuple(
+        Sensor(name, unit_type.block, unit(np.array([axis]))[0], scale, "") for name, axis, scale in specifications
+    )
 
 
-def asked_of(question: PlanQuestion, unit_type: UnitType) -> PlanQuestion:
-    """The question with the type's kind, and its tolerances where no other ones are asked for."""
-    filled: dict[str, object] = {"kind": unit_type.block}
+def completed(question: PlanQuestion, unit_type: UnitType) -> PlanQuestion:
+    """The question with the type's kind, and its tolerances where no others are given."""
+    values: dict[str, object] = {"kind": unit_type.block}
     for name in PARAMETERS:
         tolerance = getattr(unit_type.tolerances, name)
         if getattr(question, name) is None and tolerance is not None:
-            filled[name] = tolerance * MEASURES[unit_type.block, name].factor
-    return question.model_copy(update=filled)
+            values[name] = tolerance * MEASURES[unit_type.block, name].factor
+    return question.model_copy(update=values)
 
 
 LARGEST = 4 * 1024 * 1024
-"""Bytes of a file that is read as a pattern: a session of positions has a hundredth, and a long log says no more."""
+"""Bytes of a file that is read as a pattern: a session of positions has a hundredth, and a long log adds nothing."""
 MOST_TYPES = 500
-"""That are offered for a choice."""
+"""Offered for a choice."""
 POSITIONS = 12
 """A run, of the simulated pattern: every 30°."""
 SEED = 1
 """Of its noise: the same pattern every time."""
 NOISE = 1e-5
-"""m/s² or rad/s, one sigma: a microg, no more than makes it look measured."""
+"""m/s² or rad/s, one sigma: one µg, so that it looks measured."""
 
 
 def type_names(store: Store) -> tuple[str, ...]:
@@ -85,18 +87,18 @@ def type_names(store: Store) -> tuple[str, ...]:
 
 
 def pattern(storage: Storage, serial: str, unit_type: str, question: PlanQuestion) -> CalibrationSession:
-    """What the next session of the unit, or of the type, will be like; NotFoundError where the type is not known."""
-    found = earlier(storage, serial, unit_type)
-    if found is not None:
-        return found
+    """The expected form of the next session of the unit or type; NotFoundError for an unknown type."""
+    last = earlier(storage, serial, unit_type)
+    if last is not None:
+        return last
     if not unit_type:
         return _simulated(question.cone())
     with storage.database.reading() as store:
-        known = UnitTypes(store).get(unit_type)
-    if why_not(known):
+        stored_type = UnitTypes(store).get(unit_type)
+    if why_not(stored_type):
         return _simulated(question.cone())
-    whole = asked_of(question, known)
-    return replace(_simulated(whole.block(sensors_of(known))), unit_type=unit_type)
+    complete = completed(question, stored_type)
+    return replace(_simulated(complete.block(sensors_of(stored_type))), unit_type=unit_type)
 
 
 def earlier(storage: Storage, serial: str, unit_type: str) -> CalibrationSession | None:
@@ -111,10 +113,12 @@ def earlier(storage: Storage, serial: str, unit_type: str) -> CalibrationSession
     return replace(averaged(session) if session.is_raw else session, unit_type=session.unit_type or unit_type or None)
 
 
-def _simulated(like: CalibrationSession) -> CalibrationSession:
+def _simulated(template: CalibrationSession) -> CalibrationSession:
     """Nominal sensors on the stand of the question, which has no name yet."""
-    assert like.stand is not None, "a plan is for a stand"
-    stand = replace(like.stand, id="")
-    empty = stand_schedule(like.sensors, stand, like.site, POSITIONS, unit_name="", count_time=like.count_time)
-    noise = NOISE * np.array([sensor.nominal_scale for sensor in like.sensors])
-    return simulate(empty, nominal(like.sensors), np.random.default_rng(SEED), noise=noise, state_noise=False)
+    assert template.stand is not None, "a plan is for a stand"
+    stand = replace(template.stand, id="")
+    empty = stand_schedule(
+        template.sensors, stand, template.site, POSITIONS, unit_name="", count_time=template.count_time
+    )
+    noise = NOISE * np.array([sensor.nominal_scale for sensor in template.sensors])
+    return simulate(empty, nominal(template.sensors), np.random.default_rng(SEED), noise=noise, state_noise=False)

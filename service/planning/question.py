@@ -1,4 +1,4 @@
-"""A plan as people ask for it: a block on a cone or a known one, a stand, tolerances, in people's units."""
+"""Questions of planning: a block on a cone or a stored type, a stand, tolerances, in practical units."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from estimator.planning import Request, Wanted
+from estimator.planning import Request, ToleranceSet
 from estimator.readiness import Allowed, Question
 from estimator.readiness.question import USUAL
 from estimator.results import ARCSEC
@@ -32,16 +32,16 @@ GYRO_STAND = (1.0, 5.0)
 
 
 def blank(value: object) -> object:
-    """An empty field of a form says nothing."""
+    """An empty field of a form is unset."""
     return None if value == "" else value
 
 
 LEAST, LARGEST = 1e-9, 1e9
-"""Of any amount in people's units: far beyond what any instrument tells, and far from where numbers end."""
+"""Of any amount in practical units: far beyond any instrument, and far from the limits of floating point."""
 
 
-def _nothing(value: float) -> float:
-    """An error that no stand could be told from none."""
+def _zero_below_least(value: float) -> float:
+    """Zero for an error below any stand's."""
     return value if value >= LEAST else 0.0
 
 
@@ -49,11 +49,11 @@ Positive = Annotated[float, Field(ge=LEAST, le=LARGEST, allow_inf_nan=False)]
 Amount = Annotated[Positive | None, BeforeValidator(blank)]
 Elevation = Annotated[float, Field(ge=1, le=89, allow_inf_nan=False)]
 Positions = Annotated[int, Field(ge=3, le=72)]
-Arcsec = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False), AfterValidator(_nothing)]
+Arcsec = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False), AfterValidator(_zero_below_least)]
 
 
 class PlanQuestion(BaseModel):
-    """What is asked; an amount that is left out is proposed, taken from the block, or not judged."""
+    """The question; an omitted amount is proposed, taken from the block, or not judged."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -103,14 +103,14 @@ class PlanQuestion(BaseModel):
             time_per_position=60 * self.minutes,
         )
 
-    def wanted(self, kind: str) -> Wanted:
+    def wanted(self, kind: str) -> ToleranceSet:
         """The tolerances in SI."""
 
         def si(parameter: str) -> float | None:
             value: float | None = getattr(self, parameter)
             return None if value is None else value / MEASURES[kind, parameter].factor
 
-        return Wanted(si("scale"), si("bias"), si("quadratic"), si("axis"))
+        return ToleranceSet(si("scale"), si("bias"), si("quadratic"), si("axis"))
 
     def cone(self) -> CalibrationSession:
         """Equal sensors on a cone of 54.7° about the head's axis."""
@@ -122,7 +122,7 @@ class PlanQuestion(BaseModel):
         )
 
     def block(self, sensors: tuple[Sensor, ...]) -> CalibrationSession:
-        """A schedule for sensors on the stand that is asked for."""
+        """A schedule for sensors on the stand of the question."""
         site = Site(latitude=float(np.radians(self.latitude)))
         gyro = any(s.kind == GYROSCOPE for s in sensors)
         angle = float(np.radians(40.0))
@@ -156,7 +156,7 @@ MINUTE = 60.0
 
 
 class ReadyQuestion(BaseModel):
-    """What is asked; what is left out is the unit type's, or the usual."""
+    """The question; omitted values are the unit type's, or the defaults."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -173,17 +173,17 @@ class ReadyQuestion(BaseModel):
     )
 
     def question(self, kind: str, tolerances: Mapping[tuple[str, str], float], usual: float | None) -> Question:
-        """In SI, for a record whose leading sensors are of a kind; ``usual`` s that such sessions take."""
-        own = {
+        """In SI, for a record whose leading sensors are of a kind; ``usual``: usual duration of such sessions, s."""
+        overrides = {
             name: getattr(self, name) / MEASURES[kind, name].factor for name in ("bias", "scale") if getattr(self, name)
         }
-        kept = {
-            (k, name): own.get(name, tolerance) if k == kind else tolerance
+        limits = {
+            (k, name): overrides.get(name, tolerance) if k == kind else tolerance
             for (k, name), tolerance in tolerances.items()
         }
-        kept |= {(kind, name): tolerance for name, tolerance in own.items()}
+        limits |= {(kind, name): tolerance for name, tolerance in overrides.items()}
         allowed = {
-            k: Allowed(kept.get((k, "bias")), kept.get((k, "scale")), kept.get((k, "quadratic")))
+            k: Allowed(limits.get((k, "bias")), limits.get((k, "scale")), limits.get((k, "quadratic")))
             for k in (ACCELEROMETER, GYROSCOPE)
         }
         slope = None if self.coefficient is None else {kind: self.coefficient / MEASURES[kind, "bias"].factor}

@@ -10,11 +10,10 @@ from pydantic import BaseModel, BeforeValidator, Field, ValidationError
 
 from estimator.errors import Problem
 from estimator.message import joined, say
-from estimator.planning import Expected, Missing
-from estimator.readiness import Outlook, Readiness, State
+from estimator.planning import ExpectedSigma, Missing
+from estimator.readiness import DriftOutlook, Readiness, ReadinessState
 from estimator.results import PARAMETERS
 from service.errors import RefusedError
-from service.kit.arriving_files import SentFile
 from service.kit.measures import COVERAGE, MEASURES, THIN, heading, number
 from service.people.dependencies import StorageOf
 from service.planning.charts import readiness_charts
@@ -23,6 +22,7 @@ from service.planning.question import ReadyQuestion, blank
 from service.planning.rules import Asked, missing_of, readiness_of
 from service.planning.words import amount, clock, minutes, missing_in_words, readiness_headline, reasons
 from service.sessions.charts import ChartSet
+from service.sessions.sent import SentFile
 from service.sessions.words.conditions import Condition
 from service.uploads.received import ArrivingOf, LandedFile
 from service.web.dependencies import Reading
@@ -31,14 +31,14 @@ from service.web.render import render
 
 READY = Condition("pass", "Ready", "ready", "circle", "The measurement may begin.")
 WAIT = Condition("conditional-pass", "Not yet", "not yet", "triangle-up", "Wait, or record for longer.")
-NOT_STILL = Condition("fail", "Not still", "not still", "square", "Something moves or shakes it.")
-NOTHING = Condition("none", "Nothing to tell by", "nothing to tell by", "stroke", "The record says nothing.")
+NOT_STILL = Condition("fail", "Not still", "not still", "square", "It moves or vibrates.")
+NOTHING = Condition("none", "No usable data", "no usable data", "stroke", "The record contains no information.")
 CONDITIONS = {
-    State.READY: READY,
-    State.NOT_STILL: NOT_STILL,
-    State.NOT_WARM: WAIT,
-    State.TOO_EARLY: WAIT,
-    State.CANNOT_TELL: NOTHING,
+    ReadinessState.READY: READY,
+    ReadinessState.NOT_STILL: NOT_STILL,
+    ReadinessState.NOT_WARM: WAIT,
+    ReadinessState.TOO_EARLY: WAIT,
+    ReadinessState.CANNOT_TELL: NOTHING,
 }
 UNSEEN = "not observed"
 MOST_ROWS = 20
@@ -120,9 +120,9 @@ def _facts(answer: Asked) -> tuple[tuple[str, str], ...]:
     return tuple(facts)
 
 
-def _drift(one: Outlook) -> Drift:
+def _drift(one: DriftOutlook) -> Drift:
     shares = [
-        say("{share} % of the {word}", share=number(100 * share, 0), word=word)
+        say("{share} % of the {kind}", share=number(100 * share, 0), kind=word)
         for share, word in ((one.bias_share, "bias"), (one.scale_share, "scale factor"))
         if share is not None
     ]
@@ -165,7 +165,7 @@ def missing_page(positions: int | None, runs: str, found: Missing | None = None)
     return MissingPage(positions, runs, named, first, tuple(lines), headings, _known(found.expected))
 
 
-def _known(expected: tuple[Expected, ...]) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
+def _known(expected: tuple[ExpectedSigma, ...]) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
     size = len(PARAMETERS)
     return tuple(
         (
@@ -176,7 +176,7 @@ def _known(expected: tuple[Expected, ...]) -> tuple[tuple[str, tuple[tuple[str, 
     )
 
 
-def _spread(one: Expected, sigma: float | None) -> str:
+def _spread(one: ExpectedSigma, sigma: float | None) -> str:
     """``±2.1 µg``: the expanded uncertainty."""
     if sigma is None:
         return UNSEEN
@@ -186,7 +186,7 @@ def _spread(one: Expected, sigma: float | None) -> str:
 
 T = TypeVar("T", bound=BaseModel)
 
-NO_FILE = "The file did not come with the form: choose it again."
+NO_FILE = "The file is missing from the form: choose it again."
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 

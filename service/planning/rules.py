@@ -14,11 +14,12 @@ from estimator.session import CalibrationSession
 from service.errors import NotFoundError, RefusedError
 from service.ingest import in_turn, read_first_rows, read_upload
 from service.ingest.layout.envelope import wrapped
-from service.kit.arriving_files import SentFile, held, where
+from service.kit.arriving_files import held, where
 from service.kit.measures import leading_kind
-from service.planning.pattern import asked_of, earlier, sensors_of, why_not
+from service.planning.pattern import completed, earlier, sensors_of, why_not
 from service.planning.question import PlanQuestion, ReadyQuestion
 from service.sessions.records import PARAMETERS
+from service.sessions.sent import SentFile
 from service.storage import Storage
 from service.types.rules import DEFAULTS, tolerances_of
 from service.types.store import UnitTypes
@@ -40,7 +41,7 @@ def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
     problems = why_not(unit_type)
     if problems:
         raise RefusedError(say("Units of the type {name} cannot be planned for.", name=repr(unit_type.name)), problems)
-    whole = asked_of(question, unit_type)
+    whole = completed(question, unit_type)
     return whole, _planned(whole, whole.block(sensors_of(unit_type)), whole.kind)
 
 

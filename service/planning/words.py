@@ -1,4 +1,4 @@
-"""What a session still lacks, in words."""
+"""Missing positions, plans and readiness in words."""
 
 from collections.abc import Callable
 from itertools import groupby
@@ -7,36 +7,35 @@ import numpy as np
 
 from estimator.causes import CATALOGUE
 from estimator.message import joined, say, say_count
-from estimator.planning import Judged, Missing, Plan
-from estimator.readiness import Disturbance, Outlook, Readiness, State
-from estimator.readiness.faults import Fault, FaultKind
-from estimator.readiness.results import Kind
+from estimator.planning import JudgedParameter, Missing, Plan
+from estimator.readiness import Disturbance, DriftOutlook, Readiness, ReadinessState
+from estimator.readiness.faults import FaultKind, RecordFault
+from estimator.readiness.results import DisturbanceKind
 from estimator.results import PARAMETERS
 from estimator.session import GYROSCOPE
 from service.diagnosis.words.diagnosis import BlindCauses, SeenCause, blind_causes, seen_causes
 from service.kit.measures import ARCSEC, MEASURES, MINUS, THIN, deviation_measure, in_measure, number
 
 MOST = 12
-"""Angles that are named; the rest are counted."""
+"""Angles that are listed; the rest are counted."""
 
 
 def missing_in_words(found: Missing) -> tuple[str, ...]:
-    """A sentence how far it is, then one a run or a line a direction, then what is open until then."""
+    """A sentence on progress, then one a run or a line a direction, then what is open until then."""
     if found.is_complete:
         return (say("Complete: {done} positions, and every parameter is observed.", done=found.done),)
-    to_come = len(found.settings) or len(found.directions)
     done = found.done
     lines: list[str] = [
         say_count(
-            "{n} position is done, {to_come} still to come.",
-            "{n} positions are done, {to_come} still to come.",
+            "{n} position is done, {remaining} still to come.",
+            "{n} positions are done, {remaining} still to come.",
             done,
-            to_come=to_come,
+            remaining=len(found.settings) or len(found.directions),
         )
     ]
     for run, settings in groupby(found.settings, key=lambda one: one[0]):
         angles = [f"{number(float(np.degrees(beta)), 2).rstrip('0').rstrip('.')}°" for _, beta in settings]
-        rest = say(" and {most} more", most=len(angles) - MOST) if len(angles) > MOST else ""
+        rest = say(" and {number} more", number=len(angles) - MOST) if len(angles) > MOST else ""
         lines.append(say("{run}: β = {angles}{rest}", run=run, angles=", ".join(angles[:MOST]), rest=rest))
     lines += [
         say("up along {direction} in block axes", direction=_vector(direction))
@@ -54,30 +53,30 @@ def _vector(direction: list[float]) -> str:
 
 
 VERDICTS = {
-    "enough": "enough: U leaves the tolerance the share that was asked for",
-    "usable": "usable: U stays within the tolerance, but takes more than its share",
+    "enough": "enough: U is within the requested share of the tolerance",
+    "usable": "usable: U is within the tolerance, but larger than the requested share",
     "undecidable": "undecidable: U exceeds the tolerance, or nothing is observed",
     "not judged": "no tolerance was given",
 }
-"""What the verdicts of a plan mean."""
+"""Meanings of the verdicts of a plan."""
 UNSEEN = "not observable"
 OF_GYROS = frozenset(cause.identifier for cause in CATALOGUE if cause.kind == GYROSCOPE)
 """Causes that an accelerometer cannot have."""
 
 
 def seen(plan: Plan) -> tuple[SeenCause, ...]:
-    """Causes that the plan would find, with the size from which on."""
+    """Causes that the plan would find, with the smallest size."""
     return seen_causes(plan.limits, {sensor.kind for sensor in plan.schedule.sensors})
 
 
 def blind(plan: Plan) -> tuple[BlindCauses, ...]:
-    """Causes that the plan cannot see; what only gyros have is left out where there are none."""
+    """Causes that the plan cannot see; those of gyros are left out where there are none."""
     has_gyros = any(s.kind == GYROSCOPE for s in plan.schedule.sensors)
     return blind_causes([one for one in plan.limits if has_gyros or one.cause not in OF_GYROS])
 
 
 def unobserved(plan: Plan) -> str:
-    """``scale and axis of every sensor; bias of A2``: what the plan does not observe; empty where it observes all."""
+    """``scale and axis of every sensor; bias of A2``: parameters that the plan does not observe; empty without any."""
     sensors: dict[tuple[str, ...], list[str]] = {}
     for name in PARAMETERS:
         missing = tuple(j.sensor for j in plan.judged if j.parameter == name and j.sigma is None)
@@ -97,7 +96,7 @@ def unobserved(plan: Plan) -> str:
     )
 
 
-def sigma_in_words(judged: Judged, coverage: float) -> str:
+def sigma_in_words(judged: JudgedParameter, coverage: float) -> str:
     """``±2.1 µg``: the expanded uncertainty."""
     if judged.sigma is None:
         return UNSEEN
@@ -105,15 +104,15 @@ def sigma_in_words(judged: Judged, coverage: float) -> str:
     return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
-def tolerance_in_words(judged: Judged) -> str:
+def tolerance_in_words(judged: JudgedParameter) -> str:
     """``of 50 µg``, empty where none was given."""
     if judged.tolerance is None:
         return ""
     measure = MEASURES[judged.kind, judged.parameter]
     return say(
-        "of {tolerance}{thin}{label}",
+        "of {tolerance}{thin_space}{label}",
         tolerance=number(in_measure(judged.tolerance, measure)),
-        thin=THIN,
+        thin_space=THIN,
         label=measure.label,
     )
 
@@ -126,7 +125,7 @@ def duration(seconds: float) -> str:
 
 
 def headline(plan: Plan) -> str:
-    """What the plan comes to, in a sentence."""
+    """Summary of the plan in a sentence."""
     size = (
         say("{positions} positions in both runs", positions=plan.positions)
         if len(plan.request.runs) == 2
@@ -153,34 +152,34 @@ FEW = 3
 
 
 def readiness_headline(found: Readiness) -> str:
-    """The one sentence that is read across the room."""
+    """The headline, to be read across the room."""
     match found.state:
-        case State.READY:
+        case ReadinessState.READY:
             return "Ready"
-        case State.NOT_WARM if found.wait is not None:
+        case ReadinessState.NOT_WARM if found.wait is not None:
             return say("Wait about {wait} minutes", wait=minutes(found.wait[1]))
-        case State.NOT_WARM:
-            return "Not warm: waiting alone will not do"
-        case State.NOT_STILL:
+        case ReadinessState.NOT_WARM:
+            return "Not warm: waiting is not enough"
+        case ReadinessState.NOT_STILL:
             return say("Not still: {found}", found=_short(found))
-        case State.TOO_EARLY if found.needed is not None:
-            return say("Too early to tell: record about {needed} minutes more", needed=minutes(found.needed))
-        case State.TOO_EARLY:
-            return "Not to be told: the sensors wander"
-    return "Nothing can be told from this record"
+        case ReadinessState.TOO_EARLY if found.needed is not None:
+            return say("Too early to decide: record about {needed} minutes more", needed=minutes(found.needed))
+        case ReadinessState.TOO_EARLY:
+            return "Cannot be decided: the sensors wander"
+    return "This record cannot be used"
 
 
 def reasons(found: Readiness, kind: str) -> tuple[str, ...]:
-    """Why, and what to do, in order of weight."""
+    """Reasons and advice, the most important first."""
     lines = [fault_in_words(fault) for fault in found.faults]
     lines += [disturbance_in_words(one, kind) for one in found.disturbances]
     if found.worst is not None:
-        lines += _of_drift(found, found.worst)
+        lines += _drift_sentences(found, found.worst)
     return tuple(lines)
 
 
 def minutes(seconds: float) -> str:
-    """Whole minutes, never none."""
+    """Whole minutes, at least one."""
     return number(max(1.0, float(f"{seconds / MINUTE:.2g}")), 0)
 
 
@@ -202,59 +201,58 @@ def named(sensors: tuple[str, ...]) -> str:
     return joined(", ", sensors[:FEW]) + (say(" and {rest} more", rest=rest) if rest > 0 else "")
 
 
-def _of_drift(found: Readiness, worst: Outlook) -> list[str]:
+def _drift_sentences(found: Readiness, worst: DriftOutlook) -> list[str]:
     length = minutes(found.duration)
     bound, allowed = amount(worst.kind, worst.bound), amount(worst.kind, worst.allowed)
-    by = (
+    source = (
         "a quarter of the tolerance of its scale factor"
         if worst.limit == "scale"
         else "a quarter of the tolerance of its bias"
     )
-    if found.state is State.READY:
+    if found.state is ReadinessState.READY:
         return [
             say(
-                "No sensor will drift by more than it may in the {length} minutes of the programme: the "
-                "most is {bound} of {name}, with 95 % probability; allowed are {allowed}, {by}.",
+                "No sensor exceeds its drift limit in the {length} minutes of the programme: the largest is {bound} "
+                "of {name}, with 95 % probability; limit {tolerance}, {source}.",
                 length=length,
                 bound=bound,
                 name=worst.name,
-                allowed=allowed,
-                by=by,
+                tolerance=allowed,
+                source=source,
             )
         ]
-    said: list[str] = [
+    sentences: list[str] = [
         say(
             "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
-            "allowed are {allowed}, {by}.",
+            "limit {tolerance}, {source}.",
             name=worst.name,
             bound=bound,
             length=length,
-            allowed=allowed,
-            by=by,
+            tolerance=allowed,
+            source=source,
         )
     ]
-    if found.state is State.NOT_WARM:
-        return [*said, *_of_waiting(found)]
-    if found.state is State.TOO_EARLY:
-        return [*said, *_of_telling(found, worst)]
-    return said
+    if found.state is ReadinessState.NOT_WARM:
+        return [*sentences, *_waiting_advice(found)]
+    if found.state is ReadinessState.TOO_EARLY:
+        return [*sentences, *_record_advice(found, worst)]
+    return sentences
 
 
-def _of_waiting(found: Readiness) -> list[str]:
+def _waiting_advice(found: Readiness) -> list[str]:
     if found.wait is None:
         return [
-            "It drifts steadily or wanders, and does not settle within eight hours: look for the cause, such as a "
-            "draught, the sun or a loose fixture, or plan a shorter programme."
+            "It drifts or wanders and does not settle within eight hours: find the cause, such as a draught, the sun "
+            "or a loose fixture, or plan a shorter programme."
         ]
     low, middle, high = found.wait
     until = (
-        say("up to {high} minutes", high=minutes(high))
-        if high < float("inf")
-        else "how long at most cannot be told yet"
+        say("up to {high} minutes", high=minutes(high)) if high < float("inf") else "the longest time is not known yet"
     )
     return [
         say(
-            "It settles: wait about {middle} minutes more (at least {low}, {until}), and ask again with a new record.",
+            "It is settling: wait about {middle} minutes more (at least {low}, {until}), then check again with a new "
+            "record.",
             middle=minutes(middle),
             low=minutes(low),
             until=until,
@@ -262,18 +260,18 @@ def _of_waiting(found: Readiness) -> list[str]:
     ]
 
 
-def _of_telling(found: Readiness, worst: Outlook) -> list[str]:
+def _record_advice(found: Readiness, worst: DriftOutlook) -> list[str]:
     if found.needed is not None:
         return [
             say(
-                "The record is too short to tell: leave the unit as it is and record about {needed} minutes more.",
+                "The record is too short: leave the unit as it is and record about {needed} minutes more.",
                 needed=minutes(found.needed),
             )
         ]
     return [
         say(
-            "No length of record would tell: {name} wanders by {kind} in the time of the programme "
-            "by itself. Plan a shorter programme, or have the sensor looked at.",
+            "A longer record does not help: {name} wanders by {kind} during the programme. Plan a shorter programme, "
+            "or have the sensor checked.",
             name=worst.name,
             kind=amount(worst.kind, worst.wander),
         )
@@ -281,105 +279,101 @@ def _of_telling(found: Readiness, worst: Outlook) -> list[str]:
 
 
 def _short(found: Readiness) -> str:
-    one = next(own for own in found.disturbances if not own.passed)
+    one = next(disturbance for disturbance in found.disturbances if not disturbance.passed)
     return SHORT[one.kind](one)
 
 
-SHORT: dict[Kind, Callable[[Disturbance], str]] = {
-    Kind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
-    Kind.BURST: lambda one: say("it shook at {start}", start=clock(one.start)),
-    Kind.SHAKING: lambda one: "it shakes all the time",
-    Kind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
-    Kind.CREEP: lambda one: "the fixture creeps",
+SHORT: dict[DisturbanceKind, Callable[[Disturbance], str]] = {
+    DisturbanceKind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
+    DisturbanceKind.BURST: lambda one: say("it vibrated at {start}", start=clock(one.start)),
+    DisturbanceKind.SHAKING: lambda one: "it vibrates continuously",
+    DisturbanceKind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
+    DisturbanceKind.CREEP: lambda one: "the fixture creeps",
 }
-"""What disturbs, in a few words."""
+"""Disturbances in a few words."""
 
 
 def disturbance_in_words(one: Disturbance, kind: str) -> str:
     """What happened, when, to whom, and what to do."""
-    who, size = named(one.sensors), amount(kind, one.size)
-    after = "; what came after it is judged alone." if one.passed else ". Leave it alone and record anew."
+    sensors, size = named(one.sensors), amount(kind, one.size)
+    consequence = "; only the record after it is judged." if one.passed else ". Do not touch it, and record again."
     match one.kind:
-        case Kind.STEP:
+        case DisturbanceKind.STEP:
             return say(
-                "{who} changed by {size} between {start} and {stop}: somebody touched it{after}",
-                who=who,
+                "{sensors} changed by {size} between {start} and {stop}: somebody touched it{consequence}",
+                sensors=sensors,
                 size=size,
                 start=clock(one.start),
                 stop=clock(one.stop),
-                after=after,
+                consequence=consequence,
             )
-        case Kind.BURST:
+        case DisturbanceKind.BURST:
             return say(
-                "{who} shook by {size} rms from {start} to {stop}{after}",
-                who=who,
+                "{who} vibrated by {size} rms from {start} to {stop}{consequence}",
+                who=sensors,
                 size=size,
                 start=clock(one.start),
                 stop=clock(one.stop),
-                after=after,
+                consequence=consequence,
             )
-        case Kind.SHAKING:
+        case DisturbanceKind.SHAKING:
             return say(
-                "{who} shake by {size} rms all the time: a quadratic term within its tolerance would "
-                "turn that into more than the drift allowed. Find what vibrates, or decouple the stand "
-                "from it.",
-                who=who,
+                "{who}: continuous vibration of {size} rms. With a quadratic term within its tolerance it shifts the "
+                "bias by more than the drift limit. Find the source, or isolate the stand from it.",
+                who=sensors,
                 size=size,
             )
-        case Kind.CLIPPED:
+        case DisturbanceKind.CLIPPED:
             share = number(float(f"{100 * one.size:.2g}"))
             return say(
-                "{who} stands at the end of its range for {share} % of the samples: set a larger range, "
-                "or stop what vibrates.",
-                who=who,
+                "{who} is at the end of its range for {share} % of the samples: set a larger range, or stop the "
+                "vibration.",
+                who=sensors,
                 share=share,
             )
     turn = number(float(f"{one.size * ARCSEC.factor:.2g}"))
     return say(
-        "All accelerometers drift as if the block turned, by {turn} arcsec over the programme: "
-        "the fixture creeps. Tighten the mounting, let the stand's locks settle, and record anew.",
+        "All accelerometers drift as if the block turned by {turn} arcsec during the programme: the fixture creeps. "
+        "Tighten the mounting, let the stand's locks settle, and record again.",
         turn=turn,
     )
 
 
-def fault_in_words(fault: Fault) -> str:
+def fault_in_words(fault: RecordFault) -> str:
     """What is wrong with the record, and what to do."""
-    who = named(fault.sensors)
+    sensors = named(fault.sensors)
     match fault.kind:
         case FaultKind.NO_TIME:
             return "The rows have no times: add time_s, or sample_rate_hz for a raw log."
         case FaultKind.CLOCK_BACK:
             return say(
-                "The clock goes back at row {amount}: it was restarted. Record anew, or cut the file there.",
+                "The clock goes back at row {amount}: it was restarted. Record again, or cut the file there.",
                 amount=f"{fault.amount:.0f}",
             )
         case FaultKind.CLOCK_STANDS:
             return "The clock stands still over most rows: check time_s."
         case FaultKind.NOT_FINITE:
-            return say(
-                "Row {amount} holds a reading that is no number: take the row out.", amount=f"{fault.amount:.0f}"
-            )
+            return say("A reading in row {amount} is not a number: remove the row.", amount=f"{fault.amount:.0f}")
         case FaultKind.FEW:
             return say(
-                "{amount} readings are too few to tell drift from noise: record at least twelve in one position.",
+                "{amount} readings are too few to separate drift from noise: record at least twelve in one position.",
                 amount=f"{fault.amount:.0f}",
             )
         case FaultKind.POSITIONS:
             return say(
-                "The rows stand in {amount} positions: leave the block in one, and read it again and again.",
+                "The rows are in {amount} positions: leave the block in one and read it repeatedly.",
                 amount=f"{fault.amount:.0f}",
             )
         case FaultKind.STUCK:
             return say(
-                "One and the same reading throughout: {who}. That is a dead channel and no rest; check "
-                "power and cables.",
-                who=who,
+                "Constant reading: {who}. The channel is dead; check power and cables.",
+                who=sensors,
             )
         case FaultKind.COARSE:
             return say(
-                "One step of the readings is larger than the drift allowed: {who}. Average more samples, "
-                "with more digits.",
-                who=who,
+                "The resolution of the readings is coarser than the drift limit: {who}. Average more samples, with "
+                "more digits.",
+                who=sensors,
             )
         case FaultKind.UNITS:
             return say(
@@ -388,12 +382,14 @@ def fault_in_words(fault: Fault) -> str:
                 amount=number(float(f"{fault.amount:.3g}")),
             )
         case FaultKind.TURNING:
-            return say("The block turns, or the units are wrong: {who}. Let it rest, or check nominal_scale.", who=who)
+            return say(
+                "The block turns, or the units are wrong: {name}. Let it rest, or check nominal_scale.", name=sensors
+            )
         case FaultKind.NOT_JUDGED:
-            return "No tolerance says how far these sensors may drift: give one."
+            return "No tolerance limits the drift of these sensors: give one."
         case FaultKind.GAP:
             return say(
-                "There is a gap of {amount} minutes in the record; it is judged all the same.",
+                "There is a gap of {amount} minutes in the record; it is judged nevertheless.",
                 amount=minutes(fault.amount),
             )
-    return say("{who} is alone: a fixture that creeps cannot be told from a drift of its own.", who=who)
+    return say("{who} is the only sensor: creep of the fixture cannot be separated from its drift.", who=sensors)

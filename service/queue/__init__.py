@@ -1,1 +1,1 @@
-"""Work beside the requests that waits: one table, claimed by one process at a time."""
+"""Background work that waits: one table, claimed by one process at a time."""

@@ -1,4 +1,4 @@
-"""The queue of work beside the requests: asked for, claimed by one process at a time, settled once."""
+"""The queue of background work: requested, claimed by one process at a time, settled once."""
 
 from collections.abc import Collection, Iterable
 from datetime import datetime
@@ -27,146 +27,160 @@ from service.queue.records import Waiting, WorkKind, WorkState
 from service.queue.tables import SINGLE, WorkRow
 from service.storage.queries import Queries, Store
 
-ANEW: dict[str, Any] = {"state": WorkState.WAITING, "not_before": None, "attempts": 0, "failed": None}
-"""Of work that failed, and is tried at once."""
+RETRY_AT_ONCE: dict[str, Any] = {"state": WorkState.WAITING, "not_before": None, "attempts": 0, "failed": None}
+"""Resets failed work, so that it is attempted at once."""
 _Other = aliased(WorkRow)
 
 
+class PendingWork(Queries):
+    """Work of all kinds that has not failed."""
+
+    def counts(self) -> dict[WorkKind, int]:
+        """How much of each kind is to be done."""
+        counted = select(WorkRow.kind, func.count(func.distinct(WorkRow.key))).where(WorkRow.failed.is_(None))
+        return {WorkKind(kind): count for kind, count in self._session.execute(counted.group_by(WorkRow.kind))}
+
+
 class WorkQueue(Queries):
-    """Work of one kind, over all processes of all services on this database."""
+    """Work of one kind, across all processes of all services on this database."""
 
     def __init__(self, store: Store, kind: WorkKind) -> None:
         super().__init__(store)
         self._kind = kind
 
-    def ask_once(self, keys: Iterable[str], now: datetime) -> None:
-        """Asks for work; what is asked for already is left alone."""
+    def enqueue_once(self, keys: Iterable[str], now: datetime) -> None:
+        """Requests work; a request that exists is left alone."""
         self.insert_all_once(WorkRow, [self._new(key, now) for key in keys])
 
-    def ask_again(self, key: str, now: datetime) -> None:
-        """Asks for work; what is being made now is made again, and what failed is tried at once."""
+    def enqueue_again(self, key: str, now: datetime) -> None:
+        """Requests work; what is in progress is repeated, and failed work is attempted at once."""
         new = self._upsert(WorkRow).values(**self._new(key, now))
-        anew = {name: case((_HAS_FAILED, value), else_=getattr(WorkRow, name)) for name, value in ANEW.items()}
-        again = new.on_conflict_do_update(
-            index_elements=["kind", "key"], index_where=SINGLE, set_={"ticket": new.excluded.ticket, **anew}
+        reset = {
+            name: case((_HAS_FAILED, value), else_=getattr(WorkRow, name)) for name, value in RETRY_AT_ONCE.items()
+        }
+        upsert = new.on_conflict_do_update(
+            index_elements=["kind", "key"], index_where=SINGLE, set_={"ticket": new.excluded.ticket, **reset}
         )
-        self._session.execute(again)
+        self._session.execute(upsert)
 
-    def ask_each(self, keys: Iterable[str], now: datetime) -> None:
-        """Asks in rows of their own, also for what is asked for already; what failed is tried at once."""
+    def enqueue_each(self, keys: Iterable[str], now: datetime) -> None:
+        """Requests work in additional rows, also where it is requested already; failed work is attempted at once."""
         rows = [self._new(key, now) for key in keys]
         if rows:
             self._session.execute(insert(WorkRow), rows)
         for row in rows:
-            self._session.execute(self._of(row["key"]).where(_HAS_FAILED).values(**ANEW))
+            self._session.execute(self._of(row["key"]).where(_HAS_FAILED).values(**RETRY_AT_ONCE))
 
     def get(self, key: str) -> Waiting | None:
-        """What is known of a piece of work; None where nobody asks for it."""
+        """A piece of pending work; None where there is no request."""
         query = select(WorkRow.ticket, WorkRow.not_before, WorkRow.failed).where(*self._is(key))
-        found = self._session.execute(query.order_by(WorkRow.failed.is_(None), WorkRow.id)).first()
-        return None if found is None else Waiting(found[0], found[1], found[2] or "")
+        row = self._session.execute(query.order_by(WorkRow.failed.is_(None), WorkRow.id)).first()
+        return None if row is None else Waiting(row[0], row[1], row[2] or "")
 
     def failed(self, key: str) -> str:
-        """Why the last try failed; empty where none did."""
-        found = self.get(key)
-        return "" if found is None else found.failed
+        """Reason of the last failed attempt; empty where none failed."""
+        waiting = self.get(key)
+        return "" if waiting is None else waiting.failed
 
-    def is_coming(self, key: str) -> bool:
-        """Whether it is asked for and has not failed."""
-        found = self.get(key)
-        return found is not None and not found.failed
+    def is_pending(self, key: str) -> bool:
+        """Whether it is requested and has not failed."""
+        waiting = self.get(key)
+        return waiting is not None and not waiting.failed
 
     def tickets(self, key: str) -> tuple[str, ...]:
-        """Under which a piece of work is asked for: read before what it rests on."""
+        """Tickets of a piece of work: read before its input."""
         return tuple(self._session.scalars(select(WorkRow.ticket).where(*self._is(key))))
 
-    def tickets_under(self, start: str) -> tuple[str, ...]:
-        """The same of all work whose key starts so."""
-        own = (WorkRow.kind == self._kind, WorkRow.key.startswith(start, autoescape=True))
-        return tuple(self._session.scalars(select(WorkRow.ticket).where(*own)))
+    def tickets_under(self, prefix: str) -> tuple[str, ...]:
+        """Tickets of all work whose key has a prefix."""
+        conditions = (WorkRow.kind == self._kind, WorkRow.key.startswith(prefix, autoescape=True))
+        return tuple(self._session.scalars(select(WorkRow.ticket).where(*conditions)))
 
     def count(self) -> int:
-        """How much of it is to be done."""
+        """Number of pending pieces."""
         query = select(func.count()).select_from(WorkRow).where(WorkRow.kind == self._kind)
         return self._session.scalar(query) or 0
 
     def waiting(self, now: datetime, limit: int) -> tuple[str, ...]:
-        """What nobody is at and is due, the one that was asked for first before all."""
-        same = (_Other.kind == WorkRow.kind, _Other.key == WorkRow.key)
-        hindered = or_(_Other.lease_until > now, _Other.not_before > now, _Other.state == WorkState.FAILED)
-        is_first = ~exists().where(*same, or_(hindered, _Other.id < WorkRow.id))
+        """Unclaimed work that is due, the oldest request first."""
+        same_work = (_Other.kind == WorkRow.kind, _Other.key == WorkRow.key)
+        is_blocked = or_(_Other.lease_until > now, _Other.not_before > now, _Other.state == WorkState.FAILED)
+        is_first = ~exists().where(*same_work, or_(is_blocked, _Other.id < WorkRow.id))
         query = select(WorkRow.key).where(WorkRow.kind == self._kind, is_first)
         return tuple(self._session.scalars(query.order_by(WorkRow.asked_at, WorkRow.id).limit(limit)))
 
     def claim(self, key: str, now: datetime, until: datetime) -> int | None:
-        """Leases a piece of work; how often that was done, with this time, since a try ended with an answer. None
-        where another is at it, or nobody asks for it any more."""
-        own = self._of(key).where(_is_free(now), WorkRow.state == WorkState.WAITING)
-        claimed = own.values(lease_until=until, not_before=None, attempts=WorkRow.attempts + 1)
+        """Leases a piece of work; the number of leases since an attempt ended with an answer. None where another
+        process has it, or it is no longer requested."""
+        available = self._of(key).where(_is_free(now), WorkRow.state == WorkState.WAITING)
+        claimed = available.values(lease_until=until, not_before=None, attempts=WorkRow.attempts + 1)
         return max(self._session.scalars(claimed.returning(WorkRow.attempts)).all(), default=None)
 
     def extend(self, key: str, until: datetime) -> None:
-        """Whoever claimed it is still at it."""
+        """Extends the lease."""
         self._session.execute(self._of(key).where(WorkRow.lease_until.is_not(None)).values(lease_until=until))
 
     def give_back(self, key: str, now: datetime) -> None:
-        """The program failed at it or its process died: it may begin again at once, behind what waits already."""
+        """Ends a lease after a failure of the program or a dead process: it may be claimed at once, behind what waits
+        already."""
         self._session.execute(self._of(key).values(lease_until=None, asked_at=now))
 
-    def next_turn(self, key: str, now: datetime) -> None:
-        """One piece of several is done: the next one waits behind what waits already."""
+    def requeue(self, key: str, now: datetime) -> None:
+        """Ends a lease after one piece of several: the next one waits behind what waits already."""
         self._session.execute(self._of(key).values(lease_until=None, asked_at=now, attempts=0, failed=None))
 
     def put_off(self, key: str, until: datetime | None) -> None:
-        """Ends a lease after a try that says why: nobody begins it before a time unless somebody reads it."""
+        """Ends a lease after an attempt that failed with a reason: not claimed before a time, unless a reader requests
+        it."""
         self._session.execute(self._of(key).values(lease_until=None, not_before=until, attempts=0))
 
-    def hold_up(self, key: str, why: str) -> None:
-        """Keeps why a try failed."""
+    def record_failure(self, key: str, why: str) -> None:
+        """Records why an attempt failed."""
         self._session.execute(self._of(key).values(failed=why))
 
     def give_up(self, key: str, why: str | None = None) -> None:
-        """No try succeeded: it is tried again when it is asked for anew, at another start, or by whoever wants that."""
+        """Gives up after the last attempt: attempted again on a new request, at the next start, or by an explicit
+        retry."""
         reason = why or func.coalesce(WorkRow.failed, AT_FAULT)
         self._session.execute(self._of(key).values(state=WorkState.FAILED, lease_until=None, failed=reason))
 
-    def keep_failed(self, key: str, why: str, now: datetime) -> None:
-        """Keeps why work failed that is not claimed here."""
-        self.ask_once((key,), now)
+    def add_failed(self, key: str, why: str, now: datetime) -> None:
+        """Records the failure of work that is not claimed here."""
+        self.enqueue_once((key,), now)
         self.give_up(key, why)
 
-    def forgive(self, key: str) -> None:
-        """What died was at fault for another reason that is known now: attempts are counted anew."""
+    def reset_attempts(self, key: str) -> None:
+        """Resets the count of attempts: the dead process had another cause, which is known now."""
         self._session.execute(self._of(key).values(attempts=0))
 
     def holds(self, key: str, ticket: str | None) -> bool:
-        """Whether a piece of work is still asked for under a ticket; held until the transaction ends."""
+        """Whether a piece of work is still requested under a ticket; locks it until the transaction ends."""
         return self._session.scalar(select(WorkRow.ticket).where(*self._is(key)).with_for_update()) == ticket
 
     def settle(self, key: str, ticket: str | None) -> bool:
-        """Whether what was made under a ticket is of what is known now; then nobody asks for it any more.
+        """Whether a result made under a ticket is current; then the request is removed.
 
-        None: nobody had asked for it.
+        None: there was no request.
         """
-        found = self._session.scalar(select(WorkRow.ticket).where(*self._is(key)).with_for_update())
-        if found != ticket and found is not None:
+        current = self._session.scalar(select(WorkRow.ticket).where(*self._is(key)).with_for_update())
+        if current != ticket and current is not None:
             return False
         self.drop(key)
         return True
 
     def settle_each(self, tickets: Collection[str]) -> None:
-        """Who asked has the answer; whoever asked since has not."""
-        own = (WorkRow.kind == self._kind, WorkRow.ticket.in_(tuple(tickets)))
-        self._session.execute(delete(WorkRow).where(*own))
+        """Removes answered requests; later ones stay."""
+        conditions = (WorkRow.kind == self._kind, WorkRow.ticket.in_(tuple(tickets)))
+        self._session.execute(delete(WorkRow).where(*conditions))
 
     def drop(self, *keys: str) -> None:
-        """Nobody asks for it any more."""
+        """Removes requests."""
         self._session.execute(delete(WorkRow).where(WorkRow.kind == self._kind, WorkRow.key.in_(keys)))
 
     def drop_free(self, keys: Iterable[str], now: datetime) -> tuple[str, ...]:
-        """The same of what nobody is at; which those are."""
-        free = (WorkRow.kind == self._kind, WorkRow.key.in_(tuple(keys)), _is_free(now))
-        return tuple(self._session.scalars(delete(WorkRow).where(*free).returning(WorkRow.key)))
+        """Removes unclaimed requests, and returns their keys."""
+        conditions = (WorkRow.kind == self._kind, WorkRow.key.in_(tuple(keys)), _is_free(now))
+        return tuple(self._session.scalars(delete(WorkRow).where(*conditions).returning(WorkRow.key)))
 
     def _new(self, key: str, now: datetime) -> dict[str, Any]:
         return {
@@ -189,10 +203,10 @@ def _is_free(now: datetime) -> ColumnElement[bool]:
 
 
 def is_due(now: datetime) -> ColumnElement[bool]:
-    """Whether nobody is at a row and its next try is due."""
+    """Whether a row is unclaimed and its next attempt is due."""
     return and_(_is_free(now), or_(WorkRow.not_before.is_(None), WorkRow.not_before <= now))
 
 
 def work_of(kind: WorkKind, number: InstrumentedAttribute[int]) -> ColumnElement[bool]:
-    """Joins the work of a record that has a number; its key is that number."""
+    """Joins the work of a record whose number is the key."""
     return and_(WorkRow.kind == kind, WorkRow.key == cast(number, String))

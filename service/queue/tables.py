@@ -1,4 +1,4 @@
-"""The table of work beside the requests that is still to be done; a row goes when it is done."""
+"""The table of pending background work; a row is removed when its work is done."""
 
 from datetime import datetime
 
@@ -9,13 +9,13 @@ from service.storage.columns import LongSentence, only_where
 from service.storage.tables import Base
 
 IS_SINGLE = "kind NOT IN ('group', 'summary')"
-"""Kinds with one row a piece. Who asks for a group inserts a row of its own: uploads of different units ask for the
-same group, and none waits for the transaction of another."""
+"""Kinds with one row a piece. Each request of a group inserts its own row: uploads of different units request the same
+group, and none waits for the transaction of another."""
 SINGLE = text(IS_SINGLE)
 
 
 class WorkRow(Base):
-    """A piece of work that somebody asked for, and who is at it."""
+    """A requested piece of work and its lease."""
 
     __tablename__ = "work"
     __table_args__ = (
@@ -26,17 +26,17 @@ class WorkRow(Base):
     id: Mapped[int] = mapped_column(primary_key=True)
     kind: Mapped[str] = mapped_column(String(20))
     key: Mapped[str] = mapped_column(String(250))
-    """Of what it is, as `WorkKind` says."""
+    """Identifies the work, see `WorkKind`."""
     asked_at: Mapped[datetime]
-    """Its place in the line; of what was tried in vain or is done in part, when that was."""
+    """Position in the queue: time of the request, or of the last failed or partial attempt."""
     ticket: Mapped[str] = mapped_column(String(32))
-    """Another one whenever what the work looks at changes: what was made under an older one is not stored."""
+    """Changes whenever the input of the work changes: a result made under an older ticket is not stored."""
     state: Mapped[str] = mapped_column(String(10))
     not_before: Mapped[datetime | None]
-    """After a try that failed, until the next one."""
+    """Time of the next attempt after a failed one."""
     lease_until: Mapped[datetime | None]
-    """Until when nobody else begins it; NULL where nobody is at it."""
+    """Lease expiry; NULL where unclaimed."""
     attempts: Mapped[int]
     """Leases that ended without an answer, as when the process died."""
     failed: Mapped[str | None] = mapped_column(LongSentence)
-    """Why the last try failed; NULL where none did."""
+    """Reason of the last failed attempt; NULL where none failed."""

@@ -8,13 +8,12 @@ from service.errors import ConflictError
 from service.flags.api import Handling
 from service.judging.records import said
 from service.judging.store import Derivations
-from service.kit.arriving_files import Replaced
 from service.people.admission import PersonOf
-from service.records.changes import accept_session, choose_reference, set_check, withdraw_service, withdraw_session
+from service.records.changes import accept_session, choose_reference, withdraw_service, withdraw_session
 from service.records.dependencies import ReceptionOf
-from service.records.event_schemas import NewCheck
 from service.records.supersede import successor_of, supersede_session
 from service.sessions.schemas import ReceiptAnswer, SaidSession, said_session
+from service.sessions.sent import Replaced
 from service.sessions.states import RecordKind, RecordState, StateChange, Step
 from service.sessions.states_store import States
 from service.sessions.store import Sessions
@@ -112,15 +111,6 @@ def accept(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, 
     """Say that a session counts that was questioned, withdrawn or superseded."""
     step = Step(person.signs(handling.by), now, handling.why)
     session, _ = accept_session(reception.storage, deriving(reception, now), id, step)
-    reception.ring()
-    return said_session(session)
-
-
-@router.put("/sessions/{id}/check", responses=errors(400, 404, 422), tags=["sessions"])
-def mark_check(id: SessionId, new: NewCheck, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
-    """Say that a session is only a check, or a calibration after all; its unit's dates are worked out again."""
-    step = Step(person.signs(new.by), now, new.why)
-    session = set_check(reception.storage, deriving(reception, now), id, step, is_check=new.is_check)
     reception.ring()
     return said_session(session)
 

@@ -17,12 +17,12 @@ from service.outlook.changes import END_OF_TIME
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import Derived, Deriving, derive_again
-from service.records.flagging.fold import SERVICE
+from service.records.flagging.acts import SERVICE
 from service.records.follow import follow
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Judged
 from service.sessions.doubt import Remedies
-from service.sessions.records import StoredSession
+from service.sessions.records import MARKS, StoredSession
 from service.sessions.states import RecordKind, RecordState, Step
 from service.sessions.states_store import States
 from service.sessions.store import NOT_JUDGED, Sessions
@@ -54,7 +54,7 @@ def change(
 ) -> None:
     """Writes down what becomes of a session, by whom and why; what follows from it is derived afterwards."""
     if state is RecordState.ACCEPTED and _was_questioned(store, session.id):
-        WorkQueue(store, WorkKind.DIAGNOSIS).ask_once(Derivations(store).forget_diagnosis(session.id), step.at)
+        WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once(Derivations(store).forget_diagnosis(session.id), step.at)
     States(store).put_session(session.id, state, superseded_by)
     States(store).add(RecordKind.SESSION, session.id, state, step, superseded_by=superseded_by, remedies=remedies)
     details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}
@@ -119,7 +119,7 @@ def _require_possible(store: Store, session: StoredSession) -> None:
     if stands_for_it.state in (RecordState.ACCEPTED, RecordState.QUESTIONED):
         raise ConflictError(
             say(
-                "Session {id} stands for session {id2}: withdraw it first, or both would count.",
+                "Session {id} replaces session {id2}: withdraw it first, or both would count.",
                 id=stands_for_it.id,
                 id2=session.id,
             )
@@ -171,20 +171,20 @@ def _require_choice(store: Store, session: StoredSession) -> None:
         raise ConflictError("A recording in service is compared with a calibration and is no reference itself.")
     if blind := too_few(Calibrations(store).get(session.id)):
         raise ConflictError(
-            say("Session {id} gives no uncertainty to judge others with. {blind}", id=session.id, blind=blind)
+            say("Session {id} gives no uncertainty to judge others with. {advice}", id=session.id, advice=blind)
         )
 
 
-def set_check(storage: Storage, way: Deriving, id: str, step: Step, *, is_check: bool) -> StoredSession:
+def set_mark(storage: Storage, way: Deriving, id: str, step: Step, word: str, *, is_so: bool) -> StoredSession:
     """Marks a session and works out its unit's dates again; no verdict changes. The same mark again changes nothing."""
     derived: Derived | None = None
     with storage.database.writing() as store:
         Units(store).hold(Sessions(store).get(id).unit)
         session = Sessions(store).get(id)
-        if session.is_check != is_check:
-            Sessions(store).set_check(id, is_check)
-            details = {"unit": session.unit, "is_check": is_check, "why": step.why}
-            Audit(store).write(step.at, step.who, "check", id, details)
+        if (word in session.words) != is_so:
+            Sessions(store).mark(id, **{MARKS[word]: is_so})
+            details = {"unit": session.unit, MARKS[word]: is_so, "why": step.why}
+            Audit(store).write(step.at, step.who, word, id, details)
             derived = derive_again(store, way, session.unit, END_OF_TIME)
     if derived is not None:
         follow(storage, way, session.unit, derived)
@@ -197,7 +197,7 @@ def set_stage(storage: Storage, id: str, stage: str | None, who: str, now: datet
     with storage.database.writing() as store:
         session = Sessions(store).get(id)
         if session.stage != stage:
-            Sessions(store).set_stage(id, stage)
+            Sessions(store).mark(id, stage=stage)
             Audit(store).write(now, who, "stage", id, {"unit": session.unit, "before": session.stage, "stage": stage})
         return Sessions(store).get(id)
 
@@ -235,13 +235,13 @@ def record_service(
 def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:
     found = []
     if new.at > now + CLOCK_LEEWAY:
-        found.append(Problem("at", say("lies in the future ({at}); record what was done", at=f"{new.at:%Y-%m-%d}")))
+        found.append(Problem("at", say("is in the future ({at}); record what has been done", at=f"{new.at:%Y-%m-%d}")))
     sensors = UnitTypes(store).of_unit(serial).sensors
     if new.sensor and new.sensor not in sensors:
         found.append(
             Problem(
                 "sensor",
-                say("is no sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
+                say("is not a sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
             )
         )
     return tuple(found)

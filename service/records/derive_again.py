@@ -21,8 +21,10 @@ from service.judging.store import Derivations
 from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
-from service.records.flagging.fold import Occasion, settle_sessions, tell_verdict
-from service.records.flagging.lasting import flag_drift, no_longer_overdue
+from service.records.flagging.acts import Occasion
+from service.records.flagging.drift import flag_drift
+from service.records.flagging.fold import settle_sessions, tell_verdict
+from service.records.flagging.lasting import no_longer_overdue
 from service.records.judge_again import (
     Foreseen,
     Judging,
@@ -60,7 +62,7 @@ class Deriving:
     outlook: bool = True
     """Whether the outlook is asked for: of many files in a row the last one brings it."""
     is_dated_later: bool = False
-    """Whether processes beside the requests make it; else it is made after the transaction (`refresh_beside.date`)."""
+    """Whether background processes make it; else it is made after the transaction (`refresh_beside.date`)."""
 
 
 @dataclass(frozen=True)
@@ -110,9 +112,9 @@ def derive_again(
     is_left = bool(left) or any(p.session.id in diagnosed for p in now)
     latest = sum_up(store, way, serial) if not is_left or len(own) < len(left) else None
     groups = Groups(store).of_unit(serial)
-    WorkQueue(store, WorkKind.GROUP).ask_each((group.place for group in groups), way.at)
+    WorkQueue(store, WorkKind.GROUP).enqueue_each((group.place for group in groups), way.at)
     shared = (group.place for group in groups if group.level is not Level.UNIT)
-    WorkQueue(store, WorkKind.SUMMARY).ask_each(shared, way.at)
+    WorkQueue(store, WorkKind.SUMMARY).enqueue_each(shared, way.at)
     return Derived((*(p.session.id for p in now), *own), len(left) - len(own), latest, is_left)
 
 
@@ -145,7 +147,7 @@ def _ask_again(
     gone: tuple[str, ...] = ()
     if any(at >= since and id not in same for id, at in own.diagnosed.items()):
         gone = Derivations(store).forget_diagnoses(known.unit, since, same)
-        WorkQueue(store, WorkKind.DIAGNOSIS).ask_once(gone, way.at)
+        WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once(gone, way.at)
     return frozenset(own.diagnosed.keys() - {*gone})
 
 
@@ -173,7 +175,7 @@ def sum_up(store: Store, way: Deriving, serial: str) -> StoredSession | None:
     tell_verdict(store, occasion, latest, was)
     settle_sessions(store, occasion)
     if way.outlook:
-        WorkQueue(store, WorkKind.OUTLOOK).ask_again(serial, way.at)
+        WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, way.at)
     return latest
 
 

@@ -1,7 +1,7 @@
 """Flow: what the simulation gets wrong about a stored session, found once and kept.
 
 A session without a diagnosis is one whose diagnosis is pending. An upload asks for it within its own transaction, and
-processes beside the requests make it, or else whoever reads it first: see `service.work.loop`. So an
+background processes make it, or else whoever reads it first: see `service.work.loop`. So an
 acknowledged upload is never left without one.
 """
 
@@ -15,6 +15,7 @@ from estimator.session import DIAGNOSED, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis, state_of
 from service.diagnosis.store import Diagnoses, inapplicable_to_dict, read_diagnosis
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
+from service.diagnosis.words.gain import concerned, gain_in_words
 from service.groups.changes import as_evidence, keep_statistics, kept_before
 from service.ingest import read_upload
 from service.ingest.checked import dated
@@ -23,6 +24,7 @@ from service.kit.failure import with_last_try
 from service.kit.lock_order import outside_writing
 from service.kit.log import log
 from service.models.store import Models
+from service.outlook.explained import explains
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.changes import question_diagnosed
@@ -30,7 +32,7 @@ from service.records.derive_again import NOTHING_LEFT, Derived, Deriving
 from service.records.flagging.fold import flag_diagnosis
 from service.records.follow import follow
 from service.records.keep import keep_noise
-from service.records.weigh import Weighed, weigh, weighing_of
+from service.records.weigh import Weighed, unlooked, weigh, weighing_of
 from service.sessions.records import DiagnosisState, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
@@ -111,6 +113,9 @@ def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket:
         details = {"state": made.state.value, "summary": made.summary}
         Audit(store).write(way.at, "diagnosis", "diagnose", made.session, details)
         flag_diagnosis(store, made, way.at)
+        is_counted = Sessions(store).get(made.session).state is RecordState.ACCEPTED
+        if made.found is not None and is_counted and explains(made.found):
+            WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(unit, way.at)
         if made.found is not None:
             derived = question_diagnosed(store, way, made.session, made.found)
     return derived or NOTHING_LEFT
@@ -128,7 +133,8 @@ def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     """Reads the stored bytes again and looks for causes, where the programme is one that can show any."""
     if task.session.programme not in DIAGNOSED:
         nothing = json_text(inapplicable_to_dict(task.session.unit))
-        return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
+        inapplicable = _nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now)
+        return replace(inapplicable, document=nothing, reservations=unlooked(storage, task.session.id))
     try:
         return _found(storage, task, now)
     except SessionError as fault:
@@ -151,6 +157,7 @@ def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
         _nothing_found(task, state_of(found), summary_of(found), now),
         found=read,
         document=document,
+        gain_in_words=gain_in_words(found.gain, concerned(found.findings)) if found.findings else "",
         verdict_after=weighed.verdict_after,
         reservations=weighed.reservations,
     )

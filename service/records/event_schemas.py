@@ -64,18 +64,6 @@ class NewStage(BaseModel):
     by: Name = Field(description="Who says so.")
 
 
-class NewCheck(BaseModel):
-    """Whether a session is only a check."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"is_check": True, "by": "K. Ito", "why": "after transport"}}
-    )
-
-    is_check: bool = Field(description="A check is judged and kept, and moves no due date.")
-    by: Name = Field(description="Who says so.")
-    why: Reason = Field(description="Why.")
-
-
 class FoundAndLeftLine(BaseModel):
     """One parameter as found and as left."""
 

@@ -1,7 +1,7 @@
 """Flow: what follows from a change of records is worked out after the transaction that changed them, with none open.
 
 What that transaction left is kept by the sessions themselves, so whatever ends the process between the two, the work
-beside the requests (`service.work.watch`) finds it.
+in the background (`service.work.watch`) finds it.
 """
 
 from collections.abc import Sequence
@@ -20,8 +20,10 @@ from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import AT_ONCE, Derived, Deriving, sum_up
-from service.records.flagging.fold import Occasion
-from service.records.flagging.lasting import flag_drift, no_longer_overdue
+from service.records.flagging.acts import Occasion
+from service.records.flagging.drift import flag_drift
+from service.records.flagging.fold import settle_sessions
+from service.records.flagging.lasting import no_longer_overdue
 from service.records.judge_again import fitting, judged, judging, places_of, put
 from service.records.weigh import weighable, weighed_again
 from service.sessions.store import NOT_JUDGED
@@ -39,13 +41,13 @@ def follow(storage: Storage, way: Deriving, serial: str, derived: Derived) -> No
 
 
 def derive_left(storage: Storage, way: Deriving, serial: str, derived: Derived) -> None:
-    """What a transaction has left to whoever changed the records; the rest is left to the work beside the requests."""
+    """What a transaction has left to whoever changed the records; the rest is left to background work."""
     if not derived.is_left:
         return
 
     def keep(why: str) -> None:
         with storage.database.writing() as store:
-            WorkQueue(store, WorkKind.DERIVATION).keep_failed(serial, why, way.at)
+            WorkQueue(store, WorkKind.DERIVATION).add_failed(serial, why, way.at)
 
     with kept(keep):
         if derived.waiting:
@@ -109,7 +111,7 @@ def _left(store: Store, way: Deriving, serial: str) -> int:
 
 
 def date(storage: Storage, way: Deriving, *serials: str) -> None:
-    """After a change of records, where no process beside the requests does it. What fails is kept with why, and costs
+    """After a change of records, where no background process does it. What fails is kept with why, and costs
     nobody else anything."""
     for serial in () if way.is_dated_later or not way.outlook else serials:
         with ending_here("outlook", serial):
@@ -157,6 +159,7 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
             summary = Fleet(store).unit(serial)
             session = None if summary is None else summary.last_session
             occasion, made = Occasion(unit, session, now), Outlooks(store).of_unit(serial)
-            flag_drift(store, occasion, made)
+            settle_sessions(store, occasion)
             no_longer_overdue(store, occasion, made, sources.past.latest)
+            flag_drift(store, occasion, made)
             return

@@ -14,7 +14,7 @@ from estimator.parity.as_calibration import parity_calibration
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE
 from service.ingest import read_upload
-from service.judging.calibrate import Comparison
+from service.judging.calibrate import ReferenceComparison
 from service.judging.judge import judge, judge_recording
 from service.judging.records import Counted, Decided
 from service.judging.reference import KnownUnit, alike
@@ -143,7 +143,7 @@ class Judging:
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class Rejudgement:
     """How a session is judged at its place, by a revision of the tolerances."""
 
     basis: str
@@ -157,7 +157,7 @@ class Outcome:
 class Foreseen:
     """How sessions are judged if nothing changes until their transaction."""
 
-    outcomes: Mapping[str, Outcome] = field(default_factory=dict)
+    outcomes: Mapping[str, Rejudgement] = field(default_factory=dict)
     references: Mapping[tuple[str, int], Calibration] = field(default_factory=dict)
     """Those that they are judged against, by session and revision: they never change under one."""
 
@@ -186,33 +186,33 @@ def judged(known: KnownUnit, by: Judging, places: Sequence[Place]) -> Foreseen:
     )
 
 
-def _outcome(known: KnownUnit, by: Judging, place: Place) -> Outcome:
+def _outcome(known: KnownUnit, by: Judging, place: Place) -> Rejudgement:
     unit_type = by.unit_type(place.session.id)
     if place.session.programme == IN_SERVICE:
         return _of_recording(known, by, place, unit_type)
     own = known.calibration(place.session.id)
     against = None if place.is_reference or place.reference is None else known.calibration(place.reference.id)
     opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
-    return Outcome(place.basis, unit_type, judge(own, against, unit_type, by.coverage_factor, opening=opening))
+    return Rejudgement(place.basis, unit_type, judge(own, against, unit_type, by.coverage_factor, opening=opening))
 
 
-def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitType) -> Outcome:
+def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitType) -> Rejudgement:
     """A recording in service moves the calibration that it is compared with, so it is compared anew."""
     own, id = known.calibration(place.session.id), place.session.id
     if place.reference is None:
-        return Outcome(place.basis, unit_type, Judged(own, (), NOTHING_TO_COMPARE, is_reference=False))
+        return Rejudgement(place.basis, unit_type, Judged(own, (), NOTHING_TO_COMPARE, is_reference=False))
     sha256, filename = known.file(id)
     try:
         source = read_upload(by.files.content(sha256), filename)
     except (*LOST, SessionError) as lost:
-        return Outcome(
+        return Rejudgement(
             place.basis, unit_type, Judged(own, (), say("It cannot be compared: {lost}", lost=lost), is_reference=False)
         )
     reference = known.calibration(place.reference.id)
-    found = Comparison(reference, parity_check(source, reference))
+    found = ReferenceComparison(reference, parity_check(source, reference))
     moved = parity_calibration(found.result, reference)
     decided = judge_recording(moved, found, unit_type, by.coverage_factor)
-    return Outcome(place.basis, unit_type, decided, made(moved))
+    return Rejudgement(place.basis, unit_type, decided, made(moved))
 
 
 def fitting(by: Judging, places: Sequence[Place], foreseen: Foreseen) -> tuple[Place, ...]:
@@ -220,7 +220,7 @@ def fitting(by: Judging, places: Sequence[Place], foreseen: Foreseen) -> tuple[P
     return tuple(p for p in places if _fits(by, p, foreseen.outcomes.get(p.session.id)))
 
 
-def _fits(by: Judging, place: Place, found: Outcome | None) -> bool:
+def _fits(by: Judging, place: Place, found: Rejudgement | None) -> bool:
     return found is not None and (found.basis, found.unit_type) == (place.basis, by.unit_type(place.session.id))
 
 

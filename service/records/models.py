@@ -24,7 +24,7 @@ from service.groups.changes import tell_own
 from service.groups.records import Group, GroupShown
 from service.groups.store import read_group
 from service.groups.words import equation_of
-from service.jobs.changes import tell_job
+from service.jobs.changes import add_model_job
 from service.models.records import SCOPES, Evidence, ModelRevision, NewLasting, NewModel, Pooled, Scope
 from service.models.rules import in_force, pooled_of
 from service.models.store import Models, Recomputations
@@ -63,6 +63,8 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
         )
         revision = Models(store).add(accepted)
         tell_own(store, revision.scope, revision.subject)
+        if new.again:
+            _compute_again(store, revision, now)
         details = {"cause": new.cause, "sensors": list(finding.sensors), "session": session.id, "note": new.note}
         Audit(store).write(
             now,
@@ -72,6 +74,13 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
             {"revision": revision.id, **details},
         )
         return revision
+
+
+def _compute_again(store: Store, changed: ModelRevision, now: datetime) -> int:
+    """Asks for the sessions of every unit that a changed model concerns; returns how many units those are."""
+    units = Recomputations(store).ask(changed.id, changed.scope, changed.subject, now)
+    add_model_job(store, changed, units, now)
+    return units
 
 
 def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
@@ -89,9 +98,8 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
         raise _refused(
             "cause",
             say(
-                "{wanted} is a matter of this one record or of what changed since earlier sessions, not "
-                "a property that a model can hold; correct the record and upload it again, or act on the "
-                "unit",
+                "{wanted} concerns this record or a change since earlier sessions and cannot be part of a model; "
+                "correct the record and upload it again, or service the unit",
                 wanted=repr(wanted),
             ),
         )
@@ -133,7 +141,7 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
         found = joined(" and ", sensors)
         raise _refused(
             "scope",
-            say("is 'stand', but the cause acts on {found}; accept it for the unit or the unit type", found=found),
+            say("is 'stand', but the cause acts on {sensors}; accept it for the unit or the unit type", sensors=found),
         )
     if session.stand is None:
         raise _refused("scope", "is 'stand', but the session names no stand; accept it for the unit or the unit type")
@@ -144,7 +152,7 @@ def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
     shown = ", ".join(f.cause for f in findings) or "none"
     return _refused(
         "cause",
-        say("{wanted} is not among the causes that this session shows ({shown})", wanted=repr(wanted), shown=shown),
+        say("{cause} is not among the causes that this session shows ({known})", cause=repr(wanted), known=shown),
     )
 
 
@@ -154,7 +162,7 @@ def _refused(field: str, message: str) -> RefusedError:
 
 MOST = 700.0
 """ln of the largest number that a double holds, about."""
-NOT_MADE = "What these sessions show together is being worked out with their latest records: ask for it, then accept."
+NOT_MADE = "What these sessions show together is being computed with their latest records: request it, then accept."
 
 
 def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetime) -> ModelRevision:
@@ -186,8 +194,7 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
         if isinstance(taken, GroupFinding):
             settle_accepted(store, revision, taken, now)
         tell_own(store, scope, taken.subject)
-        units = Recomputations(store).ask(revision.id, scope, taken.subject, now)
-        tell_job(store, revision, units, now)
+        units = _compute_again(store, revision, now)
         details = {"revision": revision.id, "cause": new.cause, "sensors": list(taken.sensors), "units": units}
         shows = {
             "group": say("{scopes} {name}", scopes=SCOPES[group.level.value], name=group.name),
@@ -266,7 +273,7 @@ def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
     if len(found) == 1:
         return found[0]
     if found:
-        raise _refused("sensors", "must say which is meant: these sessions taught several terms")
+        raise _refused("sensors", "must state which term: several were learned from these sessions")
     raise _refused("cause", "no term was learned from these sessions")
 
 
@@ -283,9 +290,7 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
         places = joined(" or ", (", ".join(f.sensors) or "none" for f in found))
         raise _refused(
             "sensors",
-            say(
-                "must say which is meant: these sessions show {cause} on {places}", cause=repr(new.cause), places=places
-            ),
+            say("must state which one: these sessions show {cause} on {places}", cause=repr(new.cause), places=places),
         )
     names = joined(", ", (cause_on(f.cause, f.sensors) for f in shown.findings)) or "none"
     raise _refused(
@@ -315,7 +320,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         )
         tell_own(store, known.scope, known.subject)
         if pooled_of(known) is not None:
-            tell_job(store, made, Recomputations(store).ask(made.id, known.scope, known.subject, now), now)
+            _compute_again(store, made, now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
         Audit(store).write(
             now, by, "withdraw model", say("{scope} {subject}", scope=known.scope, subject=known.subject), details

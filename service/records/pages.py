@@ -1,5 +1,6 @@
 """The forms of records and services."""
 
+from collections.abc import Callable
 from datetime import datetime
 from typing import Annotated, Literal
 from urllib.parse import quote
@@ -8,14 +9,13 @@ from fastapi import APIRouter, Form
 from fastapi.responses import RedirectResponse
 from pydantic import AfterValidator
 
-from service.kit.arriving_files import Replaced
 from service.kit.moments import in_utc
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, Number, StorageOf, Why
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, Number, StorageOf, Why
 from service.records.changes import (
     accept_session,
     choose_reference,
     record_service,
-    set_check,
+    set_mark,
     set_stage,
     withdraw_service,
     withdraw_session,
@@ -23,6 +23,8 @@ from service.records.changes import (
 from service.records.dependencies import ReceptionOf
 from service.records.supersede import supersede_session
 from service.records.unit_changes import add_note, withdraw_note
+from service.sessions.records import MARKS
+from service.sessions.sent import Replaced
 from service.sessions.states import Step
 from service.units.records import NewService
 from service.uploads.correct import correct_session
@@ -49,14 +51,19 @@ def accept(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> Redir
     return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
 
 
-@router.post("/sessions/{id}/check")
-def mark_check(
-    id: Key, by: By, why: Why, reception: ReceptionOf, now: Now, *, is_check: Annotated[bool, Form()] = False
-) -> RedirectResponse:
-    """A session is only a check, or a calibration after all."""
-    set_check(reception.storage, deriving(reception, now), id, Step(by, now, why), is_check=is_check)
-    reception.ring()
-    return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
+def _marking(word: str, name: str) -> Callable[..., RedirectResponse]:
+    def mark(
+        id: Key, by: By, why: Why, reception: ReceptionOf, now: Now, *, is_so: Annotated[bool, Form(alias=name)] = False
+    ) -> RedirectResponse:
+        set_mark(reception.storage, deriving(reception, now), id, Step(by, now, why), word, is_so=is_so)
+        reception.ring()
+        return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
+
+    return mark
+
+
+for mark in MARKS.items():
+    router.post(f"/sessions/{{id}}/{mark[0]}")(_marking(*mark))
 
 
 @router.post("/sessions/{id}/correct")
@@ -67,7 +74,7 @@ def correct(id: Key, by: By, reception: ReceptionOf, now: Now) -> RedirectRespon
 
 @router.post("/sessions/{id}/stand")
 def stand(
-    id: Key, session: Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)], by: By, why: Why,
+    id: Key, session: Annotated[str, Form(max_length=200, pattern=NOT_BLANK)], by: By, why: Why,
     reception: ReceptionOf, now: Now,
 ) -> RedirectResponse:  # fmt: skip
     """A session stands for another one of the same moment."""

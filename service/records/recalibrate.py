@@ -11,10 +11,10 @@ from estimator.results import Calibration
 from estimator.session import IN_SERVICE
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
-from service.jobs.records import JobFailure, Piece
+from service.jobs.records import JobFailure, RecalibrationPiece
 from service.jobs.store import Jobs
 from service.jobs.words import left_in_words
-from service.judging.calibrate import Basis, calibrate, rests_on_model
+from service.judging.calibrate import CalibrationBasis, calibrate, rests_on_model
 from service.judging.judge import furthest, moved_parameters, moved_verdicts
 from service.judging.reference import known_unit
 from service.judging.store import Derivations
@@ -196,7 +196,9 @@ def _recalibrated(storage: Storage, source: _Source) -> _Recomputed | LeftSessio
         return _Recomputed(stored, model, made(source.recording), ())
     try:
         session = read_upload(storage.files.content(stored.sha256), stored.filename)
-        found = calibrate(as_checked(session, stored.started_at, stored.unit), Basis(model, None)).calibration
+        found = calibrate(
+            as_checked(session, stored.started_at, stored.unit), CalibrationBasis(model, None)
+        ).calibration
     except (*LOST, SessionError) as fault:
         return LeftSession(stored.id, str(fault))
     own = made(found)
@@ -231,7 +233,7 @@ def _write_down(store: Store, way: Deriving, changed: Sequence[tuple[StoredSessi
 
 
 def recompute_beside(reception: Reception, now: datetime) -> None:
-    """Wakes whoever works beside the requests; where nobody does, it is done at once."""
+    """Wakes whoever works in the background; where nobody does, it is done at once."""
     reception.ring()
     while not reception.is_dated_later:
         with reception.storage.database.reading() as store:
@@ -248,7 +250,7 @@ def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: floa
         outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)
         if Recomputations(store).settle(task, outcome, now):
             left = JobFailure(task.unit, left_in_words(done.left)) if done.left else None
-            Jobs(store).count_unit(task.revision, Piece(done.recomputed, len(done.verdicts), left), now)
+            Jobs(store).count_unit(task.revision, RecalibrationPiece(done.recomputed, len(done.verdicts), left), now)
 
     with storage.database.reading() as store:
         who = Models(store).get(task.revision).accepted_by

@@ -77,7 +77,7 @@ def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:
             is_tried = not Diagnoses(store).has_failed(member.session)
             wanted = is_tried and Statistics(store).begin(member.session, VERSION)
             if is_tried and not wanted and not member.why:
-                WorkQueue(store, WorkKind.GROUP).forgive(group.place)  # that session was, and is given up now
+                WorkQueue(store, WorkKind.GROUP).reset_attempts(group.place)  # that session was, and is given up now
         if wanted:
             add_statistics(storage, member.session, member.sha256, member.filename)
     with storage.database.reading() as store:

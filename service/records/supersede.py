@@ -9,11 +9,11 @@ from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.plausible import doubts
 from service.judging.reference import known_unit
-from service.kit.arriving_files import Replaced
 from service.records.changes import change
 from service.records.derive_again import Derived, Deriving, derive_again
 from service.records.follow import follow
 from service.sessions.records import StoredSession
+from service.sessions.sent import Replaced
 from service.sessions.states import RecordKind, RecordState, Step
 from service.sessions.states_store import States
 from service.sessions.store import Sessions
@@ -86,14 +86,14 @@ def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) 
     known = Sessions(store).get(replaced.session)
     if known.id == by.id:
         raise ConflictError(
-            say("Session {id} cannot stand for itself: the file holds what is stored already.", id=known.id)
+            say("Session {id} cannot replace itself: the file contains what is already stored.", id=known.id)
         )
     if known.state not in REPLACEABLE:
         raise ConflictError(
-            say("Session {id} is {state} already, so nothing stands for it.", id=known.id, state=known.state)
+            say("Session {id} is already {state}: nothing replaces it.", id=known.id, state=known.state)
         )
     if by.state not in REPLACEABLE:
-        raise ConflictError(say("Session {id} is {state} itself, so it stands for none.", id=by.id, state=by.state))
+        raise ConflictError(say("Session {id} is itself {state}: it replaces no other.", id=by.id, state=by.state))
     change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=by.id)
     return known
 
@@ -106,10 +106,10 @@ def successor_of(storage: Storage, id: str) -> str:
     if len(found) != 1:
         raise ConflictError(
             say(
-                "Which session stands for {id} cannot be told: name it in `superseded_by`. Uploaded "
-                "later of the same unit and date: {found}.",
+                "It is not clear which session replaces {id}: name it in `superseded_by`. Uploaded later with the "
+                "same unit and date: {number}.",
                 id=id,
-                found=len(found),
+                number=len(found),
             )
         )
     return found[0]

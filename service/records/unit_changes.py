@@ -91,10 +91,10 @@ def given_out(store: Store, id: int) -> Attachment:
     if attachment.withdrawal is not None:
         raise NotFoundError(
             say(
-                "Attachment {id} was withdrawn by {who}: {why}",
+                "Attachment {id} was withdrawn by {who}: {reason}",
                 id=id,
                 who=attachment.withdrawal.who,
-                why=attachment.withdrawal.why,
+                reason=attachment.withdrawal.why,
             )
         )
     return attachment

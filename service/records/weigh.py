@@ -19,9 +19,10 @@ from service.judging.reservations import (
     Doubted,
     Otherwise,
     covered_by,
+    reservations_at,
     reservations_of,
     verdicts_under_alternatives,
-    worth_of,
+    worth_at,
 )
 from service.judging.store import Derivations
 from service.kit.lock_order import outside_writing
@@ -31,7 +32,7 @@ from service.outlook.store import Outlooks
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Verdict, nominal_factor_of
 from service.sessions.doubt import Reservation
-from service.sessions.records import StoredSession
+from service.sessions.records import DiagnosisState, StoredSession
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.files import LOST
@@ -124,9 +125,16 @@ def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighe
         otherwise=others,
         known=by.known,
         temperatures=by.temperatures,
-        worth=worth_of(by.temperatures) if by.temperatures is not None and by.temperatures.is_far else None,
+        worth=worth_at(by.temperatures),
     )
     return Weighed(after, reservations_of(doubted))
+
+
+def unlooked(storage: Storage, id: str) -> tuple[Reservation, ...]:
+    """The reservations of a session whose programme shows no causes."""
+    with storage.database.reading() as store:
+        by = weighing_of(store, id, Sessions(store).block(id))
+    return reservations_at(by.temperatures)
 
 
 @dataclass(frozen=True)
@@ -160,6 +168,8 @@ def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
     id = session.id
     with storage.database.reading() as store:
         of, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)
+    if made is not None and made.state is DiagnosisState.NOT_APPLICABLE:
+        return WeighedAgain(id, of, unlooked(storage, id))
     if made is None or made.found is None:
         return WeighedAgain(id, of, None)
     try:

@@ -82,15 +82,15 @@ class Calibrations(Queries):
         """A session, its diagnosis in one line where it is made, why the last try to make it failed, and its
         calibration in force; in one query."""
         own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
-        line = (DiagnosisRow.state, DiagnosisRow.summary, WorkRow.failed)
+        line = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, WorkRow.failed)
         query = session_rows().add_columns(*line, CalibrationRow.document).join(CalibrationRow, own)
         whole = query.outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id))
         row = self._session.execute(whole.where(SessionRow.id == id)).one_or_none()
         if row is None:
             raise NotFoundError(say("There is no session {id}.", id=repr(id)))
-        *session, state, summary, failed, document = row
-        made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary)
-        return session_record(*session), made, failed or "", _read(zlib.decompress(document))
+        *session, state, summary, gain, failed, document = row
+        made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary, gain or "")
+        return session_record(*session), made, failed or "", calibration_of(document)
 
     def in_force(self, sessions: Iterable[str]) -> dict[str, Calibration]:
         """The calibrations in force of some sessions, in one query."""
@@ -99,7 +99,7 @@ class Calibrations(Queries):
             .join(SessionRow, SessionRow.id == CalibrationRow.session_id)
             .where(CalibrationRow.revision == SessionRow.revision, SessionRow.id.in_(sessions))
         )
-        return {id: _read(zlib.decompress(document)) for id, document in rows}
+        return {id: calibration_of(document) for id, document in rows}
 
     def beside_reference(
         self, sessions: Iterable[str], reference: Select[str]
@@ -112,7 +112,7 @@ class Calibrations(Queries):
             .where(CalibrationRow.revision == SessionRow.revision)
             .where(SessionRow.id.in_(tuple(sessions)) | (SessionRow.id == against))
         ).all()
-        return rows[0][0] if rows else None, {id: _read(zlib.decompress(document)) for _, id, document in rows}
+        return rows[0][0] if rows else None, {id: calibration_of(document) for _, id, document in rows}
 
     def get(self, session: str, revision: int | None = None) -> Calibration:
         """The calibration of a session, as it was computed."""
@@ -132,6 +132,11 @@ _IN_FORCE = (
     .join(SessionRow, SessionRow.id == CalibrationRow.session_id)
     .where(CalibrationRow.session_id == bindparam("session"), CalibrationRow.revision == SessionRow.revision)
 )
+
+
+def calibration_of(deflated: bytes) -> Calibration:
+    """The calibration of a column."""
+    return _read(zlib.decompress(deflated))
 
 
 @lru_cache(maxsize=AT_HAND)

@@ -13,6 +13,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.results import Calibration, Residuals
 from estimator.session import Array
@@ -26,7 +27,7 @@ UNIT, LEFT, RIGHT, LOW, HIGH = "{unit}", "{left}", "{right}", "{low}", "{high}"
 
 AIR = 0.06
 """Share of a range that is left empty above and below, so that no mark is cut."""
-CONFIG: dict[str, Any] = {
+CONFIG: Json = {
     "background": "transparent",
     "font": "system-ui, sans-serif",
     "view": {"stroke": "var(--line)", "fill": "transparent"},
@@ -57,7 +58,7 @@ class Panel:
     description: str
     condition: Condition | None
     """The verdict to show beside the heading; None where nothing is judged."""
-    datasets: dict[str, list[dict[str, Any]]]
+    datasets: dict[str, list[Json]]
 
 
 @dataclass(frozen=True)
@@ -66,11 +67,11 @@ class ChartSet:
 
     name: str
     heading: str
-    spec: dict[str, Any]
+    spec: Json
     panels: tuple[Panel, ...]
 
 
-def specification(layers: list[alt.Chart], height: int) -> dict[str, Any]:
+def specification(layers: list[alt.Chart], height: int) -> Json:
     """Layers as Vega-Lite that fills the width of its place."""
     chart = alt.layer(*layers).properties(width="container", height=height)
     return {**chart.to_dict(), "config": CONFIG, "autosize": {"type": "fit-x", "contains": "padding"}}
@@ -258,20 +259,22 @@ def _panel(calibration: Calibration, column: int, across: Across, unit: Measure)
     noise = noise_of(residuals, calibration)
     value, sigma = residuals.value[:, column], noise.stated[:, column]
     outside = (
-        say(", {np} of {value} outside ±2σ", np=np.sum(np.abs(value) > 2 * sigma), value=len(value))
+        say(", {number} of {total} outside ±2σ", number=np.sum(np.abs(value) > 2 * sigma), total=len(value))
         if np.isfinite(sigma).any()
         else ""
     )
     rms = scatter_in_words(float(np.sqrt(np.nanmean(value**2))), unit)
     return Panel(
         title=calibration.sensors[column].name,
-        description=say("rms {rms}{thin}{label}{outside}", rms=rms, thin=THIN, label=unit.label, outside=outside),
+        description=say(
+            "rms {rms}{thin_space}{label}{outside}", rms=rms, thin_space=THIN, label=unit.label, outside=outside
+        ),
         condition=None,
         datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
     )
 
 
-def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit: Measure) -> list[dict[str, Any]]:
+def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit: Measure) -> list[Json]:
     flipped = np.zeros(len(residuals.value), bool) if residuals.flipped is None else residuals.flipped
     return [
         {
@@ -290,7 +293,7 @@ def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit:
     ]
 
 
-def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> dict[str, Any]:
+def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> Json:
     left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
     low, high = padded(-largest, largest)
     ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
@@ -299,12 +302,12 @@ def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> di
         RESIDUAL: say("residual, {label}", label=unit.label),
         BAND: say("2σ stated, {label}", label=unit.label),
     }
-    found: dict[str, Any] = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
+    found: Json = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
     return found
 
 
 @cache
-def _spec(name: str, title: str, *, wider: bool) -> dict[str, Any]:
+def _spec(name: str, title: str, *, wider: bool) -> Json:
     """With blanks for the unit and the ranges; ``wider``: with the edges of the noise found."""
     x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
     y_scale = alt.Scale(domain=[LOW, HIGH])

@@ -6,7 +6,7 @@ from functools import cached_property
 from math import inf
 
 from estimator.coverage import nominal_factor
-from estimator.health import Judgement
+from estimator.health import ParameterJudgement
 from estimator.health.common_motion import CommonMotion
 from estimator.results import COVERAGE, Calibration
 
@@ -36,7 +36,7 @@ class Opening(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Decision(Judgement):
+class Decision(ParameterJudgement):
     """The estimator's judgement of one parameter, with the rule it rests on: all that the store and the API keep."""
 
     verdict: Verdict

@@ -41,8 +41,8 @@ class Correction:
         if self.remedy is Remedy.UNIT:
             return say("unit {unit}", unit=self.unit)
         if self.remedy is Remedy.EXCHANGE:
-            return say("readings of {who} exchanged", who=who)
-        return say("{value} of {who} × {factor}", value=self.remedy.value, who=who, factor=f"{self.factor:.6g}")
+            return say("readings of {sensors} exchanged", sensors=who)
+        return say("{value} of {sensors} × {factor}", value=self.remedy.value, sensors=who, factor=f"{self.factor:.6g}")
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,10 @@ class Doubt:
         remedy = (
             ""
             if self.correction is None
-            else say(" A file with the {text} would put it right.", text=self.correction.text)
+            else say(" A file with the {text} would correct it.", text=self.correction.text)
         )
         if self.stands_for is not None:
-            remedy = " Together they would count twice: say which one counts."
+            remedy = " Together they would count twice: choose the one that counts."
         return say("{what}: {slip}.{remedy}", what=self.what, slip=self.slip, remedy=remedy)
 
 

@@ -88,7 +88,7 @@ POINT = (
 
 def point_record(row: StoredPoint, *, raw: bool = False) -> HistoryPoint:
     """A stored parameter with what was decided of it, or, ``raw``, with what the whole block did left in."""
-    seen = _Seen(row, raw)
+    seen = _LatestPoint(row, raw)
     value, u = seen.value, seen.u
     lower, upper = _band(row, value, u)
     return HistoryPoint(
@@ -124,7 +124,7 @@ def _band(row: StoredPoint, value: float | None, u: float | None) -> tuple[float
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _LatestPoint:
     """A parameter as it was judged, or as it was measured."""
 
     row: StoredPoint

@@ -1,12 +1,15 @@
 """Stored sessions, lists of them, and the history of their parameters."""
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, fields
 from datetime import datetime
 from enum import StrEnum
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, computed_field
 
 from service.kit.answer import Hidden, answer
+from service.kit.listing import ListQuery
 from service.kit.moments import epoch_ms
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
@@ -20,10 +23,36 @@ ALL_PARAMETERS = (*PARAMETERS, "misalignment")
 """With what only a turntable shows."""
 
 
-@answer
+@dataclass(frozen=True, kw_only=True)
+class Marks:
+    """What is said of a session with yes or no, with its file or later; carried whole wherever it goes."""
+
+    is_check: bool = False
+    """Whether it is only a check, which moves no due date unless it is a reference."""
+
+    @property
+    def marks(self) -> dict[str, Any]:
+        """Each by its name."""
+        return {field.name: getattr(self, field.name) for field in fields(Marks)}
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Those that are so, as addresses, forms and lists call them."""
+        return tuple(word for word, name in MARKS.items() if getattr(self, name))
+
+
+MARKS = {field.name.removeprefix("is_"): field.name for field in fields(Marks)}
+"""The word of each mark, and its name."""
+
+
+def marks_said(words: Collection[str]) -> dict[str, Any]:
+    """All marks by their names; those of these words are so."""
+    return {name: word in words for word, name in MARKS.items()}
+
+
 @dataclass(frozen=True)
-class StoredSession:
-    """One stored session."""
+class _StoredSession:
+    """What is known of a stored session without what is said of it."""
 
     id: str
     """The first 20 digits of the content's SHA-256."""
@@ -67,8 +96,14 @@ class StoredSession:
     """The session that stands for a superseded one."""
     temperature: Hidden[float | None] = None
     """°C, the mean over the session; None where it was not recorded."""
-    is_check: bool = False
-    """Whether it is only a check, which moves no due date unless it is a reference."""
+    time_since_power_on: float | None = None
+    """Seconds from switching the unit on to the first row; null where the file does not say."""
+
+
+@answer
+@dataclass(frozen=True)
+class StoredSession(Marks, _StoredSession):
+    """One stored session."""
 
 
 @dataclass(frozen=True)
@@ -96,10 +131,9 @@ class ParameterValue:
     axis: tuple[float, float, float] | None
 
 
-@answer
 @dataclass(frozen=True)
-class Receipt:
-    """The answer to an upload."""
+class _Receipt:
+    """What an upload is answered with, without what is said of the session."""
 
     id: str
     """The session's id, made from the content: the same bytes have the same id."""
@@ -117,8 +151,12 @@ class Receipt:
     """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
     """`questioned` where the file cannot be as it says; then it tells nothing."""
-    is_check: bool = False
-    """Whether it is only a check; of what was stored before, as that was."""
+
+
+@answer
+@dataclass(frozen=True)
+class Receipt(Marks, _Receipt):
+    """The answer to an upload; of what was stored before everything is as it was."""
 
 
 class SessionOrder(StrEnum):
@@ -134,8 +172,8 @@ class SessionOrder(StrEnum):
 
 
 @dataclass(frozen=True)
-class SessionQuery:
-    """Which sessions are wanted."""
+class SessionQuery(ListQuery):
+    """Which sessions are wanted, and after or before which identifier."""
 
     text: str | None = None
     """Part of the unit's serial number, small and capital letters alike."""
@@ -154,14 +192,6 @@ class SessionQuery:
     reserved: bool = False
     """Only those whose verdict is said with a reservation."""
     order: SessionOrder = SessionOrder.MEASURED
-    backwards: bool = False
-    after: str | None = None
-    """The session that the list goes on after; one that is not there begins the list anew."""
-    before: str | None = None
-    """The session that it ends before."""
-    offset: int = 0
-    """How many are left out first, where a page has a number instead of a place."""
-    limit: int = 100
 
 
 @answer
@@ -233,6 +263,8 @@ class DiagnosisSummary:
 
     state: DiagnosisState
     summary: str
+    gain: str = ""
+    """What the named causes gain, in one sentence."""
 
 
 UNWEIGHED = "~"

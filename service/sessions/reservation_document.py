@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from typing import Any
 
+from estimator.json_object import Json
 from service.sessions.doubt import Reservation, Reservations
 from service.storage.json_text import STORED
 
 
-def reservations_to_list(reservations: Sequence[Reservation]) -> list[dict[str, Any]] | None:
+def reservations_to_list(reservations: Sequence[Reservation]) -> list[Json] | None:
     """Every reservation, or None where there are none."""
     return STORED.written(list(reservations)) or None
 

@@ -1,41 +1,39 @@
 """imu-session/1 as JSON Schema: what of docs/session-file.md a schema can say. The reader says the rest."""
 
-from typing import Any
-
+from estimator.json_object import Json
 from estimator.reading.bounds import WITHIN
 from estimator.reading.keys import SIGMA
 
-JsonSchema = dict[str, Any]
 KINDS = ["accelerometer", "gyroscope"]
 NULL = {"type": "null"}
 """Means the same as leaving a field out."""
 
 
-def _text(description: str) -> JsonSchema:
+def _text(description: str) -> Json:
     return {"type": "string", "minLength": 1, "description": description}
 
 
-def _number(description: str, field: str) -> JsonSchema:
+def _number(description: str, field: str) -> Json:
     within = WITHIN[field]
     return {"type": "number", "description": description, "minimum": within.low, "maximum": within.high}
 
 
-def _vector(description: str) -> JsonSchema:
+def _vector(description: str) -> Json:
     return {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3, "description": description}
 
 
-def _column(description: str, *kinds: str) -> JsonSchema:
+def _column(description: str, *kinds: str) -> Json:
     return {"type": "array", "items": {"type": [*kinds]}, "description": description}
 
 
-def _optional(properties: dict[str, JsonSchema]) -> dict[str, JsonSchema]:
+def _optional(properties: dict[str, Json]) -> dict[str, Json]:
     """Each of them or null."""
     return {
         name: {"description": schema["description"], "anyOf": [schema, NULL]} for name, schema in properties.items()
     }
 
 
-SITE: JsonSchema = {
+SITE: Json = {
     "type": "object",
     "description": "Where it was measured.",
     "properties": _optional(
@@ -46,7 +44,7 @@ SITE: JsonSchema = {
         }
     ),
 }
-STAND: JsonSchema = {
+STAND: Json = {
     "type": "object",
     "description": "The stand and how it was set.",
     "properties": _optional(
@@ -69,7 +67,7 @@ STAND: JsonSchema = {
         }
     ),
 }
-SENSOR: JsonSchema = {
+SENSOR: Json = {
     "type": "object",
     "required": ["name", "nominal_axis", "nominal_scale", "reading_unit"],
     "properties": {
@@ -92,7 +90,7 @@ SENSOR: JsonSchema = {
         }
     ),
 }
-TABLE: JsonSchema = {
+TABLE: Json = {
     "type": "object",
     "description": "Columns of equal length: one row a reading, in the order measured. Each sensor has a column of its "
     "name, and `<sensor>_se` for the standard errors of averaged readings.",
@@ -114,7 +112,7 @@ TABLE: JsonSchema = {
     ),
     "additionalProperties": {"type": ["array", "null"]},
 }
-SESSION_FILE: JsonSchema = {
+SESSION_FILE: Json = {
     "title": "imu-session/1",
     "type": "object",
     "description": "One calibration session: a block of a unit, measured once. Fields of your own are left unread.",
@@ -133,6 +131,13 @@ SESSION_FILE: JsonSchema = {
         {
             "unit_type": _text("Kind of unit, whose tolerances apply."),
             "started_at": {"type": "string", "format": "date-time", "description": "When, with its offset from UTC."},
+            "powered_on_at": {
+                "type": "string", "format": "date-time", "description": "When the unit was switched on, with its "
+                "offset; not after started_at, which it needs.",
+            },
+            "time_since_power_on_s": _number(
+                "Seconds from switching on to the first row; instead of powered_on_at.", "time_since_power_on_s"
+            ),
             "operator": {"type": "string", "description": "Who measured."},
             "notes": {"type": "string", "description": "Free text."},
             "stage": {"enum": ["as-found", "as-left"], "description": "Before or after the unit was worked on."},

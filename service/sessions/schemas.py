@@ -1,29 +1,29 @@
 """Sessions, receipts, decisions."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
+from estimator.json_object import Json
 from service.judging.records import SaidVerdict, said
 from service.kit.answer import answer
 from service.papers.records import Traceability
 from service.sessions.decision import Verdict
-from service.sessions.records import Receipt, StoredSession
+from service.sessions.records import Marks, Receipt, StoredSession
 from service.web.fields import Paged
 
 RECEIPT_EXAMPLE: JsonDict = {
     "id": "3f9a0c5be1d24786aa10",
     "unit": "BA-017",
     "verdict": "fail",
-    "reason": "A3 bias moved +62 µg (U 8.1 µg) beyond the tolerance of 50 µg.",
+    "reason": "A3 bias changed by +62 µg (U 8.1 µg), beyond the tolerance of ±50 µg.",
     "created": True,
     "is_reference": False,
     "reservations": [],
     "said": "Unfit",
     "state": "accepted",
-    "is_check": False,
+    **Marks().marks,
     "url": "http://127.0.0.1:8000/api/v1/sessions/3f9a0c5be1d24786aa10",
 }
 
@@ -132,10 +132,10 @@ class CalibrationDocument(BaseModel):
     format: str = Field(description="`imu-calibration/1`.")
     unit: str = Field(description="Serial number of the unit.")
     method: str = Field(description="How the parameters were estimated.")
-    sensors: list[dict[str, Any]] = Field(
+    sensors: list[Json] = Field(
         description="Scale, bias, quadratic term and axis of every sensor, with total one-sigma uncertainties."
     )
-    fit: dict[str, Any] = Field(description="χ², degrees of freedom, p-value, rank, weakest direction.")
+    fit: Json = Field(description="χ², degrees of freedom, p-value, rank, weakest direction.")
     gauge: str = Field(description="What holds the block's frame.")
-    covariance: dict[str, Any] = Field(description="Names and units of all elements; total and repeatability.")
-    residuals: dict[str, Any] = Field(description="Measured minus modelled, row by row, at the input.")
+    covariance: Json = Field(description="Names and units of all elements; total and repeatability.")
+    residuals: Json = Field(description="Measured minus modelled, row by row, at the input.")

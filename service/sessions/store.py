@@ -1,7 +1,7 @@
 """Sessions and their decisions."""
 
 from collections.abc import Collection
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, fields
 from datetime import datetime
 from typing import Any
 
@@ -20,7 +20,7 @@ from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow
-from service.sessions.wanted_store import KEYS, beyond, conditions, ordered
+from service.sessions.wanted_store import SESSIONS
 from service.stands.tables import StandRow
 from service.storage.audit import AuditRow
 from service.storage.queries import Queries, lists
@@ -73,34 +73,14 @@ class Sessions(Queries):
         own = select(SessionRow.id).join(UnitRow, UnitRow.id == SessionRow.unit_id).where(UnitRow.serial == unit)
         return self._session.scalar(own.where(SessionRow.state.in_(states)).limit(1)) is not None
 
-    def page(self, unit: str | None, offset: int, limit: int) -> tuple[StoredSession, ...]:
-        """Sessions, newest measurement first, of one unit or of all."""
-        query = session_rows().order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
-        if unit is not None:
-            query = query.where(UnitRow.serial == unit)
-        return tuple(session_record(*found) for found in self._session.execute(query.offset(offset).limit(limit)))
-
     def wanted(self, query: SessionQuery) -> tuple[StoredSession, ...]:
         """The wanted sessions in the wanted order; one more query where the list goes on from a session."""
-        place = self._place(query)
-        if place is None:
-            query = replace(query, after=None, before=None)
-        rows = (
-            session_rows().where(*conditions(query)).order_by(*ordered(query)).offset(query.offset).limit(query.limit)
-        )
-        if place is not None:
-            rows = rows.where(beyond(query, place))
-        found = tuple(session_record(*row) for row in self._session.execute(rows))
-        return found if query.before is None else found[::-1]
+        page = SESSIONS.page(self._session, session_rows(), query)
+        return page.forward(session_record(*row) for row in self._session.execute(page.cut(session_rows())))
 
-    def _place(self, query: SessionQuery) -> tuple[Any, ...] | None:
-        """Keys of the session that a list goes on from."""
-        named = query.after if query.before is None else query.before
-        if named is None:
-            return None
-        keys = select(*KEYS[query.order]).select_from(SessionRow).join(UnitRow, UnitRow.id == SessionRow.unit_id)
-        row = self._session.execute(keys.where(SessionRow.id == named)).one_or_none()
-        return None if row is None else tuple(row)
+    def block(self, id: str) -> str:
+        """What a session measured: the block's kind."""
+        return self._session.execute(select(SessionRow.block).where(SessionRow.id == id)).scalar_one()
 
     def reference(
         self,
@@ -127,14 +107,9 @@ class Sessions(Queries):
         own = {"unit_id": unit, "stand_id": stand, "block": block, **asdict(digests), "basis": NOT_JUDGED}
         self.insert_many(SessionRow, ({**values, **own},))
 
-    def set_stage(self, id: str, stage: str | None) -> None:
-        """Says of a session whether it shows the unit as found or as left."""
-        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(stage=stage))
-        self._session.expire_all()
-
-    def set_check(self, id: str, is_check: bool) -> None:
-        """Says of a session whether it is a check, which moves no date."""
-        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(is_check=is_check))
+    def mark(self, id: str, **said: bool | str | None) -> None:
+        """Writes what is said of a session."""
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(**said))
         self._session.expire_all()
 
     def of_unit(self, serial: str) -> tuple[StoredSession, ...]:

@@ -3,9 +3,10 @@
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, Index, String, false
+from sqlalchemy import JSON, ForeignKey, Index, String, false, or_
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import BYTES, IS_QUESTIONED, Sentence, only_where
 from service.storage.tables import Base
 
@@ -45,9 +46,14 @@ class SessionRow(Base):
     content_digest: Mapped[str | None] = mapped_column(String(64), index=True)
     readings_digest: Mapped[str | None] = mapped_column(String(64), index=True)
     basis: Mapped[str | None] = mapped_column(String(160), index=True)
-    tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    tells: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
     temperature: Mapped[float | None]
+    time_since_power_on: Mapped[float | None]
     is_check: Mapped[bool] = mapped_column(server_default=false())
+
+
+MOVES_DATES = or_(~SessionRow.is_check, SessionRow.is_reference)
+"""A check moves no date; one that is a reference counts, for all changes are counted from it."""
 
 
 class CalibrationRow(Base):
@@ -156,7 +162,7 @@ class RecordStateRow(Base):
     at: Mapped[datetime]
     why: Mapped[str] = mapped_column(Sentence)
     superseded_by: Mapped[str | None] = mapped_column(String(20))
-    remedies: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    remedies: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
 
 
 class ReferenceChoiceRow(Base):

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from estimator.health.common_motion import sigma_of, size_of
-from estimator.health.stands import Motion, StandShift, StandState, stand_states
+from estimator.health.stands import StandMotion, StandShift, StandState, stand_states
 from service.kit.measures import YEAR
 from service.stands.records import MotionOnStand, StandCondition, StandEvidence, StandSeating
 from service.stands.store import Stands
@@ -74,7 +74,7 @@ def _found(own: tuple[MotionOnStand, ...]) -> tuple[_Found, ...]:
     """
     kind, quantity, start = own[0].kind, own[0].quantity, own[0].at
     motions = [
-        Motion(
+        StandMotion(
             stand=motion.stand,
             unit=f"{motion.unit}/{motion.epoch}",
             time=(motion.at - start) / YEAR,

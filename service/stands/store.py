@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import Integer, Select, cast, delete, func, select
 
 from estimator.health.common_motion import SEPARATED
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
@@ -16,7 +17,7 @@ from service.stands.records import STILL, KnownStand, MotionOnStand, StandCertif
 from service.stands.tables import StandCertificateRow, StandConditionRow, StandRow, StandTallyRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
-from service.types.store import tells_of_stand
+from service.types.store import counts_for_stand
 from service.units.tables import UnitRow
 
 MOST = 4000
@@ -35,6 +36,10 @@ class Stands(Queries):
             .where(StandRow.name == stand, ConditionRow.last_at >= since)
         )
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
+
+    def hold(self, stand: str) -> None:
+        """Held until the transaction ends: what is derived of it is written by one after another."""
+        self._session.scalar(select(StandRow.id).where(StandRow.name == stand).with_for_update())
 
     def every(self) -> tuple[KnownStand, ...]:
         """How much each stand is used and its own health, by name, in one query."""
@@ -84,7 +89,7 @@ class Stands(Queries):
             )
             .where(
                 SessionRow.is_reference | CommonMotionRow.session_id.is_not(None),
-                tells_of_stand(StandRow.id.expression),
+                counts_for_stand(StandRow.id.expression),
             )
             .order_by(SessionRow.started_at.desc(), SessionRow.id, CommonMotionRow.kind, CommonMotionRow.quantity)
             .limit(MOST)
@@ -95,7 +100,7 @@ class Stands(Queries):
         return tuple(reversed(found))
 
 
-def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
+def _stands() -> Select[Json | None, str, int, int, datetime | None]:
     """The document of its own health, then the fields of `StandUse`."""
     last = select(func.max(SessionRow.started_at)).where(SessionRow.stand_id == StandRow.id, IS_ACCEPTED)
     counts = (func.coalesce(StandTallyRow.sessions, 0), func.coalesce(StandTallyRow.units, 0))
@@ -107,7 +112,7 @@ def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
     )
 
 
-def _known(document: dict[str, Any] | None, *use: Any) -> KnownStand:
+def _known(document: Json | None, *use: Any) -> KnownStand:
     return KnownStand(StandUse(*use), None if document is None else STORED.read(StandCondition, document))
 
 
@@ -144,7 +149,7 @@ class StandCertificates(Queries):
         for name, row in self._session.execute(query):
             own = found.setdefault(name, [])
             if row is not None:
-                own.append(_certificate(name, row))
+                own.append(certificate_record(name, row))
         return {name: _by_issue(own) for name, own in found.items()}
 
     def of_stand(self, stand: str) -> tuple[StandCertificate, ...]:
@@ -155,7 +160,7 @@ class StandCertificates(Queries):
             .where(StandRow.name == stand)
             .order_by(StandCertificateRow.id)
         )
-        return _by_issue([_certificate(stand, row) for row in self._session.scalars(query)])
+        return _by_issue([certificate_record(stand, row) for row in self._session.scalars(query)])
 
     def known(self, stand: str) -> tuple[StandCertificate, ...]:
         """The same of a stand that must be known."""
@@ -189,5 +194,6 @@ def _by_issue(recorded: Sequence[StandCertificate]) -> tuple[StandCertificate, .
     return tuple(sorted((recorded[place] for place in sorted(last.values())), key=lambda c: c.issued_on))
 
 
-def _certificate(stand: str, row: StandCertificateRow) -> StandCertificate:
+def certificate_record(stand: str, row: StandCertificateRow) -> StandCertificate:
+    """A stored certificate of a stand."""
     return StandCertificate(stand, row.number, row.issued_by, row.issued_on, row.valid_until)

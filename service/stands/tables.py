@@ -1,11 +1,11 @@
 """The tables of stands: what units show of them, their conditions and certificates."""
 
 from datetime import date, datetime
-from typing import Any
 
 from sqlalchemy import ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.tables import Base
 
 
@@ -42,7 +42,7 @@ class StandConditionRow(Base):
     stand_id: Mapped[int] = mapped_column(ForeignKey("stands.id"), primary_key=True, autoincrement=False)
     shifts: Mapped[int]
     """How many are known, those that were taken back too."""
-    document: Mapped[dict[str, Any]]
+    document: Mapped[Json]
     made_at: Mapped[datetime]
 
 

@@ -10,9 +10,10 @@ from estimator.session import ACCELEROMETER
 from service.kit.measures import COVERAGE, day_of, deviation_measure, in_words, measured, signed
 from service.stands.records import StandCertificate, StandCondition, StandEvidence, StandSeating
 
-STEADY = "Nothing that all units measured on it have in common."
-TOO_FEW = "Fewer than three units tell of it."
-JUDGED = "The units are judged without it."
+STEADY = "No change common to all units measured on it."
+TOO_FEW = "Measured with fewer than three units."
+PENDING = "The results of its units are still being computed."
+JUDGED = "The units are judged without this effect."
 
 
 def reason_of(
@@ -23,27 +24,27 @@ def reason_of(
         return joined(" ", (STEADY, *_seating(seating))) if evidence else TOO_FEW
     lasting = [shift for shift in shifts if shift.until is None]
     told = [_shift(shift) for shift in (*lasting, *(shift for shift in shifts if shift.until is not None))]
-    advice = "Check stand and fixture." if lasting else "It is back where it was: note what was done to it."
+    advice = "Check stand and fixture." if lasting else "The shift has ended: record what was done to the stand."
     return joined(" ", (*told, advice, JUDGED, *_seating(seating)))
 
 
 def _shift(shift: StandEvidence) -> str:
     """What it does, or did, on how many units it was seen, and when."""
-    seen = say("seen on {agreeing} of {units} units", agreeing=shift.agreeing, units=shift.units)
+    seen = say("found with {agreeing} of {units} units", agreeing=shift.agreeing, units=shift.units)
     when = say("since {since}", since=day_of(shift.since))
     if shift.until is not None:
-        when = say("from {since} until before {until}", since=day_of(shift.since), until=day_of(shift.until))
-    by = say("{shift}, {seen} {when}.", shift=size_of_shift(shift), seen=seen, when=when)
+        when = say("from {start} until before {end}", start=day_of(shift.since), end=day_of(shift.until))
+    by = say("{shift}, {agreement} {period}.", shift=size_of_shift(shift), agreement=seen, period=when)
     if shift.quantity == AXES:
         return (
-            say("It turns every block by {by}", by=by)
+            say("It turns every block by {size}", size=by)
             if shift.until is None
-            else say("It turned every block by {by}", by=by)
+            else say("It turned every block by {size}", size=by)
         )
     return (
-        say("It changes every scale factor by {by}", by=by)
+        say("It changes every scale factor by {size}", size=by)
         if shift.until is None
-        else say("It changed every scale factor by {by}", by=by)
+        else say("It changed every scale factor by {size}", size=by)
     )
 
 
@@ -56,26 +57,22 @@ def size_of_shift(shift: StandEvidence) -> str:
 def kind_of_shift(kind: str, quantity: str) -> str:
     """``Turn of every block``: what a stand does, by the sensors that show it."""
     what = "Turn of every block" if quantity == AXES else "Change of every scale factor"
-    return what if kind == ACCELEROMETER else say("{what}, by gyros", what=what)
+    return what if kind == ACCELEROMETER else say("{quantity}, by gyros", quantity=what)
 
 
 def scatter_of(own: StandSeating) -> str:
-    """``±0.4 arcsec about each axis``: from one mounting to the next, ± U."""
-    parameter, of = ("axis", "about each axis") if own.quantity == AXES else ("scale", "of all scale factors")
+    """``±0.4 arcsec per axis``, ± U."""
+    parameter, of = ("axis", "per axis") if own.quantity == AXES else ("scale", "of all scale factors")
     return say("±{size} {of}", size=in_words(own.kind, parameter, COVERAGE * own.tau), of=of)
 
 
 def _seating(seating: Sequence[StandSeating]) -> Sequence[str]:
     """How blocks are seated, ± U."""
-    return [
-        say("From one mounting to the next a block sits within {own}.", own=scatter_of(own))
-        for own in seating
-        if own.quantity == AXES
-    ][:1]
+    return [say("Mounting repeatability: {own}.", own=scatter_of(own)) for own in seating if own.quantity == AXES][:1]
 
 
-NONE = "No certificate on record: sessions on this stand state no traceability."
-NOT_YET = "Its certificate is issued on {issued}, which is still to come: until then sessions state no traceability."
+NONE = "No certificate recorded: sessions on this stand state no traceability."
+NOT_YET = "Its certificate is dated {issued}, in the future: until then sessions state no traceability."
 HOLDS = "Sessions on this stand are traceable until {until}."
 EXPIRED = "Its certificate expired on {until}: traceability of sessions after that day is interrupted."
 SOON = timedelta(days=30)
@@ -93,8 +90,8 @@ class StandWord:
     """What to do."""
 
 
-READY = StandWord("pass", "Ready to use", "Nothing that is on record speaks against it.")
-SOON_OVER = StandWord("conditional-pass", "Ready to use", "Its certificate ends soon: have the stand calibrated.")
+READY = StandWord("pass", "Ready to use", "No recorded objection.")
+SOON_OVER = StandWord("conditional-pass", "Ready to use", "Its certificate expires soon: have the stand calibrated.")
 NOT_STATED = StandWord("undecidable", "Usable, traceability not stated", "Record the certificate of the stand.")
 CHECK = StandWord("conditional-fail", "Check before use", "Check stand and fixture before a unit is mounted.")
 EXPIRED_TODAY = StandWord("fail", "Not traceable today", "Have the stand calibrated, or record its new certificate.")
@@ -125,9 +122,11 @@ def stand_word(
     return min(found, key=WORDS.index)
 
 
-def condition_in_words(condition: StandCondition | None) -> str:
-    """What the units measured on it show."""
-    return TOO_FEW if condition is None else condition.reason
+def condition_in_words(condition: StandCondition | None, *, is_pending: bool) -> str:
+    """What the units measured on it show; ``is_pending``: it is being worked out."""
+    if condition is None:
+        return PENDING if is_pending else TOO_FEW
+    return condition.reason
 
 
 def _certificate_word(latest: StandCertificate | None, today: date) -> StandWord:

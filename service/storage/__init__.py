@@ -1,4 +1,4 @@
-"""What is kept: the database (rows) and the files (uploaded bytes)."""
+"""Storage: the database (rows) and the files (uploaded bytes)."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from service.storage.files import Files
 
 @dataclass(frozen=True)
 class Storage:
-    """Both stores of the service, as flows that write need them."""
+    """Both stores of the service."""
 
     database: Database
     files: Files

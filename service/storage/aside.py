@@ -1,6 +1,5 @@
-"""Large tables of people's own layouts, set aside while it is said how they are read: under who sent them and their
-hash, for a while, and so many at most. Nothing of them is stored before that is confirmed.
-"""
+"""Large tables of custom layout, stored temporarily until their mapping is confirmed: under the hash of their owner and
+their content, for a limited time and in limited number."""
 
 import os
 from datetime import datetime, timedelta
@@ -13,19 +12,19 @@ from service.storage.files import Files, content_hash
 from service.storage.folders import make_folder, named_in, written_whole
 
 FOLDER = "aside"
-"""Beside the folders of the uploads, whose names are two hexadecimal digits."""
-KEPT = timedelta(hours=12)
-"""After it was last looked at: a mapping that is begun is ended on the same day."""
+"""Next to the folders of the uploads, whose names are two hexadecimal digits."""
+RETENTION = timedelta(hours=12)
+"""Since the last access: a mapping is finished on the same day."""
 MOST = 10
-"""Of one account: the oldest gives way to another."""
+"""Of one account: a new one replaces the oldest."""
 MOST_BYTES = 1024**3
-"""Of all together."""
+"""Of all accounts."""
 OWNER_DIGITS = 16
 """Of the hash of a login, which may hold any character."""
 
 
 def set_aside(files: Files, owner: str, content: Content, now: datetime) -> str:
-    """Keeps a table for an account, and returns the hash by which it is found again."""
+    """Stores a table for an account, and returns the hash under which it is found again."""
     digest = content_hash(content)
     target = _path(files, owner, digest)
     with disk_faults():
@@ -41,7 +40,7 @@ def set_aside(files: Files, owner: str, content: Content, now: datetime) -> str:
 
 
 def aside(files: Files, owner: str, digest: str, now: datetime) -> bytes | None:
-    """A table that was set aside for an account; None where its time is over, or it gave way to others."""
+    """A table of an account; None where it has expired or was replaced by others."""
     path = _path(files, owner, digest)
     if path not in _fresh(files, now):
         return None
@@ -57,13 +56,13 @@ def aside(files: Files, owner: str, digest: str, now: datetime) -> bytes | None:
 
 
 def drop_aside(files: Files, owner: str, digest: str) -> None:
-    """It is stored, or not wanted any more."""
+    """Removes a table that is stored or no longer wanted."""
     with disk_faults():
         _path(files, owner, digest).unlink(missing_ok=True)
 
 
 def drop_stale(files: Files, now: datetime) -> None:
-    """Removes what was kept for its time."""
+    """Removes expired tables."""
     fresh = _fresh(files, now)
     with disk_faults():
         for path in _all(files):
@@ -72,14 +71,14 @@ def drop_stale(files: Files, now: datetime) -> None:
 
 
 def _make_room(files: Files, owner: str, now: datetime) -> None:
-    """The newest stay: so many of the owner, and so many bytes of all."""
+    """Removes the oldest beyond the number of the owner and the bytes of all."""
     drop_stale(files, now)
-    own, size = 0, 0
+    count, size = 0, 0
     with disk_faults():
         for path in sorted(_all(files), key=_age, reverse=True):
-            own += path.name.startswith(_prefix(owner))
-            size += _seen(path)[1]
-            if size > MOST_BYTES or (own > MOST and path.name.startswith(_prefix(owner))):
+            count += path.name.startswith(_prefix(owner))
+            size += _access(path)[1]
+            if size > MOST_BYTES or (count > MOST and path.name.startswith(_prefix(owner))):
                 path.unlink(missing_ok=True)
 
 
@@ -88,20 +87,20 @@ def _all(files: Files) -> list[Path]:
 
 
 def _fresh(files: Files, now: datetime) -> set[Path]:
-    return {path for path in _all(files) if _age(path) > (now - KEPT).timestamp()}
+    return {path for path in _all(files) if _age(path) > (now - RETENTION).timestamp()}
 
 
 def _age(path: Path) -> float:
-    return _seen(path)[0]
+    return _access(path)[0]
 
 
-def _seen(path: Path) -> tuple[float, int]:
-    """When it was last looked at and how many bytes it has; nothing where another request has just removed it."""
+def _access(path: Path) -> tuple[float, int]:
+    """Time of the last access and size; zeros where another request has just removed it."""
     try:
-        found = path.stat()
+        status = path.stat()
     except FileNotFoundError:
         return 0.0, 0
-    return found.st_mtime, found.st_size
+    return status.st_mtime, status.st_size
 
 
 def _touch(path: Path, now: datetime) -> None:
@@ -113,5 +112,5 @@ def _prefix(owner: str) -> str:
 
 
 def _path(files: Files, owner: str, digest: str) -> Path:
-    """Made from hashes alone, whatever a form brings."""
+    """Made from hashes alone, whatever a form sends."""
     return named_in(files.folder / FOLDER, f"{_prefix(owner)}{sha256(digest.encode()).hexdigest()}")

@@ -1,4 +1,4 @@
-"""The audit trail: a chain of hashes, so that a line that is changed, left out or put in between shows.
+"""The audit trail: a chain of hashes, so that a changed, removed or inserted line is detected.
 
 h_i = SHA-256 of the JSON of [h_(i−1), at, who, account, action, subject, details], with h_0 of zeros. Lines are chained
 just before their transaction commits, one transaction after the other.
@@ -14,13 +14,14 @@ from typing import Any
 from sqlalchemy import String, select, text
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.kit.answer import answer
 from service.storage.queries import Queries, Store
 from service.storage.tables import Base
 
 
 class AuditRow(Base):
-    """Who did what when, each line with a hash of itself and of the one before; the database refuses to change it."""
+    """Who did what when, with a hash of the line and the previous one; the database refuses changes."""
 
     __tablename__ = "audit"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -29,16 +30,16 @@ class AuditRow(Base):
     account: Mapped[str] = mapped_column(String(260), server_default="")
     action: Mapped[str] = mapped_column(String(40))
     subject: Mapped[str]
-    details: Mapped[dict[str, Any]]
+    details: Mapped[Json]
     hash: Mapped[str] = mapped_column(String(64), server_default="")
 
 
 FIRST = "0" * 64
-"""Before the first line."""
+"""Hash before the first line."""
 LOCK = 0x696D_7568
 """Number of PostgreSQL's advisory lock under which lines are chained."""
 WRITTEN = "audit"
-"""Lines that wait for the end of their transaction, in the session's own notes."""
+"""Key of the transaction's unsealed lines in the session's ``info``."""
 
 
 @answer
@@ -58,7 +59,7 @@ class AuditLine:
     """What was done."""
     subject: str
     """To what: a session, a unit, a type, a stand, an account."""
-    details: dict[str, Any]
+    details: Json
     """What before, what after and why, as far as the action has them."""
     hash: str
     """SHA-256 of this line and of the one before it."""
@@ -84,44 +85,44 @@ class Audit(Queries):
         super().__init__(store)
         self._account = store.account
 
-    def write(self, at: datetime, who: str, action: str, subject: str, details: dict[str, Any]) -> None:
-        """Records who did what; never changed afterwards."""
+    def write(self, at: datetime, who: str, action: str, subject: str, details: Json) -> None:
+        """Records an action; never changed afterwards."""
         row = AuditRow(at=at.astimezone(UTC), who=who, action=action, subject=subject, details=details)
         row.account = self._account
         self._session.info.setdefault(WRITTEN, []).append(row)
 
     def seal(self) -> None:
-        """Chains the lines that this transaction wrote; the last thing that it does."""
-        written: list[AuditRow] = self._session.info.pop(WRITTEN, [])
-        if not written:
+        """Chains the lines of this transaction, as its last step."""
+        lines: list[AuditRow] = self._session.info.pop(WRITTEN, [])
+        if not lines:
             return
         self._session.flush()
         if self._session.get_bind().dialect.name == "postgresql":  # SQLite has one writer anyway
             self._session.execute(text("SELECT pg_advisory_xact_lock(:number)"), {"number": LOCK})
         last = self.last()
-        for row in written:
+        for row in lines:
             row.hash = last = _hash(last, row)
         names = ("at", "who", "account", "action", "subject", "details", "hash")
-        self.insert_many(AuditRow, [{name: getattr(row, name) for name in names} for row in written])
+        self.insert_many(AuditRow, [{name: getattr(row, name) for name in names} for row in lines])
 
-    def page(self, most: int, before: int | None = None, subject: str | None = None) -> tuple[AuditLine, ...]:
-        """Lines, the newest first: of one subject, and before a line where one is given."""
-        wanted = select(AuditRow).order_by(AuditRow.id.desc()).limit(most)
+    def page(self, limit: int, before: int | None = None, subject: str | None = None) -> tuple[AuditLine, ...]:
+        """Lines, the newest first: of one subject, and before a line where given."""
+        query = select(AuditRow).order_by(AuditRow.id.desc()).limit(limit)
         if before is not None:
-            wanted = wanted.where(AuditRow.id < before)
+            query = query.where(AuditRow.id < before)
         if subject is not None:
-            wanted = wanted.where(AuditRow.subject == subject)
-        return tuple(_line(row) for row in self._session.scalars(wanted))
+            query = query.where(AuditRow.subject == subject)
+        return tuple(_line(row) for row in self._session.scalars(query))
 
     def who_did(self, action: str, subject: str, times: Sequence[datetime]) -> dict[datetime, str]:
-        """Who did something to a subject, by when; times at which nobody did have no key."""
-        done = select(AuditRow.at, AuditRow.who).where(
+        """Who did something to a subject, by time; other times have no key."""
+        query = select(AuditRow.at, AuditRow.who).where(
             AuditRow.action == action, AuditRow.subject == subject, AuditRow.at.in_(times)
         )
-        return {at: who for at, who in self._session.execute(done)}  # noqa: C416 - rows are no pairs
+        return {at: who for at, who in self._session.execute(query)}  # noqa: C416 - rows are no pairs
 
     def check(self) -> AuditCheck:
-        """Works out the chain again, from the first line."""
+        """Checks the chain from the first line."""
         last, lines, broken = FIRST, 0, None
         for row in self._session.scalars(select(AuditRow).order_by(AuditRow.id).execution_options(yield_per=1000)):
             lines += 1
@@ -131,7 +132,7 @@ class Audit(Queries):
         return AuditCheck(lines, last, broken)
 
     def has(self, hash: str) -> bool:
-        """Whether a line of this hash is in the trail."""
+        """Whether the trail has a line of this hash."""
         return self._session.scalar(select(AuditRow.id).where(AuditRow.hash == hash).limit(1)) is not None
 
     def last(self) -> str:

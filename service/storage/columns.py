@@ -1,4 +1,4 @@
-"""Column types and indexes that mean the same on SQLite and PostgreSQL."""
+"""Column types and indexes with the same meaning on SQLite and PostgreSQL."""
 
 import json
 from datetime import UTC, datetime
@@ -11,16 +11,16 @@ from sqlalchemy.types import TypeDecorator
 from estimator.message import PLACE, Message, as_document, say, with_messages
 
 RESOLVED = "resolved"
-"""State of a flag that is closed."""
+"""State of a closed flag."""
 IS_OPEN, IS_WAITING, IS_QUESTIONED = "state <> 'resolved'", "state = 'waiting'", "state = 'questioned'"
 IS_AT_WORK = "ended_at IS NULL"
 IS_FAILED = "state = 'failed'"
-"""Rows of flags, of deliveries, of sessions, of jobs and of diagnoses that are looked for all the time: few of many, so
+"""Rows of flags, of deliveries, of sessions, of jobs and of diagnoses that are queried all the time: few of many, so
 each has an index of its own."""
 PARTS = "\x1f"
-"""Between the English of a stored message and its parts; no text that people write has it."""
+"""Separator between the English of a stored message and its parts; not in text written by people."""
 BYTES = BigInteger().with_variant(Integer(), "sqlite")
-"""Size of a file: of 2 GiB too. SQLite's integers have 64 bits anyway."""
+"""Size of a file, which may exceed 2 GiB. SQLite's integers have 64 bits anyway."""
 
 
 def only_where(condition: str) -> dict[str, Any]:
@@ -29,7 +29,7 @@ def only_where(condition: str) -> dict[str, Any]:
 
 
 class UtcDateTime(TypeDecorator[datetime]):
-    """An aware time, kept and given back in UTC on every engine."""
+    """An aware time, stored and returned in UTC on every engine."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
@@ -51,21 +51,21 @@ class UtcDateTime(TypeDecorator[datetime]):
 
 
 class Sentence(TypeDecorator[str]):
-    """A text that may be a message: its English, and behind a separator its parts as JSON; all others are kept as they
-    are. Whoever reads the database by other means finds the English first, and the views have nothing else."""
+    """A text that may be a message: its English, and after a separator its parts as JSON; any other text is stored
+    unchanged. Other readers of the database find the English first, and the views have nothing else."""
 
     impl = String
     cache_ok = True
 
     def process_bind_param(self, value: str | None, dialect: Dialect) -> str | None:
-        """A text that has the separator is kept as the only part of a message; nothing said is an empty text."""
+        """A text with the separator is stored as the only part of a message; an empty message is an empty text."""
         if not value or not (isinstance(value, Message) or PARTS in value):
             return None if value is None else str.__str__(value)
         message = value if isinstance(value, Message) else say("{text}", text=value)
         return message.replace(PARTS, " ") + PARTS + _line(as_document(message))
 
     def process_result_value(self, value: str | None, dialect: Dialect) -> str | None:
-        """The message with its parts; what an earlier release kept is a plain text."""
+        """The message with its parts; what an earlier release stored is a plain text."""
         _, has_parts, parts = (value or "").partition(PARTS)
         if not has_parts:
             return value
@@ -81,7 +81,7 @@ class LongSentence(Sentence):
 
 
 def is_made_of(sentence: ColumnElement[str] | InstrumentedAttribute[str], template: str) -> ColumnElement[bool]:
-    """Whether a stored sentence is one of a template, which an earlier release kept as a plain text."""
+    """Whether a stored sentence is of a template, which an earlier release stored as a plain text."""
     stored = type_coerce(sentence, String)
     as_message = PARTS + _line({"message": template}).removesuffix("}")
     return stored.contains(as_message, autoescape=True) | stored.startswith(PLACE.split(template)[0], autoescape=True)

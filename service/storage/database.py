@@ -1,6 +1,6 @@
 """The database: the only place that commits. One transaction a request.
 
-In which order locks are taken, and what is not done while one is held, says `service.kit.lock_order`.
+`service.kit.lock_order` defines the order of locks, and what is not done while one is held.
 """
 
 from collections.abc import Iterator
@@ -19,35 +19,36 @@ from service.storage.faults import database_faults
 from service.storage.queries import BeforeCommit, Store
 from service.storage.revisions import unfit
 from service.storage.schema import stored_revision
-from service.storage.waits import Turns, Waits
+from service.storage.waits import FairLock, Waits
 
 
 class Database:
-    """Hands out one transaction at a time."""
+    """Provides transactions."""
 
     def __init__(self, url: str, before_commit: BeforeCommit, waits: Waits | None = None) -> None:
         self.url, self._before_commit, self._account = url, before_commit, ""
         self.engine = open_engine(url, waits)
-        self._turns = Turns((waits or Waits()).lock) if self.engine.name == "sqlite" else None
+        self._turns = FairLock((waits or Waits()).lock) if self.engine.name == "sqlite" else None
         self._writing_engine = self.engine.execution_options(**{WRITES: True})
 
     def acting(self, account: str) -> "Database":
-        """The same database; what it writes into the audit trail names an account."""
-        own = copy(self)
-        own._account = account
-        return own
+        """The same database; its audit lines name an account."""
+        database = copy(self)
+        database._account = account
+        return database
 
     @contextmanager
     def reading(self) -> Iterator[Store]:
-        """To read; nothing of it is kept. On PostgreSQL each question sees what was committed before it."""
+        """A read transaction. On PostgreSQL each query sees what was committed before it."""
         with database_faults(), Session(self.engine, autoflush=False) as session:
             yield Store(session)
 
     @contextmanager
     def writing(self) -> Iterator[Store]:
-        """One transaction: committed when the block ends, undone when it raises.
+        """A write transaction: committed when the block ends, rolled back when it raises.
 
-        SQLite has one writer at a time, and forgets who waited longest: those of this process come in turn.
+        SQLite has one writer at a time, and does not queue waiting writers fairly: those of this process are queued
+        here.
         """
         turn = nullcontext() if self._turns is None else self._turns.taken()
         with database_faults(), writing(), turn, Session(self._writing_engine) as session:
@@ -58,21 +59,21 @@ class Database:
             session.commit()
 
     def require_ready(self) -> None:
-        """AwayError unless the database answers and its schema is the one this version needs."""
+        """AwayError unless the database answers and has the schema of this version."""
         with database_faults(), self.engine.connect() as connection:
-            found = stored_revision(connection)
-        fault = unfit(found)
+            revision = stored_revision(connection)
+        fault = unfit(revision)
         if fault is not None:
             raise AwayError(fault)
 
     def server_time(self) -> datetime | None:
-        """What the database's own clock says; None where it has none but this machine's."""
+        """The clock of the database server; None where it is on this machine."""
         if self.engine.name == "sqlite":
             return None
         with database_faults(), self.engine.connect() as connection:
-            found: datetime = connection.execute(select(func.clock_timestamp())).scalar_one()
-            return found
+            time: datetime = connection.execute(select(func.clock_timestamp())).scalar_one()
+            return time
 
     def close(self) -> None:
-        """Gives back every connection."""
+        """Closes every connection."""
         self.engine.dispose()

@@ -1,4 +1,4 @@
-"""Engines: SQLite with write-ahead log, foreign keys and patience; PostgreSQL through psycopg 3."""
+"""Engines: SQLite with write-ahead log, foreign keys and a lock timeout; PostgreSQL through psycopg 3."""
 
 import sqlite3
 from collections.abc import Callable
@@ -18,17 +18,17 @@ from service.storage.folders import make_folder
 from service.storage.json_text import json_text
 from service.storage.waits import Waits, connect_within
 
-LOOK_AGAIN = 0.02
-"""Seconds between two attempts at what SQLite refuses at once while another process does the same."""
-FAIR = 0.005
-"""Seconds between two attempts at SQLite's one place to write. Its own patience grows to a tenth of a second, so that
-one that waits long hardly ever comes in time; with equal steps every process has the same chance."""
+RETRY_SECONDS = 0.02
+"""Seconds between two attempts at an operation that SQLite refuses at once while another process does the same."""
+WRITE_RETRY_SECONDS = 0.005
+"""Seconds between two attempts at SQLite's write lock. Its own busy handler backs off to a tenth of a second, which
+starves a long waiter; with equal steps every process has the same chance."""
 WRITES = "imu_health_writes"
-"""Execution option of a connection that will write."""
+"""Execution option of a connection that writes."""
 
 
 def normal_url(url: str) -> URL:
-    """The URL with psycopg 3 as PostgreSQL's driver, whatever spelling an operator used; ServiceError for any other."""
+    """The URL with psycopg 3 as PostgreSQL's driver, in any accepted spelling; ServiceError for another database."""
     try:
         parsed = make_url(url)
     except (ArgumentError, ValueError) as fault:
@@ -41,19 +41,19 @@ def normal_url(url: str) -> URL:
 
 
 def shown_url(url: str) -> str:
-    """The URL as people may read it: without its password, and without options, which may hold another."""
+    """The URL for display: without its password, and without options, which may hold another."""
     return normal_url(url).set(query={}).render_as_string(hide_password=True)
 
 
 def _unknown(fault: str) -> ServiceError:
-    """The address itself may hold a password and is not repeated."""
+    """The URL itself may hold a password and is not repeated."""
     return ServiceError(f"{fault}: a database's address is sqlite:///path or postgresql://user:password@host/name.")
 
 
 def open_engine(url: str, waits: Waits | None = None) -> Engine:
-    """An engine for the database; the folder of an SQLite file is made when it is missing.
+    """An engine for the database; the folder of an SQLite file is created.
 
-    Its errors repeat statements without their values, so that no secret and no upload comes into a log with them.
+    Its errors show statements without their values, so that no secret and no upload reaches a log with them.
     """
     parsed, waits = normal_url(url), waits or Waits()
     if parsed.get_backend_name() != "sqlite":
@@ -75,16 +75,16 @@ def open_engine(url: str, waits: Waits | None = None) -> Engine:
 
 def _connecting(waits: Waits) -> Callable[..., psycopg.Connection[Any]]:
     def connect(
-        _: Dialect, __: ConnectionPoolEntry, given: list[Any], named: dict[str, Any]
+        _: Dialect, __: ConnectionPoolEntry, args: list[Any], kwargs: dict[str, Any]
     ) -> psycopg.Connection[Any]:
-        assert not given, "psycopg is given its arguments by name"
-        return connect_within(waits, named)
+        assert not args, "psycopg is given its arguments by name"
+        return connect_within(waits, kwargs)
 
     return connect
 
 
 def _preparing(waits: Waits) -> Callable[[DBAPIConnection, ConnectionPoolEntry], None]:
-    """Leaves transactions to `_beginning`, and makes a commit durable and a reader never block a writer."""
+    """Leaves transactions to `_beginning`; makes commits durable, and readers never block a writer."""
 
     def prepare(connection: DBAPIConnection, _: ConnectionPoolEntry) -> None:
         assert isinstance(connection, sqlite3.Connection)
@@ -98,14 +98,14 @@ def _preparing(waits: Waits) -> Callable[[DBAPIConnection, ConnectionPoolEntry],
 
 
 def _write_ahead(connection: sqlite3.Connection, end: float) -> None:
-    """Of several processes that open a new file at once SQLite refuses all but one the change of its journal."""
+    """When several processes open a new file at once, SQLite refuses the change of journal mode to all but one."""
     while True:
         try:
             connection.execute("PRAGMA journal_mode=WAL").close()
         except sqlite3.OperationalError as fault:
             if not _is_busy(fault) or monotonic() > end:
                 raise
-            sleep(LOOK_AGAIN)
+            sleep(RETRY_SECONDS)
         else:
             return
 
@@ -121,19 +121,19 @@ def _beginning(waits: Waits) -> Callable[[Connection], None]:
 
 
 def _begin_to_write(connection: Connection, waits: Waits) -> None:
-    """A writer takes the write lock at once, so that waiting for it never fails half-way."""
-    raw, end = connection.connection.driver_connection, monotonic() + waits.lock
-    assert isinstance(raw, sqlite3.Connection)
-    raw.execute("PRAGMA busy_timeout=0").close()
+    """Takes the write lock at once, so that waiting for it never fails half-way."""
+    driver_connection, end = connection.connection.driver_connection, monotonic() + waits.lock
+    assert isinstance(driver_connection, sqlite3.Connection)
+    driver_connection.execute("PRAGMA busy_timeout=0").close()
     try:
         while not _has_begun(connection, is_last=monotonic() > end):
-            sleep(FAIR)
+            sleep(WRITE_RETRY_SECONDS)
     finally:
-        raw.execute(f"PRAGMA busy_timeout={round(1000 * waits.lock)}").close()
+        driver_connection.execute(f"PRAGMA busy_timeout={round(1000 * waits.lock)}").close()
 
 
 def _has_begun(connection: Connection, *, is_last: bool) -> bool:
-    """Whether nobody else writes; the last attempt raises."""
+    """Whether the write lock was taken; the last attempt raises."""
     try:
         connection.exec_driver_sql("BEGIN IMMEDIATE")
     except OperationalError as fault:
@@ -147,12 +147,12 @@ def _is_busy(fault: object) -> bool:
     return isinstance(fault, sqlite3.OperationalError) and fault.sqlite_errorcode & PRIMARY == sqlite3.SQLITE_BUSY
 
 
-def _end_transaction(connection: DBAPIConnection | None, place: ConnectionPoolEntry) -> None:
-    """A commit that failed can leave its transaction open, with its locks: the next user of the connection must not
-    go on with it."""
+def _end_transaction(connection: DBAPIConnection | None, entry: ConnectionPoolEntry) -> None:
+    """A failed commit can leave its transaction open, with its locks: the next user of the connection must not go on
+    with it."""
     if connection is None:
         return
     try:
         connection.rollback()
     except (sqlite3.Error, psycopg.Error):
-        place.invalidate()
+        entry.invalidate()

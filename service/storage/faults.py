@@ -1,4 +1,4 @@
-"""Which errors of a database driver or a disk mean "away" and which mean "full"."""
+"""Errors of a database driver or a disk that mean "unavailable" or "full"."""
 
 import errno
 import sqlite3
@@ -14,13 +14,13 @@ from service.errors import AwayError, NoSpaceError, ServiceError
 FULL_SQLSTATES = frozenset({"53100"})
 """PostgreSQL: disk_full."""
 DAMAGED = frozenset({sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT})
-"""SQLite: what the file holds cannot be read as a database."""
-CLOSED = frozenset({sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM})
+"""SQLite: the file cannot be read as a database."""
+NOT_OPENED = frozenset({sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM})
 """SQLite: the file cannot be opened or written, and waiting does not help."""
 PRIMARY = 0xFF
-"""The bits of an SQLite error code that say what it is; the others say where."""
+"""Bits of an SQLite error code with its kind; the others are details."""
 FULL_ERRNOS = frozenset({errno.ENOSPC, errno.EDQUOT})
-"""The disk, or what the service may use of it, is full."""
+"""The disk, or the service's quota, is full."""
 NO_SPACE = "The disk is full: nothing was stored. Free some space and send it again."
 NO_DATABASE = "The database's file is damaged, or is not an SQLite database."
 NOT_WRITABLE = (
@@ -32,7 +32,7 @@ NO_FOLDER = (
     "the user of the service may write it; then send it again."
 )
 AWAY = "The database does not answer. Nothing was lost; try again in a few seconds."
-"""What is said to the one who asked: what holds, and what to do."""
+"""Messages to the user: the state, and what to do."""
 
 
 @contextmanager
@@ -47,7 +47,7 @@ def database_faults() -> Iterator[None]:
             raise NoSpaceError(NO_SPACE) from fault
         if _sqlite_code(fault) in DAMAGED:
             raise ServiceError(NO_DATABASE) from fault
-        if _sqlite_code(fault) in CLOSED:
+        if _sqlite_code(fault) in NOT_OPENED:
             raise AwayError(NOT_WRITABLE) from fault
         if fault.connection_invalidated or isinstance(fault, OperationalError | InterfaceError):
             raise AwayError(AWAY) from fault
@@ -71,6 +71,6 @@ def _is_full(fault: DBAPIError) -> bool:
 
 
 def _sqlite_code(fault: DBAPIError) -> int | None:
-    """What SQLite says went wrong; None of another database, or where it does not say."""
+    """SQLite's error code; None for another database, or an error without one."""
     code = getattr(fault.orig, "sqlite_errorcode", None)
     return None if code is None else code & PRIMARY

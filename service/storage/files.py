@@ -1,4 +1,4 @@
-"""Uploaded bytes, unchanged, under the name of their hash; safe on disk before the database knows of them."""
+"""Uploaded bytes, unchanged, named by their hash; durable before the database refers to them."""
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -15,7 +15,7 @@ from service.storage.folders import PART, make_folder, named_durably, named_in, 
 from service.storage.landing import IN_MEMORY, Landings, landings
 
 LOST = (NotFoundError, DamagedError)
-"""What reading a file may end in although it was stored."""
+"""Raised on reading a stored file that is missing or damaged."""
 
 
 def content_hash(content: Content) -> str:
@@ -24,13 +24,13 @@ def content_hash(content: Content) -> str:
 
 
 def file_hash(path: Path) -> str:
-    """The same of a file, of which only a piece is held."""
+    """The same of a file, without holding it in memory."""
     with path.open("rb") as file:
         return file_digest(file, "sha256").hexdigest()
 
 
-def ignore(_: str) -> None:
-    """Nobody counts."""
+def no_op(_: str) -> None:
+    """No-op."""
 
 
 @dataclass(frozen=True)
@@ -38,18 +38,18 @@ class Files:
     """A folder of uploads."""
 
     folder: Path
-    count: Callable[[str], None] = ignore
-    """Is told of every file that is "missing", "damaged" or "put back"."""
+    count: Callable[[str], None] = no_op
+    """Counts files that are "missing", "damaged" or "put back"."""
 
     def path(self, digest: str) -> Path:
-        """Where the bytes of a hash are kept; made from the hash alone, never from an uploaded name."""
+        """Path of the bytes of a hash; made from the hash alone, never from an uploaded name."""
         return named_in(self.folder / digest[:2], digest)
 
     def keep(self, content: Content) -> str:
-        """Stores the bytes so that they survive a power cut, and returns their hash.
+        """Stores the bytes durably, and returns their hash.
 
-        Kept again they stay as they are, or are put back if they were lost or damaged. The names are made durable in
-        any case: another upload may have put the file there and died before it could.
+        Stored again they stay as they are, or are restored if they were missing or damaged. The names are made durable
+        in any case: another upload may have put the file there and died before it could.
         """
         digest = content_hash(content)
         target = self.path(digest)
@@ -62,7 +62,7 @@ class Files:
         return digest
 
     def put_back(self, content: Content) -> None:
-        """Keeps bytes again that were stored before, and says so where they were lost or damaged."""
+        """Stores bytes that were stored before, and logs where they were missing or damaged."""
         digest = content_hash(content)
         is_whole = self._holds(self.path(digest), digest)
         self.keep(content)
@@ -71,23 +71,23 @@ class Files:
             self.count("put back")
 
     def read(self, digest: str) -> bytes:
-        """The bytes as they were uploaded; NotFoundError where they are gone, DamagedError where they were changed."""
+        """The bytes as they were uploaded; NotFoundError for a missing file, DamagedError for a changed one."""
         with self._found(digest):
             content = self.path(digest).read_bytes()
         self._check(content_hash(content), digest)
         return content
 
     def content(self, digest: str) -> bytes | Path:
-        """The same; of a long file the place where it lies, once its bytes were checked."""
+        """The same; for a long file its path, after its bytes were checked."""
         with self._found(digest):
             if self.path(digest).stat().st_size <= IN_MEMORY:
                 return self.read(digest)
-            found = file_hash(self.path(digest))
-        self._check(found, digest)
+            actual = file_hash(self.path(digest))
+        self._check(actual, digest)
         return self.path(digest)
 
     def arriving(self) -> AbstractContextManager[Landings]:
-        """A place for files that come in parts."""
+        """A place for files that arrive in parts."""
         return landings(self.folder)
 
     @contextmanager
@@ -95,16 +95,16 @@ class Files:
         try:
             yield
         except FileNotFoundError as missing:
-            self._tell("missing", digest)
+            self._report_fault("missing", digest)
             raise NotFoundError(
                 say(
-                    "The uploaded file {digest} is missing from {folder}. Uploading the same file puts it back.",
+                    "The uploaded file {digest} is missing from {folder}. Upload the same file to restore it.",
                     digest=digest,
                     folder=self.folder,
                 )
             ) from missing
         except OSError as fault:
-            self._tell("unreadable", digest)
+            self._report_fault("unreadable", digest)
             raise DamagedError(
                 say(
                     "The uploaded file {digest} cannot be read: {strerror}.",
@@ -113,19 +113,19 @@ class Files:
                 )
             ) from fault
 
-    def _check(self, found: str, digest: str) -> None:
-        if found != digest:
-            self._tell("damaged", digest)
+    def _check(self, actual: str, digest: str) -> None:
+        if actual != digest:
+            self._report_fault("damaged", digest)
             raise DamagedError(
                 say(
-                    "The stored file {digest} is not what was uploaded: its content was changed, so it is "
-                    "not given out. Uploading the same file, or the one in a backup, puts it back.",
+                    "The stored file {digest} is not what was uploaded: its content was changed, so it cannot be "
+                    "downloaded. Upload the same file, or the one in a backup, to restore it.",
                     digest=digest,
                 )
             )
 
     def sweep(self) -> int:
-        """Removes what dead processes left half written, and returns how many; whoever still writes holds a lock."""
+        """Removes half-written files of dead processes, and returns their number; a living writer holds a lock."""
         with disk_faults():
             return sweep(self.folder, f"*/{PART}*")
 
@@ -136,13 +136,13 @@ class Files:
         except OSError:
             return False
 
-    def _tell(self, fault: str, digest: str) -> None:
+    def _report_fault(self, fault: str, digest: str) -> None:
         log.error("stored file unusable", fault=fault, sha256=digest)
         self.count(fault)
 
 
 def _put(content: Content, target: Path) -> None:
-    """The bytes under their name; a file that landed is moved there."""
+    """The bytes under their name; a landed file is moved there."""
     if isinstance(content, Landed):
         named_durably(content.path, target)
         return

@@ -1,4 +1,4 @@
-"""Folders whose names survive a power cut, and the names that may stand in them."""
+"""Durable folders, and valid names of files in them."""
 
 import fcntl
 import os
@@ -21,12 +21,12 @@ NAME = re.compile(r"[0-9a-z][0-9a-z-]{0,99}")
 
 
 def is_name(name: object) -> bool:
-    """Whether a stored file may be called so."""
+    """Whether it is a valid name of a stored file."""
     return isinstance(name, str) and NAME.fullmatch(name) is not None
 
 
 def named_in(folder: Path, name: str) -> Path:
-    """Where a file of this name lies; every name that is stored becomes a path here, and nowhere else."""
+    """Path of a file of this name; every stored name becomes a path here, and nowhere else."""
     if not is_name(name):
         raise DamagedError(
             say("{name} is not the name of a stored file: the record that names it was changed.", name=repr(name[:100]))
@@ -36,15 +36,15 @@ def named_in(folder: Path, name: str) -> Path:
 
 def sync_folder(folder: Path) -> None:
     """Makes the names in a folder durable."""
-    handle = os.open(folder, os.O_RDONLY)
+    descriptor = os.open(folder, os.O_RDONLY)
     try:
-        os.fsync(handle)
+        os.fsync(descriptor)
     finally:
-        os.close(handle)
+        os.close(descriptor)
 
 
 def make_folder(folder: Path) -> None:
-    """Makes a folder and those above it that are missing, each durably."""
+    """Creates a folder and its missing parents, each durably."""
     if not folder.is_dir():
         make_folder(folder.parent)
         folder.mkdir(exist_ok=True)
@@ -52,16 +52,16 @@ def make_folder(folder: Path) -> None:
 
 
 PART = ".part-"
-"""Begins the name of a file that is still being written."""
-YOUNG = 60.0
-"""Seconds in which a file may be made but not yet held by the one who writes it; a thousandth would do."""
+"""Prefix of a file that is still being written."""
+LOCK_DELAY = 60.0
+"""Seconds between creating a file and locking it, at most; a thousandth would do."""
 
 
 @contextmanager
 def written_whole(target: Path) -> Iterator[IO[bytes]]:
-    """A file to write, synced and given its name when the block ends; gone when it raises.
+    """A file to write, synced and renamed when the block ends; removed when it raises.
 
-    It is held by a lock until then. The name itself is made durable by the caller.
+    Locked until then. The caller makes the new name durable.
     """
     with NamedTemporaryFile(dir=target.parent, prefix=PART, delete=False) as part:
         try:
@@ -76,22 +76,22 @@ def written_whole(target: Path) -> Iterator[IO[bytes]]:
 
 
 def named_durably(part: Path, target: Path) -> None:
-    """Syncs a file that was written whole and gives it its name. The name itself is made durable by the caller."""
+    """Syncs a complete file and renames it. The caller makes the new name durable."""
     with part.open("rb") as file:
         os.fsync(file.fileno())
     os.replace(part, target)
 
 
 def sweep(folder: Path, pattern: str = f"{PART}*") -> int:
-    """Removes what dead processes left half written in a folder, and returns how many files that were."""
+    """Removes half-written files of dead processes in a folder, and returns their number."""
     return sum(map(_remove_dead, folder.glob(pattern))) if folder.is_dir() else 0
 
 
 def _remove_dead(part: Path) -> bool:
-    """Whether it was nobody's any more, and is gone."""
+    """Whether its writer is dead and it was removed."""
     try:
         with part.open("rb") as file:
-            if time.time() - os.fstat(file.fileno()).st_mtime < YOUNG:
+            if time.time() - os.fstat(file.fileno()).st_mtime < LOCK_DELAY:
                 return False
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             part.unlink()
@@ -102,7 +102,7 @@ def _remove_dead(part: Path) -> bool:
 
 
 def require_writable(folder: Path) -> None:
-    """Makes the folder where it is missing; ServiceError that says what to do where nothing can be written there."""
+    """Creates a missing folder; ServiceError with advice where it cannot be written."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder):
@@ -120,14 +120,14 @@ def require_writable(folder: Path) -> None:
 
 @dataclass(frozen=True)
 class Space:
-    """Bytes that are free, and below which no upload is taken."""
+    """Free bytes, and the minimum for accepting an upload."""
 
     free: int
     least: int
 
     @property
     def too_little(self) -> str | None:
-        """Why no upload is taken; None while there is room."""
+        """Why no upload is accepted; None while there is room."""
         if self.free >= self.least:
             return None
         return say(
@@ -139,6 +139,6 @@ class Space:
 
 
 def space_at(folder: Path, least: int) -> Space:
-    """The room of a folder that may not be made yet."""
-    made = next(place for place in (folder, *folder.parents) if place.exists())
-    return Space(shutil.disk_usage(made).free, least)
+    """The space of a folder that may not exist yet."""
+    existing = next(place for place in (folder, *folder.parents) if place.exists())
+    return Space(shutil.disk_usage(existing).free, least)

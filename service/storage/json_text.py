@@ -1,4 +1,4 @@
-"""JSON as the database keeps it: the one place where what the estimator found becomes text."""
+"""JSON as stored in the database: the one place where results of the estimator become text."""
 
 import json
 from datetime import datetime
@@ -11,9 +11,9 @@ from estimator.message import say
 
 
 def json_text(document: Any, *, finite: bool = True) -> str:
-    """The document without spaces, a scalar of numpy as the plain bool, int or float that it is.
+    """The document without spaces, numpy scalars as plain bool, int or float.
 
-    ValueError where a number is not finite, which PostgreSQL does not take, unless ``finite`` is false.
+    ValueError for a number that is not finite, which PostgreSQL rejects, unless ``finite`` is false.
     """
     return json.dumps(document, separators=(",", ":"), allow_nan=not finite, default=_plain)
 

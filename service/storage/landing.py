@@ -1,4 +1,4 @@
-"""Bytes that come in parts: into memory while they are few, then into a file beside those that are kept."""
+"""Bytes that arrive in parts: in memory while they are few, then in a file next to the stored ones."""
 
 import fcntl
 import hashlib
@@ -14,17 +14,17 @@ from service.storage.faults import disk_faults
 from service.storage.folders import PART, make_folder
 
 IN_MEMORY = 256 * 1024
-"""Bytes that are held: a session of positions has a tenth, and a form may bring 200 files."""
+"""Bytes that are held in memory: a session of positions has a tenth, and a form may bring 200 files."""
 AT_ONCE = 1024 * 1024
 """Bytes that are written at a time."""
 START = 64
-"""Bytes: more than any format's beginning, blank lines before the metadata of a CSV included."""
+"""Bytes: more than the signature of any format, blank lines before the metadata of a CSV included."""
 ARRIVING = "arriving"
-"""Folder of what comes, on the disk of what is kept, so that a file is kept by giving it another name."""
+"""Folder of arriving files, on the disk of the stored ones, so that a file is stored by renaming it."""
 
 
 class Landing:
-    """One file that comes."""
+    """One arriving file."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -32,22 +32,22 @@ class Landing:
         self._waiting, self._hash = bytearray(), hashlib.sha256()
         self.size = 0
         self.start = b""
-        """The first bytes, by which a format is told."""
+        """The first bytes, from which the format is recognised."""
 
     @property
     def is_due(self) -> bool:
-        """Whether so much waits that it is to be written now."""
+        """Whether enough is buffered to be written now."""
         return len(self._waiting) >= (IN_MEMORY if self._file is None else AT_ONCE)
 
     def take(self, data: bytes) -> None:
-        """More of it; nothing is written yet."""
+        """Buffers more of it; nothing is written yet."""
         self._waiting += data
         self.size += len(data)
         if len(self.start) < START:
             self.start = bytes(self._waiting[:START])
 
     def write(self) -> None:
-        """Puts what waits into the file."""
+        """Writes the buffer to the file."""
         with disk_faults():
             if self._file is None:
                 make_folder(self._folder)
@@ -59,7 +59,7 @@ class Landing:
             self._file.flush()
 
     def landed(self) -> Content:
-        """All of it, once the last part was taken: bytes, or a file that is whole but not yet durable."""
+        """All of it, after the last part: bytes, or a complete file that is not yet durable."""
         if self._file is None:
             return bytes(self._waiting)
         if self._waiting:
@@ -67,10 +67,10 @@ class Landing:
         return Landed(Path(self._file.name), self._hash.hexdigest(), self.size)
 
     def close(self) -> None:
-        """Removes the file, unless it was kept and has another name by now.
+        """Removes the file, unless it was stored and has another name by now.
 
-        Where the disk is full what waits to be written fails once more, and a name that stays is swept later: neither
-        is the answer.
+        On a full disk the rest of the buffer fails once more, and a file that stays is swept later: neither concerns
+        the answer.
         """
         if self._file is None:
             return
@@ -84,7 +84,7 @@ class Landing:
 
 @contextmanager
 def landings(folder: Path) -> Iterator["Landings"]:
-    """A place where files land; what was not kept is gone at the end."""
+    """A place for arriving files; what was not stored is removed at the end."""
     place = Landings(folder / ARRIVING)
     try:
         yield place
@@ -105,6 +105,6 @@ class Landings:
         return self._all[-1]
 
     def close(self) -> None:
-        """Removes what was not kept."""
+        """Removes what was not stored."""
         for landing in self._all:
             landing.close()

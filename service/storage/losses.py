@@ -1,4 +1,4 @@
-"""What going back to an earlier schema would take away: it is done, counted, and undone."""
+"""What a downgrade to an earlier schema would delete: it is done, counted, and rolled back."""
 
 from dataclasses import dataclass
 
@@ -10,13 +10,13 @@ from service.storage.schema import alone, take_back
 
 @dataclass(frozen=True)
 class Loss:
-    """Of one table."""
+    """Loss of one table."""
 
     table: str
     rows: int
-    """That would be gone."""
+    """Deleted rows."""
     values: tuple[tuple[str, int], ...] = ()
-    """Columns that would be gone, each with the number of rows that hold something in it."""
+    """Deleted columns, each with the number of rows that have a value in it."""
 
 
 def losses(url: str, revision: str) -> tuple[Loss, ...]:
@@ -24,28 +24,28 @@ def losses(url: str, revision: str) -> tuple[Loss, ...]:
     with alone(url) as connection:
         before = {table.name: table for table in tables_of(connection)}
         rows = {name: _rows(connection, table) for name, table in before.items()}
-        held = {name: _held(connection, table) for name, table in before.items()}
+        filled = {name: _filled(connection, table) for name, table in before.items()}
         take_back(connection, revision)
         after = {table.name: table for table in tables_of(connection)}
-        left = {name: _rows(connection, table) for name, table in after.items()}
+        remaining = {name: _rows(connection, table) for name, table in after.items()}
         connection.rollback()
-    found = (_loss(name, rows[name] - left.get(name, 0), held[name], after.get(name)) for name in before)
-    return tuple(loss for loss in found if loss.rows or loss.values)
+    lost = (_loss(name, rows[name] - remaining.get(name, 0), filled[name], after.get(name)) for name in before)
+    return tuple(loss for loss in lost if loss.rows or loss.values)
 
 
-def _loss(name: str, rows: int, held: dict[str, int], after: Table | None) -> Loss:
+def _loss(name: str, rows: int, filled: dict[str, int], after: Table | None) -> Loss:
     if after is None:
         return Loss(name, rows)
-    gone = ((column, number) for column, number in held.items() if column not in after.columns and number)
-    return Loss(name, rows, tuple(gone))
+    columns = ((column, number) for column, number in filled.items() if column not in after.columns and number)
+    return Loss(name, rows, tuple(columns))
 
 
 def _rows(connection: Connection, table: Table) -> int:
     return connection.scalar(select(func.count()).select_from(table)) or 0
 
 
-def _held(connection: Connection, table: Table) -> dict[str, int]:
-    """For every column the number of rows that hold something in it."""
+def _filled(connection: Connection, table: Table) -> dict[str, int]:
+    """For every column the number of rows with a value."""
     columns = list(table.columns)
     counts = connection.execute(select(*(func.count(column) for column in columns))).one()
     return {column.name: number for column, number in zip(columns, counts, strict=True)}

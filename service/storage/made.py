@@ -1,4 +1,4 @@
-"""Files that jobs made, beside the uploads, each under the number of its job, until its time is over."""
+"""Files made by jobs, next to the uploads, each under the number of its job, until they expire."""
 
 from pathlib import Path
 
@@ -9,11 +9,11 @@ from service.storage.files import Files, content_hash
 from service.storage.folders import make_folder, named_in, sync_folder, written_whole
 
 FOLDER = "made"
-"""Beside the folders of the uploads, whose names are two hexadecimal digits."""
+"""Next to the folders of the uploads, whose names are two hexadecimal digits."""
 
 
 def put_made(files: Files, id: int, content: bytes) -> str:
-    """Keeps what a job made, so that it survives a power cut, and returns its hash."""
+    """Stores the file of a job durably, and returns its hash."""
     target = _path(files, id)
     with disk_faults():
         make_folder(target.parent)
@@ -24,13 +24,13 @@ def put_made(files: Files, id: int, content: bytes) -> str:
 
 
 def read_made(files: Files, id: int, digest: str) -> bytes:
-    """What a job made; NotFoundError where it is gone or was changed."""
+    """The file of a job; NotFoundError where it is missing or was changed."""
     try:
         content = _path(files, id).read_bytes()
     except OSError:
         content = b""
     if content_hash(content) != digest:
-        raise NotFoundError(say("The file of job {id} is gone. Ask for it again.", id=id))
+        raise NotFoundError(say("The file of job {id} was deleted. Request it again.", id=id))
     return content
 
 

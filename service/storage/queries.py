@@ -1,4 +1,4 @@
-"""What all queries share."""
+"""Common base of all queries."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -11,21 +11,21 @@ from service.storage.tables import Base
 
 
 class Store:
-    """One transaction. Every subject has its queries, made of a store: ``Units(store).find(serial)``."""
+    """One transaction. Every subject has its queries, made from a store: ``Units(store).find(serial)``."""
 
     def __init__(self, session: Session, account: str = "") -> None:
         self.session, self.account = session, account
 
 
 BeforeCommit = Callable[[Store], None]
-"""What a transaction that writes does last."""
+"""Last step of a write transaction."""
 
 TOUCHED = "tallied"
-"""Units whose counts are to be brought in line, in the session's own notes."""
+"""Key of the units whose counts must be updated, in the session's ``info``."""
 
 
 def lists(*names: str) -> Subquery:
-    """A row for each of some lists, so that short ones are read in one statement: each is joined to its row, and a
+    """A row for each of several lists, so that short ones are read in one statement: each is joined to its row, and a
     result row holds one entry of one list."""
     return union_all(*(select(literal(name).label("list")) for name in names)).subquery("lists")
 
@@ -37,36 +37,36 @@ class Queries:
         self._store, self._session = store, store.session
 
     def remember_unit(self, serial: str, key: int) -> None:
-        """Spares the transaction another question for a unit's key, which never changes."""
+        """Caches the key of a unit, which never changes, for this transaction."""
         self._session.info["unit", serial] = key
 
     def remembered_unit(self, serial: str) -> int | None:
-        """The key of a unit that this transaction has met."""
+        """The cached key of a unit."""
         return self._session.info.get(("unit", serial))
 
     def insert_all_once(self, table: type[Base], rows: Sequence[Mapping[str, Any]]) -> None:
-        """Inserts rows in one statement, but those that are there already."""
+        """Inserts rows that do not exist yet, in one statement."""
         if rows:
             self._session.execute(self._upsert(table).on_conflict_do_nothing(), list(rows))
 
     def touch(self, *units: int) -> None:
-        """Notes that these units may count otherwise in the fleet by the end of the transaction."""
+        """Marks units whose counts in the fleet may change in this transaction."""
         self._session.info.setdefault(TOUCHED, set()).update(units)
 
     def insert_many(self, table: type[Base], rows: Sequence[Mapping[str, Any]]) -> None:
         """Inserts rows in one statement, without an object for each."""
         if rows:
             self._session.flush()
-            own = table.__table__
-            assert isinstance(own, Table)
-            self._session.execute(insert(own), list(rows))
+            target = table.__table__
+            assert isinstance(target, Table)
+            self._session.execute(insert(target), list(rows))
 
     def insert_once(self, table: type[Base], **values: Any) -> bool:
-        """Inserts a row unless a unique constraint says it is there; waits for a rival that is inserting the same."""
+        """Inserts a row unless a unique constraint finds it; waits for a concurrent insert of the same."""
         inserted = self._upsert(table).values(**values).on_conflict_do_nothing()
         return self._session.scalar(inserted.returning(literal_column("1", Integer))) is not None
 
     def _upsert(self, table: type[Base]) -> postgresql.Insert | sqlite.Insert:
-        """An insertion that says what becomes of rows that are there."""
-        own = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
-        return own(table)
+        """An insertion that can handle existing rows."""
+        dialect_insert = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
+        return dialect_insert(table)

@@ -1,23 +1,23 @@
-"""What is wrong with the revision that a database is at, and what to do about it."""
+"""Whether the revision of a database fits this version, and what to do where it does not."""
 
 from estimator.message import say
 from service.storage.schema import head_revision, is_known
 
 
-def unfit(found: str | None) -> str | None:
+def unfit(revision: str | None) -> str | None:
     """Why this version cannot work with a revision; None for the one that it needs."""
     needed = head_revision()
-    if found == needed:
+    if revision == needed:
         return None
-    if found is not None and not is_known(found):
+    if revision is not None and not is_known(revision):
         return say(
-            "The database's schema is at {found}, which a newer version of the program made; this "
-            "one goes up to {needed}: run the newer version.",
-            found=found,
-            needed=needed,
+            "The database's schema is at {revision}, which a newer version of the program made; this "
+            "one goes up to {needed_revision}: run the newer version.",
+            revision=revision,
+            needed_revision=needed,
         )
     return say(
-        "The database's schema is at {found}, this version needs {needed}: run `imu-health db upgrade`.",
-        found=found or "nothing",
-        needed=needed,
+        "The database's schema is at {revision}, this version needs {needed_revision}: run `imu-health db upgrade`.",
+        revision=revision or "nothing",
+        needed_revision=needed,
     )

@@ -17,7 +17,7 @@ from service.storage.faults import database_faults
 from service.storage.waits import PATIENT
 
 MIGRATION_LOCK = 0x696D_7568
-"""The key of PostgreSQL's advisory lock: the letters "imuh", so that no other program takes it by chance."""
+"""Key of PostgreSQL's advisory lock: the letters "imuh", so that no other program takes it by chance."""
 
 
 def migrations(connection: Connection | None = None) -> Config:
@@ -30,9 +30,9 @@ def migrations(connection: Connection | None = None) -> Config:
 
 @contextmanager
 def alone(url: str) -> Iterator[Connection]:
-    """One transaction in which nobody else changes the schema: others wait until it ends.
+    """A transaction with exclusive access to the schema: others wait until it ends.
 
-    SQLite has one writer at a time anyway, and its transaction takes that place at once.
+    SQLite has one writer at a time anyway, and its transaction takes the write lock at once.
     """
     engine = open_engine(url, PATIENT)
     try:
@@ -45,36 +45,36 @@ def alone(url: str) -> Iterator[Connection]:
 
 
 def upgrade(url: str, revision: str = "head") -> None:
-    """Brings the schema up to a revision; a database that is there already is left alone."""
+    """Upgrades the schema to a revision; no-op where the database is there already."""
     with alone(url) as connection:
         raise_to(connection, revision)
 
 
 def downgrade(url: str, revision: str) -> None:
-    """Takes the schema back to a revision; what later ones added is gone."""
+    """Downgrades the schema to a revision; what later ones added is deleted."""
     with alone(url) as connection:
         take_back(connection, revision)
 
 
 def raise_to(connection: Connection, revision: str) -> None:
-    """The same within a transaction of the caller's."""
+    """The same within a transaction of the caller."""
     with _known_revisions(connection, revision):
         command.upgrade(migrations(connection), revision)
 
 
 def take_back(connection: Connection, revision: str) -> None:
-    """The same within a transaction of the caller's."""
+    """The same within a transaction of the caller."""
     with _known_revisions(connection, revision):
         command.downgrade(migrations(connection), revision)
 
 
 @contextmanager
 def _known_revisions(connection: Connection, wanted: str) -> Iterator[None]:
-    """Says what Alembic only hints at: the database is of a newer version, or there is no such revision."""
-    found = stored_revision(connection)
-    if found is not None and not is_known(found):
+    """Clear errors where the database is of a newer version, or the revision does not exist."""
+    current = stored_revision(connection)
+    if current is not None and not is_known(current):
         raise ServiceError(
-            f"The database's schema is at {found}, which this version does not know: a newer version made it. "
+            f"The database's schema is at {current}, which this version does not know: a newer version made it. "
             f"Nothing was changed. Start that version; this one goes up to {head_revision()}."
         )
     try:
@@ -90,10 +90,10 @@ def head_revision() -> str | None:
 
 
 def is_known(revision: str) -> bool:
-    """Whether this version has the migration that leads to a revision."""
+    """Whether this version has the migration to a revision."""
     return any(script.revision == revision for script in ScriptDirectory.from_config(migrations()).walk_revisions())
 
 
 def stored_revision(connection: Connection) -> str | None:
-    """The revision that the database is at; None for an empty one."""
+    """The revision of the database; None for an empty one."""
     return MigrationContext.configure(connection).get_current_revision()

@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, LargeBinary, MetaData
 from sqlalchemy.orm import DeclarativeBase
 
+from estimator.json_object import Json
 from service.storage.columns import UtcDateTime
 
 
@@ -22,7 +23,7 @@ class Base(DeclarativeBase):
     )
     type_annotation_map = {  # noqa: RUF012 - SQLAlchemy reads it from the class
         datetime: UtcDateTime(),
-        dict[str, Any]: JSON(),
+        Json: JSON(),
         list[Any]: JSON(),
         bytes: LargeBinary(),
     }

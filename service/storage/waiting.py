@@ -1,4 +1,4 @@
-"""Long files that were received whole and are still to be read, beside the uploads, each under a name of its own."""
+"""Long files that were received completely and wait to be read, next to the uploads, each under a name of its own."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -6,23 +6,20 @@ from datetime import datetime, timedelta
 from pathlib import Path
 
 from service.errors import DamagedError
-from service.kit.arriving_files import Content, Landed, Sent
+from service.kit.arriving_files import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.files import Files, file_hash
 from service.storage.folders import is_name, make_folder, named_durably, named_in, sync_folder, written_whole
 
 FOLDER = "waiting"
-"""Beside the folders of the uploads, whose names are two hexadecimal digits."""
-UNASKED = timedelta(hours=1)
-"""That a file may wait before its job is on record: a commit takes a moment."""
-GONE = (
-    "The file that was sent is gone from the disk of the service, or was changed there. Nothing was stored: upload it "
-    "again."
-)
+"""Next to the folders of the uploads, whose names are two hexadecimal digits."""
+JOB_DELAY = timedelta(hours=1)
+"""How long a file may exist before its job is stored: a commit takes a moment."""
+MISSING = "The received file was deleted or changed on the disk of the service. Nothing was stored: upload it again."
 
 
 def put_waiting(files: Files, place: str, content: Content) -> None:
-    """Keeps what was received, so that it survives a power cut."""
+    """Stores a received file durably."""
     target = _path(files, place)
     with disk_faults():
         make_folder(target.parent)
@@ -34,33 +31,33 @@ def put_waiting(files: Files, place: str, content: Content) -> None:
         sync_folder(target.parent)
 
 
-def waiting_file(files: Files, sent: Sent) -> Landed:
-    """The bytes as they were sent; DamagedError where they are gone."""
-    return Landed(whole_file(files, sent.sha256, (sent.place,)), sent.sha256, sent.size)
+def waiting_file(files: Files, place: str, digest: str, size: int) -> Landed:
+    """The bytes as they were sent; DamagedError where they are missing."""
+    return Landed(whole_file(files, digest, (place,)), digest, size)
 
 
 def whole_file(files: Files, digest: str, places: Sequence[str]) -> Path:
-    """Where bytes of this hash lie: in one of the places, or kept already, as by a try that was killed then."""
+    """Path of the bytes of a hash: in one of the places, or stored already, as by an attempt that was killed then."""
     for path in (*(_path(files, place) for place in places), files.path(digest)):
         with suppress(OSError):
             if file_hash(path) == digest:
                 return path
-    raise DamagedError(GONE)
+    raise DamagedError(MISSING)
 
 
-def drop_waiting(files: Files, sent: Sent) -> None:
-    """Removes what is left of it; nothing of ours lies under another kind of name."""
-    if not is_name(sent.place):
+def drop_waiting(files: Files, place: str) -> None:
+    """Removes what is left of it; an invalid name is none of ours."""
+    if not is_name(place):
         return
     with disk_faults():
-        _path(files, sent.place).unlink(missing_ok=True)
+        _path(files, place).unlink(missing_ok=True)
 
 
-def drop_unasked(files: Files, known: frozenset[str], now: datetime) -> None:
-    """Removes what no job waits for: its service died before it could be asked for, or after it had ended."""
+def drop_orphaned(files: Files, known: frozenset[str], now: datetime) -> None:
+    """Removes files without a job: its service died before the job was stored, or after it had ended."""
     with disk_faults():
         for path in (files.folder / FOLDER).glob("*"):
-            if path.name not in known and path.stat().st_mtime < (now - UNASKED).timestamp():
+            if path.name not in known and path.stat().st_mtime < (now - JOB_DELAY).timestamp():
                 path.unlink(missing_ok=True)
 
 

@@ -45,11 +45,13 @@ class UnitType:
     """Counts up with every change of tolerances; decisions name theirs."""
     maximum_interval_days: float = 365.0
     """Longest time from a session to the next calibration."""
+    flag_share: float = 0.3
+    """Part of the tolerance from which on a change within it has a flag; a smaller one is a remark."""
 
 
 @dataclass(frozen=True)
 class ToleranceRevision:
-    """Tolerances of a type as they held from a time on."""
+    """Tolerances of a type from a time on."""
 
     revision: int
     since: datetime
@@ -68,7 +70,7 @@ class TypeUse:
 
 @dataclass(frozen=True)
 class WantedTolerances:
-    """What somebody thinks of setting."""
+    """Tolerances that somebody tries."""
 
     tolerances: Tolerances
     gyro_tolerances: Tolerances | None
@@ -76,7 +78,7 @@ class WantedTolerances:
 
 @dataclass(frozen=True)
 class LatestSession:
-    """The session that a unit's verdict is of."""
+    """The session of a unit's verdict."""
 
     unit: str
     key: int

@@ -1,7 +1,7 @@
-"""The tolerances that hold until an engineer sets others, and the unit type that a first session is given.
+"""Default tolerances until an engineer sets others, and the unit type of a first session.
 
-Accelerometers: what a navigation-grade unit keeps between calibrations. Gyros: what a calibration by the Earth's
-rotation can decide; it cannot see their quadratic term, which is therefore not judged. A parameter that the first
+Accelerometers: the stability of a navigation-grade unit between calibrations. Gyros: what a calibration by the Earth's
+rotation can decide; it cannot observe their quadratic term, which is therefore not judged. A parameter that the first
 session of a type does not observe on any sensor is not judged either, until an engineer gives it a tolerance.
 """
 
@@ -29,7 +29,7 @@ DEFAULTS = {ACCELEROMETER: ACCELEROMETER_DEFAULTS, GYROSCOPE: GYROSCOPE_DEFAULTS
 
 
 def type_of(new: Checked, calibration: Calibration) -> UnitType:
-    """The unit type of a first session: what it says of itself, with the default tolerances."""
+    """The unit type of a first session, from its metadata and the default tolerances."""
     session = new.session
     kinds = {sensor.kind for sensor in session.sensors}
     return UnitType(
@@ -45,25 +45,25 @@ def type_of(new: Checked, calibration: Calibration) -> UnitType:
 
 
 def tolerances_of(unit_type: UnitType) -> dict[tuple[str, str], float]:
-    """T by kind of sensor and parameter; defaults for a kind that the type says nothing of.
+    """T by kind of sensor and parameter; defaults for a kind without tolerances in the type.
 
     A gyro's misalignment is a part of its axis' direction and has the tolerance of the axis.
     """
     stated = {**DEFAULTS, unit_type.block: unit_type.tolerances}
     if unit_type.gyro_tolerances is not None:
         stated[GYROSCOPE] = unit_type.gyro_tolerances
-    by_name = {(kind, name): getattr(given, name) for kind, given in stated.items() for name in PARAMETERS}
+    by_name = {(kind, name): getattr(tolerances, name) for kind, tolerances in stated.items() for name in PARAMETERS}
     by_name[GYROSCOPE, "misalignment"] = by_name[GYROSCOPE, "axis"]
     return {key: tolerance for key, tolerance in by_name.items() if tolerance is not None}
 
 
 def _observed(kind: str, calibration: Calibration) -> Tolerances:
-    """The defaults of a kind without those parameters that no sensor of it shows."""
+    """The defaults of a kind without the parameters that no sensor shows."""
     sensors = [sensor for sensor in calibration.sensors if sensor.kind == kind]
     unseen = {name: None for name in PARAMETERS if _is_unseen([sensor.observable.get(name) for sensor in sensors])}
     return replace(DEFAULTS[kind], **unseen)
 
 
 def _is_unseen(observable: list[bool | None]) -> bool:
-    """Whether a session that speaks of a parameter shows it on no sensor."""
+    """Whether a parameter of the session is observable on no sensor."""
     return any(seen is not None for seen in observable) and not any(observable)

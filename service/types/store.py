@@ -20,7 +20,7 @@ from service.types.tables import ToleranceRow, UnitTypeRow
 from service.units.tables import UnitRow
 
 TypeThroughTime = tuple[tuple[datetime, UnitType], ...]
-"""A type with every revision of its tolerances, and since when each holds; oldest first."""
+"""A type with every revision of its tolerances and its start; oldest first."""
 
 
 class UnitTypes(Queries):
@@ -37,35 +37,36 @@ class UnitTypes(Queries):
             nominal_scales=list(unit_type.nominal_scales),
             revision=unit_type.revision,
             maximum_interval_days=unit_type.maximum_interval_days,
+            flag_share=unit_type.flag_share,
         )
         if added:
             self._add_tolerances(self._row(unit_type.name), unit_type.tolerances, unit_type.gyro_tolerances, now)
 
     def get(self, name: str) -> UnitType:
-        """The type with the tolerances that hold now."""
-        found = self.find(name)
-        if found is None:
+        """The type with its current tolerances."""
+        unit_type = self.find(name)
+        if unit_type is None:
             raise _missing(name)
-        return found
+        return unit_type
 
     def find(self, name: str) -> UnitType | None:
-        """The same, where there is one of that name."""
-        found = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
-        return None if found is None else unit_type_of(*found)
+        """The same; None where there is none of that name."""
+        row = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
+        return None if row is None else unit_type_of(*row)
 
     def of_unit(self, serial: str) -> UnitType:
-        """The type of a unit with the tolerances that hold now."""
-        found = self._session.execute(
+        """The type of a unit with its current tolerances."""
+        row = self._session.execute(
             _with_tolerances().join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == serial)
         ).one_or_none()
-        if found is None:
+        if row is None:
             raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
-        return unit_type_of(*found)
+        return unit_type_of(*row)
 
     def of_unit_through_time(self, serial: str) -> TypeThroughTime:
         """The type of a unit with every revision of its tolerances, oldest first."""
-        found = self._session.execute(_THROUGH_TIME, {"serial": serial})
-        return tuple((tolerances.since, unit_type_of(row, tolerances)) for row, tolerances in found)
+        rows = self._session.execute(_THROUGH_TIME, {"serial": serial})
+        return tuple((tolerances.since, unit_type_of(row, tolerances)) for row, tolerances in rows)
 
     def page(self, offset: int, limit: int) -> tuple[UnitType, ...]:
         """Types by name."""
@@ -95,7 +96,7 @@ class UnitTypes(Queries):
         return {of_type: _use(counts) for of_type, counts in found.items()}
 
     def kinds(self, name: str) -> dict[str, str]:
-        """The kind of every sensor, as the latest calibration of a unit of the type says."""
+        """The kind of every sensor in the latest calibration of a unit of the type."""
         latest = (
             select(SessionRow.id)
             .join(UnitRow, UnitRow.id == SessionRow.unit_id)
@@ -104,20 +105,22 @@ class UnitTypes(Queries):
             .order_by(SessionRow.started_at.desc(), SessionRow.id)
             .limit(1)
         )
-        said = select(ParameterRow.sensor, ParameterRow.kind).where(ParameterRow.session_id == latest.scalar_subquery())
-        return {sensor: kind for sensor, kind in self._session.execute(said.distinct())}  # noqa: C416 - rows are no pairs
+        query = select(ParameterRow.sensor, ParameterRow.kind).where(
+            ParameterRow.session_id == latest.scalar_subquery()
+        )
+        return {sensor: kind for sensor, kind in self._session.execute(query.distinct())}  # noqa: C416 - rows are no pairs
 
     def hold(self, name: str) -> UnitType:
-        """The type, held until the transaction ends: its revisions are made one after another."""
+        """The type, locked until the transaction ends: its revisions are made one after another."""
         row = self._session.scalar(select(UnitTypeRow).where(UnitTypeRow.name == name).with_for_update())
         if row is None:
             raise _missing(name)
         return self._record(row)
 
-    def set_interval(self, name: str, days: float) -> UnitType:
-        """Another longest time from a session to the next calibration."""
+    def set_watch(self, name: str, *, days: float, share: float) -> UnitType:
+        """Another longest interval, and another part of the tolerance from which on a change has a flag."""
         row = self._row(name)
-        row.maximum_interval_days = days
+        row.maximum_interval_days, row.flag_share = days, share
         self._session.flush()
         return self._record(row)
 
@@ -162,12 +165,12 @@ _THROUGH_TIME = (
 
 
 def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
-    """The type with the tolerances that held at a time; with its first ones before that."""
+    """The type with the tolerances in force at a time; with its first ones before that."""
     return ([of for since, of in known if since <= at] or [known[0][1]])[-1]
 
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
-    """Types, each with the revision of its tolerances that holds."""
+    """Types, each with its current revision of tolerances."""
     return select(UnitTypeRow, ToleranceRow).join(
         ToleranceRow,
         (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
@@ -201,18 +204,19 @@ def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
         gyro_tolerances=gyro,
         revision=tolerances.revision,
         maximum_interval_days=row.maximum_interval_days,
+        flag_share=row.flag_share,
     )
 
 
-def tells_of_type(unit_type: int) -> ColumnElement[bool]:
-    """Of units of a type."""
+def counts_for_type(unit_type: int) -> ColumnElement[bool]:
+    """Units that count for the statistics of a type: measured ones, or simulated ones where there is no other."""
     other = aliased(UnitRow)
     measured = select(other.id).where(other.unit_type_id == unit_type, other.simulated.is_(False)).exists()
     return or_(UnitRow.simulated.is_(False), ~measured)
 
 
-def tells_of_stand(stand: ColumnElement[int] | int) -> ColumnElement[bool]:
-    """Of sessions on a stand."""
+def counts_for_stand(stand: ColumnElement[int] | int) -> ColumnElement[bool]:
+    """Sessions that count for the statistics of a stand: measured ones, or simulated ones where there is no other."""
     other = aliased(SessionRow)
     measured = select(other.id).where(other.stand_id == stand, other.simulated.is_(False)).exists()
     return or_(SessionRow.simulated.is_(False), ~measured)

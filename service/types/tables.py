@@ -6,11 +6,12 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.tables import Base
 
 
 class UnitTypeRow(Base):
-    """A kind of unit; its tolerances are in `ToleranceRow`, the largest revision holds."""
+    """A kind of unit; its tolerances are in `ToleranceRow`, where the largest revision is in force."""
 
     __tablename__ = "unit_types"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -21,6 +22,7 @@ class UnitTypeRow(Base):
     nominal_scales: Mapped[list[Any]]
     revision: Mapped[int]
     maximum_interval_days: Mapped[float]
+    flag_share: Mapped[float]
 
 
 class ToleranceRow(Base):
@@ -30,5 +32,5 @@ class ToleranceRow(Base):
     unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), primary_key=True)
     revision: Mapped[int] = mapped_column(primary_key=True)
     since: Mapped[datetime]
-    tolerances: Mapped[dict[str, Any]]
-    gyro_tolerances: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    tolerances: Mapped[Json]
+    gyro_tolerances: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))

@@ -1,1 +1,1 @@
-"""Units by serial number: what was done to them, remarks and files, the states of their records."""
+"""Units by serial number: services, notes, attachments, and the states of their records."""

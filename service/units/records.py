@@ -1,4 +1,4 @@
-"""What was done to a unit and what people said of it."""
+"""Services, notes and attachments of a unit."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -7,7 +7,7 @@ from service.kit.answer import answer
 from service.sessions.states import RecordState, StateChange
 
 SERVICES = ("adjustment", "repair", "sensor-swap", "reference", "service")
-"""What can be done to a unit: each is a break, after which the next session is the new reference."""
+"""Services of a unit: each is a break, after which the next session is the new reference."""
 
 
 @answer
@@ -43,7 +43,7 @@ class NewService:
     note: str = ""
     who: str = ""
     sensor: str = ""
-    """That it concerns; empty for the whole unit."""
+    """The sensor concerned; empty for the whole unit."""
 
 
 @answer
@@ -116,7 +116,7 @@ class Attachment(NewAttachment):
 
 
 @dataclass(frozen=True)
-class Said:
+class UnitEvents:
     """Withdrawn ones too."""
 
     notes: tuple[Note, ...]
@@ -124,7 +124,7 @@ class Said:
     services: tuple[Service, ...]
     """Of the unit."""
     changes: tuple[StateChange, ...]
-    """What became of these services, in the order in which it did."""
+    """Changes of state of these services, in order."""
 
     @property
     def withdrawals(self) -> tuple[StateChange, ...]:
@@ -133,7 +133,7 @@ class Said:
         return tuple({change.record: change for change in self.changes if change.record in withdrawn}.values())
 
 
-NOTHING_SAID = Said((), (), (), ())
+NO_EVENTS = UnitEvents((), (), (), ())
 
 
 @answer
@@ -147,5 +147,5 @@ class Customer:
     """Where they can be reached."""
 
 
-NOBODY = Customer()
-"""Of a unit for which no customer is stated."""
+NO_CUSTOMER = Customer()
+"""Of a unit without a customer."""

@@ -10,7 +10,7 @@ from service.sessions.states import RecordKind
 from service.sessions.states_store import state_change
 from service.sessions.tables import RecordStateRow
 from service.storage.queries import Queries, lists
-from service.units.records import Attachment, NewAttachment, Note, Said, Withdrawal
+from service.units.records import Attachment, NewAttachment, Note, UnitEvents, Withdrawal
 from service.units.store import service_record
 from service.units.tables import AttachmentRow, AttachmentWithdrawalRow, NoteRow, ServiceRow, UnitRow, WithdrawalRow
 
@@ -31,20 +31,20 @@ class Notes(Queries):
 
     def get(self, id: int) -> Note:
         """One note."""
-        found = self._session.execute(_notes().where(NoteRow.id == id)).one_or_none()
-        if found is None:
+        row = self._session.execute(_notes().where(NoteRow.id == id)).one_or_none()
+        if row is None:
             raise NotFoundError(say("There is no note {id}.", id=id))
-        return note_record(*found)
+        return note_record(*row)
 
     def of_unit(self, serial: str) -> tuple[Note, ...]:
         """All notes of a unit, withdrawn ones too, oldest first."""
-        found = self._session.execute(_notes().where(UnitRow.serial == serial).order_by(NoteRow.at, NoteRow.id))
-        return tuple(note_record(*row) for row in found)
+        rows = self._session.execute(_notes().where(UnitRow.serial == serial).order_by(NoteRow.at, NoteRow.id))
+        return tuple(note_record(*row) for row in rows)
 
     def of_session(self, id: str) -> tuple[Note, ...]:
         """All notes on a session, withdrawn ones too, in the order in which they were written."""
-        found = self._session.execute(_notes().where(NoteRow.session_id == id).order_by(NoteRow.id))
-        return tuple(note_record(*row) for row in found)
+        rows = self._session.execute(_notes().where(NoteRow.session_id == id).order_by(NoteRow.id))
+        return tuple(note_record(*row) for row in rows)
 
 
 def _notes() -> Select[NoteRow, str, WithdrawalRow]:
@@ -55,7 +55,7 @@ def _notes() -> Select[NoteRow, str, WithdrawalRow]:
     )
 
 
-def note_record(row: NoteRow, serial: str, withdrawn: WithdrawalRow | None) -> Note:
+def note_record(row: NoteRow, serial: str, withdrawal: WithdrawalRow | None) -> Note:
     """A stored note."""
     return Note(
         id=row.id,
@@ -65,7 +65,7 @@ def note_record(row: NoteRow, serial: str, withdrawn: WithdrawalRow | None) -> N
         who=row.who,
         recorded_at=row.recorded_at,
         session=row.session_id,
-        withdrawal=None if withdrawn is None else Withdrawal(withdrawn.at, withdrawn.who, withdrawn.why),
+        withdrawal=None if withdrawal is None else Withdrawal(withdrawal.at, withdrawal.who, withdrawal.why),
     )
 
 
@@ -82,15 +82,15 @@ class Attachments(Queries):
 
     def withdraw(self, id: int, withdrawn: Withdrawal) -> bool:
         """Stores that a file is no longer given out, and returns whether that is new; the first reason stays."""
-        own = {"at": withdrawn.at, "who": withdrawn.who, "why": withdrawn.why}
-        return self.insert_once(AttachmentWithdrawalRow, attachment_id=id, **own)
+        values = {"at": withdrawn.at, "who": withdrawn.who, "why": withdrawn.why}
+        return self.insert_once(AttachmentWithdrawalRow, attachment_id=id, **values)
 
     def get(self, id: int) -> Attachment:
         """One attached file."""
-        found = self._session.execute(_attachments().where(AttachmentRow.id == id)).one_or_none()
-        if found is None:
+        row = self._session.execute(_attachments().where(AttachmentRow.id == id)).one_or_none()
+        if row is None:
             raise NotFoundError(say("There is no attachment {id}.", id=id))
-        return attachment_record(*found)
+        return attachment_record(*row)
 
     def of_unit(self, serial: str) -> tuple[Attachment, ...]:
         """All of a unit and of its sessions, withdrawn ones too, oldest first."""
@@ -112,7 +112,7 @@ def _attachments() -> Select[AttachmentRow, str, AttachmentWithdrawalRow]:
     )
 
 
-def attachment_record(row: AttachmentRow, serial: str, gone: AttachmentWithdrawalRow | None) -> Attachment:
+def attachment_record(row: AttachmentRow, serial: str, withdrawal: AttachmentWithdrawalRow | None) -> Attachment:
     """A stored attachment."""
     return Attachment(
         id=row.id,
@@ -124,22 +124,22 @@ def attachment_record(row: AttachmentRow, serial: str, gone: AttachmentWithdrawa
         text=row.text,
         who=row.who,
         at=row.at,
-        withdrawal=None if gone is None else Withdrawal(gone.at, gone.who, gone.why),
+        withdrawal=None if withdrawal is None else Withdrawal(withdrawal.at, withdrawal.who, withdrawal.why),
     )
 
 
 class SaidOf(Queries):
     """Remarks, attached files and services, withdrawn ones too."""
 
-    def unit(self, serial: str) -> Said:
+    def unit(self, serial: str) -> UnitEvents:
         """Of a unit as a whole, and files of its sessions; oldest first."""
         return self._said(serial, UnitRow.id == NoteRow.unit_id, UnitRow.id == AttachmentRow.unit_id)
 
-    def session(self, unit: str, id: str) -> Said:
+    def session(self, unit: str, id: str) -> UnitEvents:
         """Of one session of a unit; in the order in which it was said."""
         return self._said(unit, NoteRow.session_id == id, AttachmentRow.session_id == id)
 
-    def _said(self, serial: str, of_note: ColumnElement[bool], of_file: ColumnElement[bool]) -> Said:
+    def _said(self, serial: str, of_note: ColumnElement[bool], of_file: ColumnElement[bool]) -> UnitEvents:
         of, own = lists("notes", "files", "services", "changes"), ServiceRow.unit_id == UnitRow.id
         services = select(cast(ServiceRow.id, String)).where(own).correlate(UnitRow)
         changed = (RecordStateRow.kind == RecordKind.SERVICE) & RecordStateRow.record.in_(services)
@@ -156,7 +156,7 @@ class SaidOf(Queries):
             .order_by(NoteRow.at, NoteRow.id, AttachmentRow.id, ServiceRow.at, ServiceRow.id, RecordStateRow.id)
         )
         rows = self._session.execute(query).all()
-        return Said(
+        return UnitEvents(
             notes=tuple(note_record(note, serial, gone) for note, gone, *_ in rows if note is not None),
             files=tuple(attachment_record(file, serial, gone) for *_, file, gone, _, _ in rows if file is not None),
             services=tuple(service_record(service, serial) for *_, service, _ in rows if service is not None),

@@ -32,25 +32,25 @@ class Units(Queries):
 
     def set_simulated(self, serial: str, simulated: bool) -> None:
         """Records what a unit's sessions are from now on."""
-        own = update(UnitRow).where(UnitRow.serial == serial, UnitRow.simulated.is_not(simulated))
-        self._session.execute(own.values(simulated=simulated))
+        statement = update(UnitRow).where(UnitRow.serial == serial, UnitRow.simulated.is_not(simulated))
+        self._session.execute(statement.values(simulated=simulated))
         self._session.info.pop(("simulated", serial), None)
 
     def set_lot(self, serial: str, lot: str | None) -> str | None:
         """Records a unit's production lot, and returns the one before."""
         unit = self._session.scalars(select(UnitRow).where(UnitRow.serial == serial)).one()
-        was, unit.lot = unit.lot, lot
+        previous, unit.lot = unit.lot, lot
         self._session.flush()
-        return was
+        return previous
 
     def customer(self, serial: str) -> Customer:
         """For whom a unit is calibrated."""
-        found = self._session.execute(
+        row = self._session.execute(
             select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
         ).one_or_none()
-        if found is None:
+        if row is None:
             raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
-        return Customer(*found)
+        return Customer(*row)
 
     def set_customer(self, serial: str, new: Customer) -> None:
         """Records for whom a unit is calibrated."""
@@ -69,9 +69,9 @@ class Units(Queries):
 
     def accepted(self, *, simulated: bool) -> tuple[tuple[str, str], ...]:
         """Serial number and type of every unit, measured or simulated, with a session that counts."""
-        counts = exists().where(SessionRow.unit_id == UnitRow.id, IS_ACCEPTED)
+        has_session = exists().where(SessionRow.unit_id == UnitRow.id, IS_ACCEPTED)
         query = select(UnitRow.serial, UnitTypeRow.name).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-        rows = self._session.execute(query.where(counts, UnitRow.simulated.is_(simulated)).order_by(UnitRow.id))
+        rows = self._session.execute(query.where(has_session, UnitRow.simulated.is_(simulated)).order_by(UnitRow.id))
         return tuple((serial, kind) for serial, kind in rows)
 
     def add_once(self, serial: str, unit_type: str, simulated: bool) -> None:
@@ -82,15 +82,15 @@ class Units(Queries):
     def held(self, serial: str) -> int | None:
         """The key of a unit that is there, with the unit held until the transaction ends: its sessions are judged one
         after another."""
-        notes = self._session.info
-        if ("held", serial) not in notes:
+        info = self._session.info
+        if ("held", serial) not in info:
             query = select(UnitRow.id, UnitRow.simulated).where(UnitRow.serial == serial).with_for_update()
-            found = self._session.execute(query).one_or_none()
-            if found is None:
+            row = self._session.execute(query).one_or_none()
+            if row is None:
                 return None
-            notes["held", serial], notes["simulated", serial] = found
-            self.remember_unit(serial, found[0])
-        key: int = notes["held", serial]
+            info["held", serial], info["simulated", serial] = row
+            self.remember_unit(serial, row[0])
+        key: int = info["held", serial]
         return key
 
     def hold(self, serial: str) -> int:
@@ -120,11 +120,11 @@ class Units(Queries):
         if name is None:
             return None
         query = select(StandRow.id).where(StandRow.name == name)
-        known = self._session.scalar(query)
-        if known is None:
+        key = self._session.scalar(query)
+        if key is None:
             self.insert_once(StandRow, name=name)
-            known = self._session.scalar(query)
-        return known
+            key = self._session.scalar(query)
+        return key
 
 
 class Services(Queries):
@@ -145,10 +145,10 @@ class Services(Queries):
 
     def get(self, number: int) -> Service:
         """One recorded break."""
-        found = self._session.execute(_services().where(ServiceRow.id == number)).one_or_none()
-        if found is None:
+        row = self._session.execute(_services().where(ServiceRow.id == number)).one_or_none()
+        if row is None:
             raise NotFoundError(say("There is no service {number}.", number=number))
-        return service_record(*found)
+        return service_record(*row)
 
     def put_state(self, number: int, state: RecordState) -> None:
         """Whether it counts as a break."""

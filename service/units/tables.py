@@ -1,4 +1,4 @@
-"""The tables of units, services, notes and attachments; what people said is append-only."""
+"""The tables of units, services, notes and attachments; notes and attachments are append-only."""
 
 from datetime import datetime
 
@@ -49,7 +49,7 @@ class NoteRow(Base):
     who: Mapped[str]
     recorded_at: Mapped[datetime]
     session_id: Mapped[str | None] = mapped_column(String(20), index=True)
-    """Of a remark on a session; without a constraint, for on SQLite that would make the table anew."""
+    """Of a note on a session; without a foreign key, which on SQLite would require rebuilding the table."""
 
 
 class WithdrawalRow(Base):
@@ -63,7 +63,7 @@ class WithdrawalRow(Base):
 
 
 class AttachmentRow(Base):
-    """A file that somebody attached; its bytes lie under their hash, as uploads do."""
+    """An attached file; its bytes are stored under their hash, like uploads."""
 
     __tablename__ = "attachments"
     id: Mapped[int] = mapped_column(primary_key=True)

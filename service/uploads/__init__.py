@@ -1,1 +1,1 @@
-"""Bytes to verdict: uploads, large files, own layouts, templates."""
+"""Bytes to verdict: uploads, large files, custom layouts, templates."""

@@ -1,21 +1,22 @@
-"""Uploads over HTTP: what came in, previews of layouts, templates, large files acknowledged early.
+"""Uploads over HTTP: list of uploads, previews of layouts, templates, large files processed later.
 
-Whoever does not ask, and whoever sends a small file or one that is there already, gets the answer that they always got.
+Without a preference, and for a small file or one that is stored already, the answer is the usual one.
 """
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field, TypeAdapter
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.jobs.records import Job, JobKind, under_way
 from service.jobs.store import Jobs
-from service.kit.arriving_files import SentFile, held
+from service.kit.arriving_files import held
 from service.kit.limits import in_force
 from service.kit.person import Person
 from service.languages.language import asked
@@ -26,6 +27,7 @@ from service.planning.question import PlanQuestion
 from service.records.reception import Reception
 from service.sessions.records import StoredSession
 from service.sessions.schemas import SaidSession, said_session
+from service.sessions.sent import SentFile
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 from service.uploads.preview import felt_length, first_rows, preview
@@ -58,15 +60,15 @@ class UploadSchema(BaseModel):
 
 
 def job_upload_schema(job: Job, session: StoredSession | None, refusal: Refusal | None) -> UploadSchema:
-    """An upload that a job works on, with what it became where that is known."""
-    own = f"/api/v1/jobs/{job.id}"
+    """An upload with a job, and its result where known."""
+    address = f"/api/v1/jobs/{job.id}"
     if session is not None or refusal is not None:
-        came = Arrival(job.asked_at, session, refusal)
-        return upload_schema(came).model_copy(update={"job": own})
+        arrival = Arrival(job.asked_at, session, refusal)
+        return upload_schema(arrival).model_copy(update={"job": address})
     assert job.sent is not None
     return UploadSchema(
         id=under_way(job.id), at=job.asked_at, filename=job.subject, sha256=job.sent.sha256, size=job.sent.size,
-        stored=False, session=None, problems=[], job=own,
+        stored=False, session=None, problems=[], job=address,
     )  # fmt: skip
 
 
@@ -82,7 +84,7 @@ class UploadPage(BaseModel):
 
 
 def upload_schema(arrival: Arrival) -> UploadSchema:
-    """An upload as the API tells of it."""
+    """An upload as an answer of the API."""
     file: Refusal | StoredSession | None = arrival.refusal or arrival.session
     assert file is not None, "an arrival is one of the two"
     problems = () if arrival.refusal is None else arrival.refusal.problems
@@ -116,14 +118,14 @@ def list_uploads(
     """Every file that came in, newest first, and what became of it; those that a job still works on apart."""
     refusal = refusal_number(after or "")
     session = after if refusal is None else None
-    wanted = ArrivalQuery(text, refused, after_session=session, after_refusal=refusal, limit=limit + 1)
+    query = ArrivalQuery(text, refused, after_session=session, after_refusal=refusal, limit=limit + 1)
     jobs = () if after or refused else Jobs(store).open_uploads(text)
-    found = Arrivals(store).page(wanted)  # after the jobs: a file that ends meanwhile is in both, not in neither
-    shown = found[:limit]
+    arrivals = Arrivals(store).page(query)  # after the jobs: a file that ends meanwhile is in both, not in neither
+    shown = arrivals[:limit]
     return UploadPage(
         under_way=[job_upload_schema(job, None, None) for job in jobs],
         uploads=[upload_schema(one) for one in shown],
-        next_after=shown[-1].name if len(found) > limit else None,
+        next_after=shown[-1].name if len(arrivals) > limit else None,
     )
 
 
@@ -156,7 +158,7 @@ JSON = TypeAdapter(JobAnswer)
 
 @dataclass(frozen=True)
 class Later:
-    """How one request wants to be answered."""
+    """Preference of a request for an early answer."""
 
     is_asked_for: bool
     longer_than: int
@@ -164,24 +166,24 @@ class Later:
     person: Person
 
     def is_for(self, file: SentFile, reception: Reception) -> bool:
-        """Whether this file is worked on later."""
+        """Whether this file is processed later."""
         return self.is_asked_for and is_long(reception.storage, file, self.longer_than)
 
     def accepted(self, file: SentFile, reception: Reception) -> JSONResponse:
-        """The job, with its address; what becomes of the upload is told there too."""
+        """The job, with its address, where the result of the upload is shown too."""
         job = self.desk.take_in(reception, file, self.person)
         headers = {"Location": f"/api/v1/jobs/{job.id}", "Preference-Applied": ASYNC}
         return JSONResponse(JSON.dump_python(job_answer(job), mode="json"), ACCEPTED, headers)
 
 
 def _later(request: Request, desk: JobDeskOf, person: PersonOf) -> Later:
-    asked = ",".join(request.headers.getlist(PREFER)).lower().split(",")
-    is_asked = any(one.split(";")[0].strip() == ASYNC for one in asked)
-    return Later(is_asked, in_force().later, desk, person)
+    preferences = ",".join(request.headers.getlist(PREFER)).lower().split(",")
+    is_preferred = any(one.split(";")[0].strip() == ASYNC for one in preferences)
+    return Later(is_preferred, in_force().later, desk, person)
 
 
 LaterOf = Annotated[Later, Depends(_later)]
-"""Whether the sender wants a large file to be worked on later, and how it is then answered."""
+"""Whether the sender wants a large file to be processed later, and the answer in that case."""
 
 
 class LayoutColumn(BaseModel):
@@ -197,7 +199,7 @@ class LayoutColumn(BaseModel):
 class PreviewSchema(BaseModel):
     """A table under a mapping; correct the mapping and send it again, or with the file to `POST /sessions`."""
 
-    mapping: dict[str, Any] = Field(description="imu-mapping/1, complete as it is to be sent.")
+    mapping: Json = Field(description="imu-mapping/1, complete as it is to be sent.")
     remembered: bool = Field(description="Whether it is that of an earlier file with the same headings.")
     fingerprint: str = Field(description="SHA-256 of the headings.")
     rows: int = Field(description="Of the file.")
@@ -220,18 +222,18 @@ UnitType = Annotated[Text, Query(description="The last session of this stored ty
 @layouts_router.post("/preview", responses=errors(400, 413, 422), openapi_extra=REQUEST_BODY)
 def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type: UnitType = "") -> PreviewSchema:
     """How a table of one's own layout is understood, or with `mapping` would be read. Nothing is stored."""
-    found = preview(
+    result = preview(
         storage, held(file.content), file.filename, mapping=file.mapping, unit=unit.strip(), unit_type=unit_type.strip()
     )
-    seen, session = found.seen, found.session
+    look, session = result.seen, result.session
     return PreviewSchema(
-        mapping=found.mapping,
-        remembered=found.remembered,
-        fingerprint=found.fingerprint,
-        rows=seen["rows"],
-        sheets=list(seen["sheets"]),
-        columns=[LayoutColumn.model_validate(column) for column in seen["columns"]],
-        problems=faults(found.problems),
+        mapping=result.mapping,
+        remembered=result.remembered,
+        fingerprint=result.fingerprint,
+        rows=look["rows"],
+        sheets=list(look["sheets"]),
+        columns=[LayoutColumn.model_validate(column) for column in look["columns"]],
+        problems=faults(result.problems),
         first_rows=[] if session is None else first_rows(session),
         felt=None if session is None else felt_length(session),
     )
@@ -260,9 +262,9 @@ def read_template(
     """A workbook to fill in and upload as it is: sensors, stand and schedule are there, with units and choices. In the
     language of `?lang=`, or of Accept-Language."""
     block = PlanQuestion.model_validate({"kind": kind, "sensors": sensors})
-    like = pattern(storage, unit.strip(), unit_type.strip(), block)
+    source = pattern(storage, unit.strip(), unit_type.strip(), block)
     name = unit.strip() or unit_type.strip() or f"{sensors}-{kind}s"
     language = asked(request.scope)
-    made = as_file(session_template(like, now, language), XLSX, f"session-{name}.xlsx")
-    made.headers["Content-Language"] = language.value
-    return made
+    response = as_file(session_template(source, now, language), XLSX, f"session-{name}.xlsx")
+    response.headers["Content-Language"] = language.value
+    return response

@@ -1,4 +1,4 @@
-"""The pages of what came in, and what became of each file."""
+"""The pages of uploads and their outcomes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,8 +27,8 @@ REFUSED = "refused"
 PATH = "/uploads"
 
 
-class ArrivalsAsked(BaseModel):
-    """An address as it came."""
+class ArrivalsQuery(BaseModel):
+    """Query parameters."""
 
     q: Asked = ""
     only: Asked = ""
@@ -44,55 +44,55 @@ class ArrivalRow:
     filename: str
     size: str
     condition: Condition | None
-    """Of the session; None of a refused file."""
+    """Of the session; None for a refused file."""
     said: str
-    """What became of it."""
+    """Its outcome."""
 
 
 @dataclass(frozen=True)
 class ArrivalsPage:
-    """Everything the list of uploads shows."""
+    """Contents of the list of uploads."""
 
     text: str
     refused: bool
     rows: tuple[ArrivalRow, ...]
     later: str
-    """Address of the next page; empty where this is the last."""
+    """Address of the next page; empty on the last."""
     narrows: bool
     jobs: tuple[JobLine, ...]
-    """Large files that are still being read."""
+    """Large files that are being read."""
 
 
 @dataclass(frozen=True)
 class RefusalPage:
-    """Everything the page of a refused upload shows."""
+    """Contents of the page of a refused upload."""
 
     refusal: Refusal
     size: str
 
 
-def arrivals_query(asked: ArrivalsAsked) -> ArrivalQuery:
-    """What the store is asked: one upload more than fit on the page."""
-    refusal = refusal_number(asked.after)
+def arrivals_query(parameters: ArrivalsQuery) -> ArrivalQuery:
+    """The query of the store: one upload more than fit on the page."""
+    refusal = refusal_number(parameters.after)
     return ArrivalQuery(
-        text=asked.q.strip() or None,
-        refused=asked.only == REFUSED,
-        after_session=asked.after or None if refusal is None else None,
+        text=parameters.q.strip() or None,
+        refused=parameters.only == REFUSED,
+        after_session=parameters.after or None if refusal is None else None,
         after_refusal=refusal,
         limit=PAGE_SIZE + 1,
     )
 
 
-def arrivals_page(found: Sequence[Arrival], asked: ArrivalsAsked, jobs: Sequence[Job] = ()) -> ArrivalsPage:
+def arrivals_page(arrivals: Sequence[Arrival], parameters: ArrivalsQuery, jobs: Sequence[Job] = ()) -> ArrivalsPage:
     """One page of uploads."""
-    shown, text, only = found[:PAGE_SIZE], asked.q.strip(), REFUSED if asked.only == REFUSED else ""
-    after = {"q": text, "only": only, "after": shown[-1].name} if len(found) > PAGE_SIZE else {}
+    shown, text, only = arrivals[:PAGE_SIZE], parameters.q.strip(), REFUSED if parameters.only == REFUSED else ""
+    after = {"q": text, "only": only, "after": shown[-1].name} if len(arrivals) > PAGE_SIZE else {}
     return ArrivalsPage(
         text=text,
         refused=bool(only),
         rows=tuple(map(_row, shown)),
         later=address_of(PATH, after) if after else "",
-        narrows=bool(text or only or asked.after),
+        narrows=bool(text or only or parameters.after),
         jobs=tuple(map(job_line, jobs)),
     )
 
@@ -106,8 +106,8 @@ def _row(arrival: Arrival) -> ArrivalRow:
     session, refusal = arrival.session, arrival.refusal
     if refusal is not None:
         count = len(refusal.problems)
-        said = say_count("{n} problem: nothing was stored", "{n} problems: nothing was stored", count)
-        return ArrivalRow(arrival, refusal.filename, size_in_words(refusal.size), None, said)
+        outcome = say_count("{n} problem: nothing was stored", "{n} problems: nothing was stored", count)
+        return ArrivalRow(arrival, refusal.filename, size_in_words(refusal.size), None, outcome)
     assert session is not None, "an arrival is one of the two"
     condition = said_with(condition_of(session.verdict, is_reference=session.is_reference), session.reservations)
     return ArrivalRow(arrival, session.filename, size_in_words(session.size), condition, session.reason)
@@ -117,8 +117,8 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 
 @router.get("/uploads")
-def show_uploads(request: Request, store: Reading, asked: Annotated[ArrivalsAsked, Query()]) -> HTMLResponse:
-    """Every file that came in, newest first, and what became of it."""
+def show_uploads(request: Request, store: Reading, asked: Annotated[ArrivalsQuery, Query()]) -> HTMLResponse:
+    """All received files, newest first, with their result."""
     query = arrivals_query(asked)
     jobs = () if asked.after or query.refused else Jobs(store).open_uploads(query.text)
     return render(request, "arrivals.html", arrivals_page(Arrivals(store).page(query), asked, jobs))

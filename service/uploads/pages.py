@@ -1,4 +1,4 @@
-"""The upload page: what became of each file, or what is wrong with it and what to do."""
+"""The upload page: the outcome of each file, or its problems and what to do."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
@@ -8,10 +8,10 @@ from service.diagnosis.sections import DiagnosisLine, diagnosis_line
 from service.errors import RefusedError
 from service.jobs.records import Job
 from service.jobs.words import ending_of, progress_of
-from service.kit.arriving_files import SentFile
 from service.kit.limits import in_force
 from service.sessions.doubt import Reservations
 from service.sessions.records import DiagnosisSummary, Receipt, StoredSession
+from service.sessions.sent import SentFile
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import QUESTIONED, Condition, condition_of
 from service.settings import Settings
@@ -26,17 +26,17 @@ class Outcome:
     receipt: Receipt | None = None
     problems: tuple[Problem, ...] = ()
     diagnosis: DiagnosisLine | None = None
-    """None of a refused file."""
+    """None for a refused file."""
     pending: bool = False
-    """Whether the diagnosis is still being made."""
+    """Whether the diagnosis is being made."""
     is_table: bool = False
-    """Of one's own layout, not read before its page says how."""
+    """Of custom layout: not read before its mapping is confirmed."""
     carried: Carried | None = None
-    """A table, for the page that asks about it."""
+    """A table, for the page of its mapping."""
     job: Job | None = None
-    """That works on a large file."""
+    """The job for a large file."""
     progress: str = ""
-    """How far it is."""
+    """Progress of the job."""
 
     @property
     def condition(self) -> Condition:
@@ -49,7 +49,7 @@ class Outcome:
 
     @property
     def reservations(self) -> Reservations:
-        """What the verdict is said with."""
+        """Reservations of the verdict."""
         if self.receipt is None or self.receipt.state is RecordState.QUESTIONED:
             return ()
         return self.receipt.reservations
@@ -57,61 +57,63 @@ class Outcome:
 
 @dataclass(frozen=True)
 class UploadPage:
-    """Everything the upload page shows."""
+    """Contents of the upload page."""
 
     outcomes: tuple[Outcome, ...]
     limit: str
-    """Of files at a time."""
+    """Size limit of files of one upload."""
     log_limit: str
-    """Of a raw log that is averaged while it is read."""
+    """Size limit of a raw log that is averaged while it is read."""
     follows: bool
-    """Whether cards look again whether their diagnosis is made."""
+    """Whether cards poll for their diagnosis."""
     unit_types: tuple[str, ...] = ()
-    """That a template can be made for."""
+    """Types for which a template can be made."""
 
     @property
     def refused(self) -> int:
-        """How many files could not be used."""
+        """Number of refused files."""
         return sum(o.receipt is None and not o.is_table and o.job is None for o in self.outcomes)
 
 
 def outcomes_of(
     files: Sequence[SentFile],
-    found: Sequence[Receipt | RefusedError],
+    results: Sequence[Receipt | RefusedError],
     summary: Callable[[str], DiagnosisSummary | None],
 ) -> tuple[Outcome, ...]:
-    """Every file with what became of it; ``summary``: the diagnosis of a session, where it is made already."""
-    return tuple(_outcome(file.filename, one, summary) for file, one in zip(files, found, strict=True))
+    """Every file with its outcome; ``summary``: the diagnosis of a session, where available."""
+    return tuple(_outcome(file.filename, result, summary) for file, result in zip(files, results, strict=True))
 
 
 def table_outcome(file: SentFile, carried: Carried) -> Outcome:
-    """A table of one's own layout, as its page gets it."""
+    """A table of custom layout, for its page."""
     return Outcome(file.filename, is_table=True, carried=carried)
 
 
 def job_outcome(job: Job) -> Outcome:
-    """A large file that a job works on, or that became nothing."""
+    """A large file in progress, or one without a result."""
     return Outcome(job.subject, job=job, progress=progress_of(job) or ending_of(job))
 
 
-def _outcome(filename: str, one: Receipt | RefusedError, summary: Callable[[str], DiagnosisSummary | None]) -> Outcome:
-    if isinstance(one, RefusedError):
-        return Outcome(filename, problems=one.problems)
-    made = summary(one.id)
-    return Outcome(filename, one, diagnosis=diagnosis_line(made), pending=made is None)
+def _outcome(
+    filename: str, result: Receipt | RefusedError, summary: Callable[[str], DiagnosisSummary | None]
+) -> Outcome:
+    if isinstance(result, RefusedError):
+        return Outcome(filename, problems=result.problems)
+    diagnosis = summary(result.id)
+    return Outcome(filename, result, diagnosis=diagnosis_line(diagnosis), pending=diagnosis is None)
 
 
-def outcome_of(session: StoredSession, made: DiagnosisSummary | None) -> Outcome:
-    """What became of a file that was uploaded a while ago."""
-    known = {f.name: getattr(session, f.name) for f in fields(Receipt) if f.name != "created"}
-    return Outcome(session.filename, Receipt(created=True, **known), (), diagnosis_line(made), made is None)
+def outcome_of(session: StoredSession, diagnosis: DiagnosisSummary | None) -> Outcome:
+    """Outcome of a file that was uploaded a while ago."""
+    values = {f.name: getattr(session, f.name) for f in fields(Receipt) if f.name != "created"}
+    return Outcome(session.filename, Receipt(created=True, **values), (), diagnosis_line(diagnosis), diagnosis is None)
 
 
 def upload_page(outcomes: Sequence[Outcome], settings: Settings, unit_types: Sequence[str] = ()) -> UploadPage:
     """The page before (no outcomes) or after an upload."""
     follows = settings.diagnosis_workers > 0
-    most, log = _limit(in_force().whole), _limit(in_force().log)
-    return UploadPage(tuple(outcomes), most, log, follows, tuple(unit_types))
+    limit, log_limit = _limit(in_force().whole), _limit(in_force().log)
+    return UploadPage(tuple(outcomes), limit, log_limit, follows, tuple(unit_types))
 
 
 def _limit(size: int) -> str:

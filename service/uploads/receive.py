@@ -1,7 +1,7 @@
 """Uploaded bytes → checked → calibrated under the model in force → stored, once → derived again.
 
-The one entry of the API and of the pages. The diagnosis is asked for within the transaction that stores, and made
-beside the requests.
+The one entry of the API and of the pages. The diagnosis is requested within the transaction that stores the session,
+and made in the background.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import Any
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import changed, say
 from service.errors import RefusedError
 from service.ingest import in_turn, look_at
@@ -18,12 +19,12 @@ from service.ingest.digest import content_digest
 from service.ingest.layout.envelope import wrapped
 from service.ingest.layout.look import fingerprint
 from service.ingest.layout.mapping import layout_of, remembered
-from service.jobs.changes import UNFOLLOWED, Course
+from service.jobs.changes import NO_HOOKS, UploadHooks
 from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.reference import KnownUnit, known_unit
-from service.kit.arriving_files import NOTHING_STATED, Content, Received, Replaced, SentFile, Stated, held, where
+from service.kit.arriving_files import Content, held, where
 from service.models.rules import model_for
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -37,6 +38,7 @@ from service.records.supersede import give_way, settled_by, supersede
 from service.sessions.decision import Verdict
 from service.sessions.doubt import remedies_among
 from service.sessions.records import Digests, Receipt, StoredSession
+from service.sessions.sent import NOTHING_STATED, Received, Replaced, SentFile, Stated
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -48,34 +50,34 @@ from service.units.store import Units
 from service.uploads.store import Layouts, Log
 
 LONGEST_MESSAGE = 1000
-"""Characters of a problem that are kept and shown: a hostile file could put megabytes into one."""
+"""Characters of a problem that are stored and shown: a hostile file could put megabytes into one."""
 
 
 def refuse(
-    storage: Storage, received: Received, problems: Sequence[Problem], course: Course = UNFOLLOWED
+    storage: Storage, received: Received, problems: Sequence[Problem], hooks: UploadHooks = NO_HOOKS
 ) -> RefusedError:
-    """Records the refusal and returns the error to raise, which holds every problem."""
+    """Records the refusal and returns the error to raise, with every problem."""
     name, digest = received.filename, received.sha256
     listed = tuple(Problem(_text(p.field), changed(p.message, _text), p.row) for p in problems)
     with storage.database.writing() as store:
         number = Log(store).refusal(received.at, name, digest, received.size, listed)
         Audit(store).write(received.at, received.who, "refuse", digest, {"filename": name, "problems": len(listed)})
-        course.refused(store, number)
-    count = "one problem" if len(listed) == 1 else say("{listed} problems", listed=len(listed))
+        hooks.refused(store, number)
+    count = "one problem" if len(listed) == 1 else say("{number} problems", number=len(listed))
     return RefusedError(say("{name} cannot be used: {count}. Nothing was stored.", name=name, count=count), listed)
 
 
 def _text(message: str) -> str:
-    """Printable, so that any database and any reader takes it."""
+    """Printable, for any database and reader."""
     return "".join(c if c.isprintable() else "\ufffd" for c in message)[:LONGEST_MESSAGE]
 
 
 ID_DIGITS = 20
-"""Of the file's SHA-256: 80 bits, so that among a million sessions two share them with a chance of 4e-13."""
+"""Digits of the file's SHA-256: 80 bits; among a million sessions two share them with probability 4e-13."""
 
 
 def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
-    """Stores a session file with its verdict and counts it; RefusedError when it cannot be used."""
+    """Stores a session file with its verdict and counts it; RefusedError for an unusable one."""
     (outcome,) = receive_all(reception, (file,), now)
     if isinstance(outcome, RefusedError):
         raise outcome
@@ -83,7 +85,7 @@ def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
 
 
 def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) -> tuple[Receipt | RefusedError, ...]:
-    """The same for several files, or why one cannot be used."""
+    """The same for several files; the error of an unusable one is returned."""
     outcomes = tuple(_stored_or_refused(reception, file, now) for file in files)
     for outcome in outcomes:
         if isinstance(outcome, Receipt):
@@ -93,7 +95,7 @@ def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) 
 
 
 def deriving(reception: Reception, now: datetime) -> Deriving:
-    """How what follows from a change is derived."""
+    """Settings for deriving what follows from a change."""
     later = reception.is_dated_later
     return Deriving(reception.storage.files, reception.coverage_factor, now, is_dated_later=later)
 
@@ -104,7 +106,7 @@ def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> R
         with in_turn(where(file.content)):
             return upload(
                 reception.storage, file.content, file.filename, now, coverage_factor=k, who=reception.who,
-                stated=file, is_dated_later=reception.is_dated_later, course=reception.course,
+                stated=file, is_dated_later=reception.is_dated_later, hooks=reception.course,
             )  # fmt: skip
     except RefusedError as refusal:
         return refusal
@@ -121,56 +123,58 @@ def upload(
     stated: Stated = NOTHING_STATED,
     outlook: bool = True,
     is_dated_later: bool = True,
-    course: Course = UNFOLLOWED,
+    hooks: UploadHooks = NO_HOOKS,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 
-    A corrected file names the session that it replaces, whatever unit or date that one is of. Raises RefusedError with
-    every problem when the file cannot be used; then only the refusal is recorded. Without ``outlook`` the unit's dates
-    stay as they were: another file of it follows. ``is_dated_later``: they are asked for, and made beside the requests.
-    ``stated``: what its sender states beside it; of a session that is stored already that stays as it was.
+    A corrected file names the session that it replaces, of whatever unit or date. Raises RefusedError with every
+    problem for an unusable file; then only the refusal is recorded. Without ``outlook`` the unit's dates stay as they
+    are: another of its files follows. ``is_dated_later``: they are requested, and made in the background. ``stated``:
+    statements of the sender; those of a session that is stored already stay.
     """
     received = Received(len(content), content_hash(content), plain_filename(filename), now, who, **stated.stated())
-    way = Deriving(storage.files, coverage_factor, now, outlook=outlook, is_dated_later=is_dated_later)
+    derivation = Deriving(storage.files, coverage_factor, now, outlook=outlook, is_dated_later=is_dated_later)
     with storage.database.reading() as store:
         if stated.replaces is not None:
             Sessions(store).get(stated.replaces.session)
-        known = Sessions(store).by_hash(received.sha256)
-    if known is not None:
+        stored = Sessions(store).by_hash(received.sha256)
+    if stored is not None:
         storage.files.put_back(content)
-        return _known(storage, way, known, stated.replaces)
+        return _known(storage, derivation, stored, stated.replaces)
     try:
-        new = _calibrated(storage, _checked(storage, content, received))
+        calibrated = _calibrated(storage, _checked(storage, content, received))
     except SessionError as fault:
-        raise refuse(storage, received, fault.problems, course) from fault
-    course.keeping()
+        raise refuse(storage, received, fault.problems, hooks) from fault
+    hooks.keeping()
     storage.files.keep(content)
-    ready = _ready(storage, way, received, new)
+    prepared = _ready(storage, derivation, received, calibrated)
     with storage.database.writing() as store:
-        receipt, derived = _store(store, way, received, ready)
-        course.stored(store, receipt)
-    return _followed(storage, way, receipt, derived)
+        receipt, derived = _store(store, derivation, received, prepared)
+        hooks.stored(store, receipt)
+    return _with_followups(storage, derivation, receipt, derived)
 
 
-def _followed(storage: Storage, way: Deriving, receipt: Receipt, derived: Mapping[str, Derived]) -> Receipt:
-    """The receipt once all that follows is derived."""
-    for serial, own in sorted(derived.items()):
-        follow(storage, way, serial, own)
-    if not any(own.is_left for own in derived.values()):
+def _with_followups(
+    storage: Storage, derivation: Deriving, receipt: Receipt, derived: Mapping[str, Derived]
+) -> Receipt:
+    """The receipt after everything that follows was derived."""
+    for serial, rest in sorted(derived.items()):
+        follow(storage, derivation, serial, rest)
+    if not any(rest.is_left for rest in derived.values()):
         return receipt
     with storage.database.reading() as store:
         return receipt_of(Sessions(store).get(receipt.id), created=receipt.created)
 
 
-def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Replaced | None) -> Receipt:
-    """The receipt of a session that was stored before; also that replaces the one named now."""
-    receipt = receipt_of(known, created=False)
+def _known(storage: Storage, derivation: Deriving, stored: StoredSession, replaces: Replaced | None) -> Receipt:
+    """The receipt of a session that was stored before, which may now replace the named one."""
+    receipt = receipt_of(stored, created=False)
     if replaces is None:
         return receipt
-    settled = settled_by(storage, replaces.session, known.id)
+    settled = settled_by(storage, replaces.session, stored.id)
     with storage.database.writing() as store:
-        derived = supersede(store, way, replaces, Sessions(store).get(known.id), settled)
-    return _followed(storage, way, receipt, derived)
+        derived = supersede(store, derivation, replaces, Sessions(store).get(stored.id), settled)
+    return _with_followups(storage, derivation, receipt, derived)
 
 
 def _checked(storage: Storage, content: Content, received: Received) -> Checked:
@@ -182,7 +186,7 @@ def _checked(storage: Storage, content: Content, received: Received) -> Checked:
 
 
 def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
-    """Under the model in force, with no transaction open; SessionError where the session does not tell enough, or is
+    """Calibrated under the model in force, with no transaction open; SessionError where the session is insufficient, or
     simulated and its unit is not."""
     with storage.database.reading() as store:
         require_one_origin(store, checked.session)
@@ -192,43 +196,44 @@ def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
 
 @dataclass(frozen=True, eq=False)
 class _Ready:
-    """A session with all that its transaction needs not wait for."""
+    """A session with everything computed before its transaction."""
 
     new: Calibrated
     digests: Digests
     made: Made
     foreseen: Foreseen
     settled: str | None
-    """Where its content is stored already, of `settled_by`."""
+    """From `settled_by`, where its content is stored already."""
 
 
-def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated) -> _Ready:
-    """With no transaction open that others wait for."""
+def _ready(storage: Storage, derivation: Deriving, received: Received, new: Calibrated) -> _Ready:
+    """Computed with no transaction open that others wait for."""
     replaces = received.replaces
     digests = Digests(content_digest(new.checked.session), new.checked.readings_digest)
     with storage.database.reading() as store:
-        same = None if replaces is None else Sessions(store).same(received.sha256, digests.content_digest)
-        but = None if replaces is None else replaces.session
-        foreseen = foresee_upload(store, way, _record(received, new), new, but)
-    settled = None if same is None or replaces is None else settled_by(storage, replaces.session, same.id)
+        stored = None if replaces is None else Sessions(store).same(received.sha256, digests.content_digest)
+        superseded = None if replaces is None else replaces.session
+        foreseen = foresee_upload(store, derivation, _record(received, new), new, superseded)
+    settled = None if stored is None or replaces is None else settled_by(storage, replaces.session, stored.id)
     return _Ready(new, digests, made(new.calibration), foreseen, settled)
 
 
-def _store(store: Store, way: Deriving, received: Received, ready: _Ready) -> tuple[Receipt, dict[str, Derived]]:
-    """The record, and everything that follows from it, within one transaction; by unit, what is left of that."""
+def _store(store: Store, derivation: Deriving, received: Received, ready: _Ready) -> tuple[Receipt, dict[str, Derived]]:
+    """Stores the record and everything that follows from it, in one transaction; returns the rest of the derivation by
+    unit."""
     new, replaces = ready.new, received.replaces
     unit = _unit(store, received, new)
-    same = Sessions(store).same(received.sha256, ready.digests.content_digest)
-    if same is not None:
-        derived = {} if replaces is None else supersede(store, way, replaces, same, ready.settled)
-        return receipt_of(Sessions(store).get(same.id), created=False), derived
+    existing = Sessions(store).same(received.sha256, ready.digests.content_digest)
+    if existing is not None:
+        derived = {} if replaces is None else supersede(store, derivation, replaces, existing, ready.settled)
+        return receipt_of(Sessions(store).get(existing.id), created=False), derived
     record = _record(received, new)
     stand = Units(store).stand_key(record.stand)
     Sessions(store).add(record, unit, stand, new.checked.session.block, ready.digests)
-    WorkQueue(store, WorkKind.DIAGNOSIS).ask_once((record.id,), received.at)
+    WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once((record.id,), received.at)
     keep(store, unit, ((record, ready.made),), received.at)
     known = known_unit(store, unit, {record.id: new.calibration}, ready.foreseen.references)
-    derived = _derived(way, known, record, ready, replaces)
+    derived = _derived(derivation, known, record, ready, replaces)
     latest = derived[record.unit].latest
     stored = latest if latest is not None and latest.id == record.id else Sessions(store).get(record.id)
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
@@ -237,27 +242,31 @@ def _store(store: Store, way: Deriving, received: Received, ready: _Ready) -> tu
 
 
 def _derived(
-    way: Deriving, known: KnownUnit, record: StoredSession, ready: _Ready, replaces: Replaced | None
+    derivation: Deriving, known: KnownUnit, record: StoredSession, ready: _Ready, replaces: Replaced | None
 ) -> dict[str, Derived]:
-    """All that follows from a new session, by unit."""
+    """Everything that follows from a new session, by unit."""
     store, shared = known.store, {record.id} | ({replaces.session} if replaces else set())
-    doubted = doubts(known, ready.new.checked, known.calibration(record.id), shared)
-    if doubted:
-        question(store, way, record, " ".join(doubt.text for doubt in doubted), remedies_among(doubted))
-    old = None if replaces is None else give_way(store, way.at, replaces, record)
+    doubts_found = doubts(known, ready.new.checked, known.calibration(record.id), shared)
+    if doubts_found:
+        question(
+            store, derivation, record, " ".join(doubt.text for doubt in doubts_found), remedies_among(doubts_found)
+        )
+    superseded = None if replaces is None else give_way(store, derivation.at, replaces, record)
     since, derived = record.started_at, dict[str, Derived]()
-    if old is not None and old.unit == record.unit:
-        since = min(since, old.started_at)
-    elif old is not None:
-        derived[old.unit] = derive_again(store, way, old.unit, old.started_at, (old.id,))
-    if doubted or replaces:
+    if superseded is not None and superseded.unit == record.unit:
+        since = min(since, superseded.started_at)
+    elif superseded is not None:
+        derived[superseded.unit] = derive_again(
+            store, derivation, superseded.unit, superseded.started_at, (superseded.id,)
+        )
+    if doubts_found or replaces:
         known = known_unit(store, known.unit, known.made, ready.foreseen.references)
-    own = derive_again(store, way, record.unit, since, (record.id,), known=known, foreseen=ready.foreseen)
-    return derived | {record.unit: own}
+    rest = derive_again(store, derivation, record.unit, since, (record.id,), known=known, foreseen=ready.foreseen)
+    return derived | {record.unit: rest}
 
 
 def _unit(store: Store, received: Received, new: Calibrated) -> int:
-    """The unit, stored with its type when this is its first session, and held: rivals wait here."""
+    """The unit, locked, stored with its type when this is its first session: concurrent uploads wait here."""
     serial = new.checked.session.unit
     unit = Units(store).held(serial)
     if unit is None:
@@ -271,7 +280,7 @@ def _unit(store: Store, received: Received, new: Calibrated) -> int:
 
 
 def _record(received: Received, new: Calibrated) -> StoredSession:
-    """Still to be judged."""
+    """The record before judgement."""
     session = new.checked.session
     return StoredSession(
         id=received.sha256[:ID_DIGITS],
@@ -293,12 +302,13 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         stage=session.stage,
         reservations=None,
         temperature=None if session.temperature is None else float(session.temperature.mean()),
-        is_check=received.is_check,
+        time_since_power_on=session.time_since_power_on,
+        **received.marks,
     )
 
 
 def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
-    """What an upload of a session is answered with."""
+    """The receipt of a session."""
     return Receipt(
         id=record.id,
         unit=record.unit,
@@ -308,32 +318,32 @@ def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
         is_reference=record.is_reference,
         reservations=record.reservations,
         state=record.state,
-        is_check=record.is_check,
+        **record.marks,
     )
 
 
-NO_TABLE = "is given with a file that says itself what it is; send that without a mapping"
+NO_TABLE = "is given with a session file, which needs none; send it without a mapping"
 
 
 def receive_mapped(reception: Reception, file: SentFile, mapping: Mapping[str, Any], now: datetime) -> Receipt:
-    """Stores the bytes, unchanged, and the mapping with them; RefusedError where they give no session."""
-    whole, layout = _complete(file, mapping)
-    receipt = receive(reception, replace(file, content=wrapped(whole, held(file.content))), now)
+    """Stores the bytes, unchanged, with the mapping; RefusedError where they give no session."""
+    complete, layout = _complete(file, mapping)
+    receipt = receive(reception, replace(file, content=wrapped(complete, held(file.content))), now)
     with reception.storage.database.writing() as store:
         unit_type = UnitTypes(store).of_unit(receipt.unit).name
-        Layouts(store).remember(layout, unit_type, remembered(whole), who=reception.who, at=now)
+        Layouts(store).remember(layout, unit_type, remembered(complete), who=reception.who, at=now)
     return receipt
 
 
-def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
-    """The mapping with how the file is taken apart stated in full, so that it is read the same for ever."""
+def _complete(file: SentFile, mapping: Mapping[str, Any]) -> tuple[Json, str]:
+    """The mapping with all settings of the parser, so that the file is always read in the same way."""
     try:
         layout_of(mapping, file.filename)
-        seen = look_at(wrapped(mapping, held(file.content)), file.filename)
+        look = look_at(wrapped(mapping, held(file.content)), file.filename)
     except SessionError as fault:
         raise RefusedError(
             say("{filename} cannot be read by this mapping.", filename=file.filename), fault.problems
         ) from fault
-    if seen["session"]:
+    if look["session"]:
         raise RefusedError(say("{filename} needs no mapping.", filename=file.filename), (Problem("mapping", NO_TABLE),))
-    return {**mapping, "table": dict(seen["taken"])}, fingerprint(seen)
+    return {**mapping, "table": dict(look["taken"])}, fingerprint(look)

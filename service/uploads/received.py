@@ -1,9 +1,9 @@
-"""The files of an upload as they arrive, from the form or over HTTP, never more than the limits."""
+"""The files of an upload as they arrive, from a form or the body, within the limits."""
 
 from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass, replace
 from io import BytesIO
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Depends, Query, Request
 from python_multipart.exceptions import FormParserError
@@ -13,28 +13,31 @@ from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException, MultiPartParser
 
 from estimator.errors import Problem, SessionError
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import ForbiddenError, RefusedError, TooLargeError
 from service.ingest.formats import may_be_log
 from service.ingest.layout.envelope import mapping_of
-from service.kit.arriving_files import Content, Replaced, SentFile, held
+from service.kit.arriving_files import Content, held
 from service.kit.limits import in_force
 from service.kit.person import Role
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.records.unit_changes import Attaching
+from service.sessions.records import MARKS, marks_said
 from service.sessions.schema import SESSION_FILE
+from service.sessions.sent import Replaced, SentFile
 from service.storage.landing import Landing, Landings
-from service.web.dependencies import PlaceOf, limited
+from service.web.dependencies import UploadSlotOf, limited
 from service.web.fields import LongText, Text
 
 MOST_FIELDS = 10
-"""Parts of a form that are no files: a proof, and what a corrected file says of itself."""
+"""Parts of a form besides files: a CSRF token, and statements about a corrected file."""
 BAD_REQUEST = 400
 
 
 class Arriving:
-    """Where the files of one request land."""
+    """Receives the files of one request."""
 
     def __init__(self, request: Request, place: Landings, whole: int, log: int) -> None:
         self._request, self._place = request, place
@@ -48,7 +51,7 @@ class Arriving:
         return await run_in_threadpool(landing.landed)
 
     async def form(self, most_files: int) -> FormData:
-        """The parts of a form; its files are of the kind `LandedFile`."""
+        """The parts of a form; its files are `LandedFile`."""
         if not self._request.headers.get("content-type", "").lower().startswith("multipart/form-data"):
             return FormData()
         body = limited(self._request, self.most, is_form=True)
@@ -63,18 +66,18 @@ class Arriving:
 
     @property
     def most(self) -> int:
-        """Bytes that the files of a request may have together."""
+        """Bytes of all files of a request."""
         return max(self._whole, self._log)
 
     async def take(self, landing: Landing, data: bytes) -> None:
-        """The next part of a file; TooLargeError where it is too much of what it seems to be."""
+        """The next part of a file; TooLargeError above the limit of its format."""
         landing.take(data)
-        most = self.most if may_be_log(landing.start) else self._whole
-        if landing.size > most:
+        limit = self.most if may_be_log(landing.start) else self._whole
+        if landing.size > limit:
             raise TooLargeError(
                 say(
-                    "An upload may hold {most} bytes at a time; this one is larger. Average or split it.",
-                    most=f"{most:,}",
+                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                    limit=f"{limit:,}",
                 )
             )
         if landing.is_due:
@@ -82,7 +85,7 @@ class Arriving:
 
 
 class LandedFile(UploadFile):
-    """A file of a form, which goes where it will be read from."""
+    """A file of a form, stored where it will be read."""
 
     def __init__(self, arriving: Arriving, filename: str | None, headers: Headers) -> None:
         super().__init__(BytesIO(), size=0, filename=filename, headers=headers)
@@ -93,33 +96,33 @@ class LandedFile(UploadFile):
         await self._arriving.take(self._landing, data)
 
     async def content(self) -> Content:
-        """All of it."""
+        """The complete file."""
         return await run_in_threadpool(self._landing.landed)
 
 
 class _Form(MultiPartParser):
-    """Starlette's, but for the place of files: not a folder of the system's, which may be in memory."""
+    """Starlette's parser with another place for files: the system's temporary folder may be in memory."""
 
     def __init__(self, body: Request, arriving: Arriving, most_files: int) -> None:
         super().__init__(body.headers, body.stream(), max_files=most_files, max_fields=MOST_FIELDS)
         self._arriving = arriving
 
     def on_headers_finished(self) -> None:
-        """A part begins."""
+        """Called at the start of a part."""
         super().on_headers_finished()
-        given = self._current_part.file
-        if given is not None:
-            given.file.close()
-            self._current_part.file = LandedFile(self._arriving, given.filename, given.headers)
+        file = self._current_part.file
+        if file is not None:
+            file.file.close()
+            self._current_part.file = LandedFile(self._arriving, file.filename, file.headers)
 
 
-async def _arriving(request: Request, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+async def _arriving(request: Request, storage: StorageOf, _: UploadSlotOf) -> AsyncIterator[Arriving]:
     most = in_force()
     with storage.files.arriving() as place:
         yield Arriving(request, place, most.whole, most.log)
 
 
-async def _attaching(request: Request, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+async def _attaching(request: Request, storage: StorageOf, _: UploadSlotOf) -> AsyncIterator[Arriving]:
     most = in_force().attached
     with storage.files.arriving() as place:
         yield Arriving(request, place, most, most)
@@ -128,7 +131,7 @@ async def _attaching(request: Request, storage: StorageOf, _: PlaceOf) -> AsyncI
 AttachingOf = Annotated[Arriving, Depends(_attaching, scope="function")]
 """The same for a file that is attached and never read."""
 ArrivingOf = Annotated[Arriving, Depends(_arriving, scope="function")]
-"""Where uploads land, until they were worked on."""
+"""Receives uploads, which are removed after processing."""
 
 
 LONGEST = {"unit": 200, "session": 200, "text": 2000, "by": 200}
@@ -137,43 +140,45 @@ LONGEST = {"unit": 200, "session": 200, "text": 2000, "by": 200}
 
 @dataclass(frozen=True)
 class SentAttachment:
-    """A file, and who sends it."""
+    """A file and its sender."""
 
     given: Attaching
     who: str
 
 
 async def _sent_attachment(arriving: AttachingOf, person: PersonOf) -> SentAttachment:
-    """The part `file` of a form, with what its fields say."""
+    """The part `file` of a form, with its fields."""
     form = await arriving.form(most_files=1)
     file = form.get("file")
-    said = {name: text.strip() if isinstance(text := form.get(name), str) else "" for name in LONGEST}
-    who = person.signs(said.pop("by"))
-    faults = [Problem(name, fault) for name, text in (*said.items(), ("by", who)) if (fault := _fault(name, text))]
+    form_fields = {name: text.strip() if isinstance(text := form.get(name), str) else "" for name in LONGEST}
+    who = person.signs(form_fields.pop("by"))
+    faults = [
+        Problem(name, fault) for name, text in (*form_fields.items(), ("by", who)) if (fault := _fault(name, text))
+    ]
     if not who:
         faults.append(Problem("by", "is missing: say who attaches the file"))
     if not isinstance(file, LandedFile) or not file.filename:
         faults.append(Problem("file", "is missing from the form"))
     if faults or not isinstance(file, LandedFile):
         raise RefusedError("The file cannot be attached.", tuple(faults))
-    return SentAttachment(Attaching(file.filename or "", await file.content(), **said), who)
+    return SentAttachment(Attaching(file.filename or "", await file.content(), **form_fields), who)
 
 
 def _fault(name: str, text: str) -> str:
-    """Why a field of the form cannot be kept; empty where it can."""
+    """Why a field of the form cannot be stored; empty where it can."""
     if len(text) > LONGEST[name]:
         return say("is longer than {longest} characters", longest=LONGEST[name])
-    return "holds a character that cannot be stored" if "\x00" in text else ""
+    return "contains a character that cannot be stored" if "\x00" in text else ""
 
 
 SentOf = Annotated[SentAttachment, Depends(_sent_attachment)]
-"""The file that was sent."""
+"""The attached file."""
 
 NEEDED = "is missing; a session is replaced by somebody and for a reason"
-LONGEST_WHY = 2000
+LONGEST_REASON = 2000
 """Characters, as for every reason."""
-REPLACES = "A session is replaced by an engineer: upload the file as it is, and tell one."
-NO_FILE = "The form holds no file. Send the session as the body, or as the form's part `file`."
+REPLACES = "Only an engineer replaces a session: upload the file as it is, and ask one."
+NO_FILE = "The form contains no file. Send the session as the body, or as the form's part `file`."
 
 
 Supersedes = Annotated[
@@ -186,9 +191,9 @@ Check = Annotated[
     Query(description="Whether it is only a check: judged and kept, and the next calibration is due as it was before."),
 ]
 YES = ("true", "1", "yes", "on")
-"""As forms say it."""
+"""Values of checkboxes."""
 FIELDS = ("supersedes", "by", "why")
-"""That a corrected file may bring as parts of its form too."""
+"""Fields that a form of a corrected file may have too."""
 
 
 async def _received(
@@ -224,16 +229,18 @@ async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentF
     file = form.get("file")
     if not isinstance(file, LandedFile):
         raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
-    own = {name: text for name in FIELDS if isinstance(text := form.get(name), str)}
-    name, sent = file.filename or "upload", form.get("mapping")
-    mapping = held(await sent.content()) if isinstance(sent, LandedFile) else str(sent or "").encode()
-    is_check = str(form.get("check", "")).strip().lower() in YES
-    replaces, read_by = _replaced(stated | own), _mapping(mapping, name)
-    return SentFile(name, await file.content(), is_check=is_check, replaces=replaces, mapping=read_by)
+    form_fields = {name: text for name in FIELDS if isinstance(text := form.get(name), str)}
+    name, mapping_part = file.filename or "upload", form.get("mapping")
+    mapping = (
+        held(await mapping_part.content()) if isinstance(mapping_part, LandedFile) else str(mapping_part or "").encode()
+    )
+    marks = marks_said([word for word in MARKS if str(form.get(word, "")).strip().lower() in YES])
+    replaces, read_by = _replaced(stated | form_fields), _mapping(mapping, name)
+    return SentFile(name, await file.content(), replaces=replaces, mapping=read_by, **marks)
 
 
-def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:
-    """How the table is read, from a part of the form, be it a file or not; RefusedError where it is no JSON."""
+def _mapping(text: bytes, filename: str) -> Json | None:
+    """The mapping of a table, from a part of the form, be it a file or not; RefusedError for invalid JSON."""
     if not text.strip():
         return None
     try:
@@ -243,27 +250,27 @@ def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:
 
 
 def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
-    """What the file stands for; RefusedError where nobody says so or why."""
-    known, by, why = ((stated[name] or "").replace("\x00", "").strip() for name in FIELDS)
-    if not known:
+    """The session that the file replaces; RefusedError without a name or a reason."""
+    session, by, why = ((stated[name] or "").replace("\x00", "").strip() for name in FIELDS)
+    if not session:
         return None
     faults = [Problem(name, NEEDED) for name, text in (("by", by), ("why", why)) if not text]
-    if len(why) > LONGEST_WHY:
+    if len(why) > LONGEST_REASON:
         faults.append(
             Problem(
                 "why",
-                say("is {why} characters long; at most {longest_why} are kept", why=len(why), longest_why=LONGEST_WHY),
+                say("is {length} characters long; at most {limit} are kept", length=len(why), limit=LONGEST_REASON),
             )
         )
     if faults:
-        raise RefusedError("A corrected file says who replaces a session and why.", tuple(faults))
-    return Replaced(known, by, why)
+        raise RefusedError("A corrected file states who replaces a session and why.", tuple(faults))
+    return Replaced(session, by, why)
 
 
 FileOf = Annotated[SentFile, Depends(_received)]
 """The uploaded file."""
 
-REQUEST_BODY: dict[str, Any] = {
+REQUEST_BODY: Json = {
     "requestBody": {
         "required": True,
         "description": "A session file, as the body or as the part `file` of a form.",
@@ -283,20 +290,20 @@ REQUEST_BODY: dict[str, Any] = {
         },
     }
 }
-"""OpenAPI has no way to say this through a parameter, because the bytes must be kept unchanged."""
+"""OpenAPI cannot describe this as a parameter, because the bytes must be stored unchanged."""
 
 
 MOST_FILES = 200
-"""In one form: some years of sessions of a unit; it bounds how many parts the form's parser holds."""
+"""In one form: some years of sessions of a unit; limits the number of parts that the parser holds."""
 
 
 async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:
     """The chosen files."""
     form = await arriving.form(MOST_FILES)
     chosen = [file for file in form.getlist("files") if isinstance(file, LandedFile) and file.filename]
-    is_check = bool(form.get("check"))
-    return tuple([SentFile(file.filename or "upload", await file.content(), is_check=is_check) for file in chosen])
+    marks = marks_said([word for word in MARKS if form.get(word)])
+    return tuple([SentFile(file.filename or "upload", await file.content(), **marks) for file in chosen])
 
 
 FormFiles = Annotated[tuple[SentFile, ...], Depends(_files)]
-"""The files that were sent."""
+"""The uploaded files."""

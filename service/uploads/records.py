@@ -1,4 +1,4 @@
-"""What came in: a file that was stored as a session, or one that was refused."""
+"""Uploads: a file stored as a session, or refused."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -8,28 +8,28 @@ from service.jobs.records import UNDER_WAY
 from service.sessions.records import StoredSession
 
 REFUSED = "r"
-"""Begins the name of a refusal, where a session's is its id."""
+"""Prefix of the name of a refusal; that of a session is its id."""
 
 
 def job_number(name: str) -> int | None:
-    """The number of the job that a name names; None of any other name."""
+    """The number of the job in a name; None for any other name."""
     return _number(name, UNDER_WAY)
 
 
 def refusal_number(name: str) -> int | None:
-    """The number of the refusal that a name names; None of any other name."""
+    """The number of the refusal in a name; None for any other name."""
     return _number(name, REFUSED)
 
 
-def _number(name: str, begins: str) -> int | None:
-    number = name.removeprefix(begins)
-    is_one = name.startswith(begins) and number.isascii() and number.isdigit() and len(number) < 10
-    return int(number) if is_one else None
+def _number(name: str, prefix: str) -> int | None:
+    number = name.removeprefix(prefix)
+    is_valid = name.startswith(prefix) and number.isascii() and number.isdigit() and len(number) < 10
+    return int(number) if is_valid else None
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """A file that could not be used; its bytes are not kept."""
+    """A file that could not be used; its bytes are not stored."""
 
     number: int
     at: datetime
@@ -42,7 +42,7 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Arrival:
-    """One upload and what became of it: either a session or a refusal."""
+    """One upload and its outcome: either a session or a refusal."""
 
     at: datetime
     session: StoredSession | None
@@ -50,14 +50,14 @@ class Arrival:
 
     @property
     def name(self) -> str:
-        """As an address names it: the session's id, or ``r`` and the number of the refusal."""
+        """Name in addresses: the session's id, or ``r`` and the number of the refusal."""
         if self.refusal is not None:
             return f"{REFUSED}{self.refusal.number}"
         return "" if self.session is None else self.session.id
 
     @property
     def key(self) -> tuple[datetime, bool, str]:
-        """Its place among all: of one time refusals come after sessions."""
+        """Sort key: at the same time refusals come after sessions."""
         if self.refusal is not None:
             return self.at, True, f"{self.refusal.number:012d}"
         assert self.session is not None, "an arrival is one of the two"
@@ -66,13 +66,13 @@ class Arrival:
 
 @dataclass(frozen=True)
 class ArrivalQuery:
-    """Which arrivals are wanted, newest first."""
+    """Filter of arrivals, newest first."""
 
     text: str | None = None
-    """Part of the file's name, small and capital letters alike."""
+    """Part of the file's name, case-insensitive."""
     refused: bool = False
-    """Only those that were refused."""
+    """Only refused ones."""
     after_session: str | None = None
     after_refusal: int | None = None
-    """What the list goes on after; one that is not there begins it anew."""
+    """Start of the list after this one; from the beginning where it does not exist."""
     limit: int = 100

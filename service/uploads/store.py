@@ -1,4 +1,4 @@
-"""What came in and what became of it; layouts that are known."""
+"""Uploads and their outcomes; remembered layouts."""
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, and_, or_, select, true
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import NotFoundError
 from service.sessions.store import session_record, session_rows
@@ -20,18 +21,18 @@ from service.uploads.tables import LayoutRow, RefusalRow
 class Arrivals(Queries):
     """Uploads."""
 
-    def page(self, wanted: ArrivalQuery) -> tuple[Arrival, ...]:
-        """The wanted uploads, newest first, in two queries; in three where the list goes on from one."""
-        stored_before, refused_before = self._before(wanted)
-        found = [Arrival(one.at, None, one) for one in self._refused(wanted, refused_before)]
-        if not wanted.refused:
+    def page(self, query: ArrivalQuery) -> tuple[Arrival, ...]:
+        """The selected uploads, newest first, in two queries; in three where the list continues after one."""
+        stored_before, refused_before = self._before(query)
+        arrivals = [Arrival(refusal.at, None, refusal) for refusal in self._refused(query, refused_before)]
+        if not query.refused:
             rows = session_rows().where(stored_before)
-            if wanted.text:
-                rows = rows.where(SessionRow.filename.icontains(wanted.text, autoescape=True))
-            newest = rows.order_by(SessionRow.uploaded_at.desc(), SessionRow.id.desc()).limit(wanted.limit)
+            if query.text:
+                rows = rows.where(SessionRow.filename.icontains(query.text, autoescape=True))
+            newest = rows.order_by(SessionRow.uploaded_at.desc(), SessionRow.id.desc()).limit(query.limit)
             stored = (session_record(*row) for row in self._session.execute(newest))
-            found += [Arrival(one.uploaded_at, one, None) for one in stored]
-        return tuple(sorted(found, key=lambda arrival: arrival.key, reverse=True)[: wanted.limit])
+            arrivals += [Arrival(refusal.uploaded_at, refusal, None) for refusal in stored]
+        return tuple(sorted(arrivals, key=lambda arrival: arrival.key, reverse=True)[: query.limit])
 
     def refusal(self, number: int) -> Refusal:
         """One refused upload."""
@@ -40,21 +41,21 @@ class Arrivals(Queries):
             raise NotFoundError(say("There is no refused upload {number}.", number=number))
         return _refusal(row)
 
-    def _refused(self, wanted: ArrivalQuery, before: ColumnElement[bool]) -> tuple[Refusal, ...]:
+    def _refused(self, filters: ArrivalQuery, before: ColumnElement[bool]) -> tuple[Refusal, ...]:
         query = select(RefusalRow).where(before)
-        if wanted.text:
-            query = query.where(RefusalRow.filename.icontains(wanted.text, autoescape=True))
-        newest = query.order_by(RefusalRow.at.desc(), RefusalRow.id.desc()).limit(wanted.limit)
+        if filters.text:
+            query = query.where(RefusalRow.filename.icontains(filters.text, autoescape=True))
+        newest = query.order_by(RefusalRow.at.desc(), RefusalRow.id.desc()).limit(filters.limit)
         return tuple(map(_refusal, self._session.scalars(newest)))
 
-    def _before(self, wanted: ArrivalQuery) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
-        """Of sessions and of refusals: which come after the place that the list goes on from."""
-        if wanted.after_refusal is not None:
-            at = self._session.scalar(select(RefusalRow.at).where(RefusalRow.id == wanted.after_refusal))
-            return _after_refusal(at, wanted.after_refusal)
-        if wanted.after_session is not None:
-            at = self._session.scalar(select(SessionRow.uploaded_at).where(SessionRow.id == wanted.after_session))
-            return _after_session(at, wanted.after_session)
+    def _before(self, query: ArrivalQuery) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+        """Conditions for sessions and refusals after the place where the list continues."""
+        if query.after_refusal is not None:
+            at = self._session.scalar(select(RefusalRow.at).where(RefusalRow.id == query.after_refusal))
+            return _after_refusal(at, query.after_refusal)
+        if query.after_session is not None:
+            at = self._session.scalar(select(SessionRow.uploaded_at).where(SessionRow.id == query.after_session))
+            return _after_session(at, query.after_session)
         return true(), true()
 
 
@@ -81,7 +82,7 @@ class Log(Queries):
     """Refused uploads."""
 
     def refusal(self, at: datetime, filename: str, sha256: str, size: int, problems: Sequence[Problem]) -> int:
-        """Records an upload that could not be used, and returns its number."""
+        """Records an unusable upload, and returns its number."""
         listed = STORED.written(list(problems))
         row = RefusalRow(at=at, filename=filename, sha256=sha256, size=size, problems=listed)
         self._session.add(row)
@@ -90,20 +91,20 @@ class Log(Queries):
 
 
 class Layouts(Queries):
-    """Mappings by the fingerprint of the headings; the last one holds."""
+    """Mappings by the fingerprint of the headings; the last one applies."""
 
     def remember(self, fingerprint: str, unit_type: str, mapping: Mapping[str, Any], *, who: str, at: datetime) -> None:
         """Stores how files of a layout were read, unless that is known already."""
         if self.find(fingerprint, unit_type, only=True) != mapping:
-            own = {"fingerprint": fingerprint, "unit_type": unit_type, "mapping": dict(mapping)}
-            self._session.add(LayoutRow(**own, who=who, remembered_at=at))
+            values = {"fingerprint": fingerprint, "unit_type": unit_type, "mapping": dict(mapping)}
+            self._session.add(LayoutRow(**values, who=who, remembered_at=at))
             self._session.flush()
 
-    def find(self, fingerprint: str, unit_type: str = "", *, only: bool = False) -> dict[str, Any] | None:
-        """The mapping for units of a type, or else unless ``only`` for that type's, the last one of any."""
+    def find(self, fingerprint: str, unit_type: str = "", *, only: bool = False) -> Json | None:
+        """The mapping for units of a type; unless ``only`` or a type is given, also the last one of any."""
         query = select(LayoutRow.mapping).where(LayoutRow.fingerprint == fingerprint)
-        own = query.where(LayoutRow.unit_type == unit_type).order_by(LayoutRow.id.desc()).limit(1)
-        found = self._session.scalar(own)
-        if found is None and not only and not unit_type:
-            found = self._session.scalar(query.order_by(LayoutRow.id.desc()).limit(1))
-        return found
+        typed = query.where(LayoutRow.unit_type == unit_type).order_by(LayoutRow.id.desc()).limit(1)
+        mapping = self._session.scalar(typed)
+        if mapping is None and not only and not unit_type:
+            mapping = self._session.scalar(query.order_by(LayoutRow.id.desc()).limit(1))
+        return mapping

@@ -1,4 +1,4 @@
-"""The tables of layouts that are known, and of refusals."""
+"""The tables of remembered layouts and of refusals."""
 
 from datetime import datetime
 from typing import Any
@@ -6,12 +6,13 @@ from typing import Any
 from sqlalchemy import JSON, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from estimator.json_object import Json
 from service.storage.columns import BYTES
 from service.storage.tables import Base
 
 
 class RefusalRow(Base):
-    """An upload that could not be used; its bytes are not kept."""
+    """An upload that could not be used; its bytes are not stored."""
 
     __tablename__ = "refusals"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -23,12 +24,12 @@ class RefusalRow(Base):
 
 
 class LayoutRow(Base):
-    """How files of one layout were read last, without what differs from session to session."""
+    """How files of a layout were read last, without what differs from session to session."""
 
     __tablename__ = "layouts"
     id: Mapped[int] = mapped_column(primary_key=True)
     fingerprint: Mapped[str] = mapped_column(String(64), index=True)
     unit_type: Mapped[str] = mapped_column(String(200))
-    mapping: Mapped[dict[str, Any]] = mapped_column(JSON)
+    mapping: Mapped[Json] = mapped_column(JSON)
     who: Mapped[str]
     remembered_at: Mapped[datetime]

@@ -1,8 +1,8 @@
-"""A session file to fill in: the workbook that an upload takes as it is, with units, choices and an example.
+"""A session file to fill in: a workbook that can be uploaded as it is, with units, choices and an example.
 
-Sheet `session` holds what is known of the block already and yellow cells for what is not; sheet `readings` has the
-schedule and empty cells for the readings; sheet `example` shows both filled in. Headings and keys are locked, without a
-password: nobody changes one by mistake.
+Sheet `session` has the known facts of the block, and yellow cells for the others; sheet `readings` has the schedule and
+empty cells for the readings; sheet `example` shows both filled in. Headings and keys are locked, without a password,
+against accidental changes.
 """
 
 import io
@@ -16,6 +16,7 @@ import xlsxwriter
 from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import ACCELEROMETER, COUNTERS, GYROSCOPE, PROGRAMMES, STAGES, CalibrationSession
 from estimator.writing import session_document
@@ -28,7 +29,7 @@ from service.papers.sheets import OPTIONS, naive, write_text
 
 @dataclass(frozen=True)
 class Wording:
-    """How each part of the workbook is called."""
+    """Words of each part of the workbook."""
 
     sheet: Callable[[str], str]
     key: Callable[[str], str]
@@ -42,7 +43,7 @@ class Wording:
 def wording(language: Language, sensors: Sequence[str]) -> Wording:
     """The words of a language."""
     if language is Language.ENGLISH:
-        return Wording(_as_it_is, _as_it_is, _as_it_is, lambda _, value: value, _as_it_is)
+        return Wording(_unchanged, _unchanged, _unchanged, lambda _, value: value, _unchanged)
     return Wording(
         sheet=lambda name: SHEETS[name],
         key=key_in_russian,
@@ -52,39 +53,43 @@ def wording(language: Language, sensors: Sequence[str]) -> Wording:
     )
 
 
-def _as_it_is(text: str) -> str:
+def _unchanged(text: str) -> str:
     return text
 
 
-DOCUMENT = dict[str, Any]
-ASKED = ("unit", "started_at", "stage", "operator", "notes")
-"""What differs from session to session, in the order in which it is asked."""
+FILLED_IN = ("unit", "started_at", "powered_on_at", "stage", "operator", "notes")
+"""Fields that differ from session to session, in the order of the sheet."""
+NOT_COPIED = ("table", "origin", "time_since_power_on_s", *FILLED_IN)
+"""Fields of the pattern that say nothing of the next session."""
 MEASURED = ("time_s", "temperature_c", "vibration_m_s2")
-"""Columns that are measured with the readings; what was planned of them would be untrue."""
+"""Columns that are measured with the readings, and not planned."""
 CHOICES = {
     "block": (ACCELEROMETER, GYROSCOPE), "kind": (ACCELEROMETER, GYROSCOPE), "programme": PROGRAMMES,
     "stage": STAGES, "counter": COUNTERS, "run": ("direct", "flipped"),
 }  # fmt: skip
-"""What a cell or a column may say."""
+"""Allowed values of a cell or a column."""
 LIMITS = {
     "beta_deg": (-360_000, 360_000), "time_s": (0, 1e9), "temperature_c": (-100, 200), "latitude_deg": (-90, 90),
     "height_m": (-500, 9000), "gravity_m_s2": (9.7, 9.9), "alpha_deg": (-90, 90), "chi_deg": (-90, 90),
 }  # fmt: skip
-"""Of numbers, as the reader has them."""
+"""Of numbers, as in the reader."""
 MOST_PLANNED = 500
-"""Rows of a schedule that are worth giving; a log has none."""
+"""Rows of a schedule that are included; not of a log."""
 ROOM = 1000
-"""Rows that have choices and limits: more than any session of positions."""
+"""Rows with choices and limits: more than any session of positions."""
 MOST_SHOWN = 100
 """Rows of the example: a session of positions, or the beginning of a log."""
-EXAMPLE = {"unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "operator": "K. Ito", "notes": "after transport"}
-"""What the example says where it is asked."""
+EXAMPLE = {
+    "unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "powered_on_at": "2026-03-01T08:20:00Z",
+    "operator": "K. Ito", "notes": "after transport",
+}  # fmt: skip
+"""Values of the example."""
 AXIS_DIGITS = 10
-"""After the point, of axes: 2e-5 arcsec."""
+"""Decimals of axes: 2e-5 arcsec."""
 
 
 def session_template(pattern: CalibrationSession, made: datetime, language: Language = Language.ENGLISH) -> bytes:
-    """The workbook for the next session that is like this one."""
+    """The workbook for the next session, like a given one."""
     document = session_document(pattern)
     target = io.BytesIO()
     book = xlsxwriter.Workbook(target, {**OPTIONS, "constant_memory": False})
@@ -100,14 +105,14 @@ def session_template(pattern: CalibrationSession, made: datetime, language: Lang
 
 @dataclass(frozen=True)
 class Style:
-    """How cells look, and in which words they speak."""
+    """Formats and words of cells."""
 
     looks: dict[str, Format]
     words: Wording
 
 
 def _looks(book: xlsxwriter.Workbook) -> dict[str, Format]:
-    """Locked headings; yellow where something is asked; grey hints."""
+    """Locked headings; yellow cells to fill in; grey hints."""
     return {
         "head": book.add_format({"bold": True, "bottom": 1, "bg_color": "#e8eef4"}),
         "asked": book.add_format({"locked": False, "bg_color": "#fff2b3", "border": 1, "num_format": "@"}),
@@ -117,36 +122,36 @@ def _looks(book: xlsxwriter.Workbook) -> dict[str, Format]:
     }
 
 
-def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
-    """Keys, values, and what they mean; yellow ones are to be filled in."""
+def _session_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
+    """Keys, values, and hints; yellow cells are to be filled in."""
     sheet.set_column(0, 0, 30)
     sheet.set_column(1, 1, 34)
     sheet.set_column(2, 2, 80)
     words = style.words
     for row, (key, value) in enumerate(_rows(document)):
         step = key.rpartition(".")[2]
-        is_asked = value in ("", None)
+        is_open = value in ("", None)
         sheet.write_string(row, 0, words.key(key), style.looks["head"])
-        _write(sheet, (row, 1), words.value(step, value), style.looks["asked" if is_asked else "given"])
+        _write(sheet, (row, 1), words.value(step, value), style.looks["asked" if is_open else "given"])
         hint = words.say(KEY_HINTS.get(key) or KEY_HINTS.get(step, ""))
-        needed = f" {words.say(NEEDED_HERE)}" if is_asked and key in ("unit", "stand.id") else ""
-        sheet.write_string(row, 2, hint + needed, style.looks["hint"])
+        note = f" {words.say(NEEDED_HERE)}" if is_open and key in ("unit", "stand.id") else ""
+        sheet.write_string(row, 2, hint + note, style.looks["hint"])
         _check(sheet, (row, 1, row, 1), step, hint, words)
     sheet.protect("", {"format_columns": True, "format_rows": True})
 
 
-def _rows(document: DOCUMENT) -> Iterator[tuple[str, Any]]:
-    """Keys with what is known of them, what is asked first after the format; what is filled in is measured."""
-    known = {key: value for key, value in document.items() if key not in ("table", "origin", *ASKED)}
+def _rows(document: Json) -> Iterator[tuple[str, Any]]:
+    """Keys and known values, the fields to fill in after the format; the origin is "measured"."""
+    known = {key: value for key, value in document.items() if key not in NOT_COPIED}
     yield "format", known.pop("format")
-    yield from ((key, "") for key in ASKED)
+    yield from ((key, "") for key in FILLED_IN)
     yield from _flat(known, "")
 
 
-def _flat(node: Mapping[str, Any], way: str) -> Iterator[tuple[str, Any]]:
+def _flat(node: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
     """Dotted keys; sensors with their numbers; lists as JSON."""
     for key, value in node.items():
-        place = f"{way}.{key}" if way else key
+        place = f"{prefix}.{key}" if prefix else key
         if isinstance(value, Mapping):
             yield from _flat(value, place)
         elif key == "sensors":
@@ -159,14 +164,14 @@ def _flat(node: Mapping[str, Any], way: str) -> Iterator[tuple[str, Any]]:
 
 
 def _short(value: Any) -> Any:
-    """Axes without the digits that no computation needs."""
+    """Axes without superfluous digits."""
     if isinstance(value, list):
         return [_short(item) for item in value]
     return round(value, AXIS_DIGITS) + 0.0 if isinstance(value, float) else value
 
 
-def _readings_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
-    """The schedule, and empty columns for what is measured."""
+def _readings_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
+    """The schedule, and empty columns for measured values."""
     columns = _columns(document)
     planned = len(next(iter(columns.values()))) <= MOST_PLANNED and "sample_rate_hz" not in document
     _headings(sheet, style, document, list(columns))
@@ -182,8 +187,8 @@ def _readings_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
     sheet.protect("", {"format_columns": True, "insert_rows": True, "delete_rows": True, "sort": True})
 
 
-def _columns(document: DOCUMENT) -> DOCUMENT:
-    """Of the table, with those for time, temperature and standard errors that a pattern may lack."""
+def _columns(document: Json) -> Json:
+    """Of the table, with columns for time, temperature and standard errors that a pattern may lack."""
     table = dict(document["table"])
     rows = len(next(iter(table.values())))
     sensors = [sensor["name"] for sensor in document["sensors"]]
@@ -195,15 +200,15 @@ def _columns(document: DOCUMENT) -> DOCUMENT:
     return settings | readings | {f"{name}_se": table.get(f"{name}_se", [None] * rows) for name in sensors}
 
 
-def _headings(sheet: Worksheet, style: Style, document: DOCUMENT, names: list[str]) -> None:
+def _headings(sheet: Worksheet, style: Style, document: Json, names: list[str]) -> None:
     for place, name in enumerate(names):
         sheet.write_string(0, place, style.words.heading(name), style.looks["head"])
         sheet.write_comment(0, place, style.words.say(_hint(name, document)), {"author": "imu-health"})
     sheet.freeze_panes(1, 0)
 
 
-def _hint(name: str, document: DOCUMENT) -> str:
-    """What a column holds, in which unit."""
+def _hint(name: str, document: Json) -> str:
+    """Hint for a column, with its unit."""
     for sensor in document["sensors"]:
         if name == sensor["name"]:
             return reading_hint(name, sensor["reading_unit"])
@@ -212,21 +217,21 @@ def _hint(name: str, document: DOCUMENT) -> str:
     return COLUMN_HINTS.get(name, "")
 
 
-def _example_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
-    """The first rows filled in, and what is asked beside them; an upload does not read this sheet."""
+def _example_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
+    """The first rows filled in, with example values next to them; ignored by an upload."""
     columns = _columns(document)
     _headings(sheet, style, document, list(columns))
     sheet.set_column(0, len(columns) + 2, 14)
     for place, (name, cells) in enumerate(columns.items()):
         for row, cell in enumerate(cells[:MOST_SHOWN]):
             _write(sheet, (row + 1, place), style.words.value(name, cell), style.looks["given"])
-    beside = len(columns) + 1
-    sheet.set_column(beside, beside, 26)
-    sheet.set_column(beside + 1, beside + 1, 26)
-    sheet.write_string(0, beside, style.words.say("on the sheet session"), style.looks["head"])
+    example_column = len(columns) + 1
+    sheet.set_column(example_column, example_column, 26)
+    sheet.set_column(example_column + 1, example_column + 1, 26)
+    sheet.write_string(0, example_column, style.words.say("on the sheet session"), style.looks["head"])
     for row, (key, value) in enumerate(EXAMPLE.items(), start=1):
-        sheet.write_string(row, beside, style.words.key(key), style.looks["hint"])
-        sheet.write_string(row, beside + 1, value)
+        sheet.write_string(row, example_column, style.words.key(key), style.looks["hint"])
+        sheet.write_string(row, example_column + 1, value)
     sheet.protect()
 
 
@@ -243,16 +248,16 @@ def _write(sheet: Worksheet, place: tuple[int, int], value: Any, look: Format) -
 def _check(sheet: Worksheet, cells: tuple[int, int, int, int], name: str, hint: str, words: Wording) -> None:
     """A drop-down, bounds, or the hint alone while the cell is being filled in."""
     rule: dict[str, Any] = {"validate": "any"}
-    called = words.heading(words.key(name))
+    quantity = words.heading(words.key(name))
     if name in CHOICES:
         rule = {"validate": "list", "source": [words.value(name, choice) for choice in CHOICES[name]]}
-        rule["error_message"] = words.say(say("Choose one of the list for {called}.", called=called))
+        rule["error_message"] = words.say(say("Choose one of the list for {quantity}.", quantity=quantity))
     elif name in LIMITS:
         low, high = LIMITS[name]
         rule = {"validate": "decimal", "criteria": "between", "minimum": low, "maximum": high}
         rule["error_message"] = words.say(
-            say("{called} is a number from {low} to {high}.", called=called, low=f"{low:g}", high=f"{high:g}")
+            say("{quantity} is a number from {low} to {high}.", quantity=quantity, low=f"{low:g}", high=f"{high:g}")
         )
     if hint or name in CHOICES:
-        shown = {"input_title": called[:32], "input_message": hint[:255], "ignore_blank": True}
-        sheet.data_validation(*cells, {**rule, **shown})
+        input_options = {"input_title": quantity[:32], "input_message": hint[:255], "ignore_blank": True}
+        sheet.data_validation(*cells, {**rule, **input_options})

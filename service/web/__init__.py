@@ -1,27 +1,27 @@
-"""What every request passes before a route sees it: who it is for, who sent it, how large and how slow its body is.
+"""Checks that every request passes before a route sees it: host, origin, size and speed of its body.
 
-`guard` puts the checks around an application; what they refuse has the one shape of every error.
+`guard` adds them to an application; refusals have the one shape of every error.
 """
 
 from fastapi import FastAPI
 
 from service.kit.limits import in_force
 from service.settings import Settings
-from service.web.bodies import LimitedBodies, Limits
-from service.web.hosts import OwnHostOnly, hosts_of
-from service.web.origins import OwnSiteOnly
+from service.web.bodies import BodyLimits, LimitedBodies
+from service.web.hosts import AllowedHostsOnly, hosts_of
+from service.web.origins import SameSiteOnly
 from service.web.room import RoomForUploads
-from service.web.stopping import Door, Doorkeeper
+from service.web.stopping import GracefulStop, RequestGate
 
 
 def guard(app: FastAPI, settings: Settings) -> None:
     """Adds the checks, the innermost first."""
     app.add_middleware(RoomForUploads, folder=settings.files, least=in_force().free)
-    app.add_middleware(LimitedBodies, limits=Limits(in_force().body, in_force().client))
-    app.add_middleware(OwnSiteOnly, public_url=settings.public_url)
-    app.state.door = Door()
-    app.add_middleware(Doorkeeper, door=app.state.door)
-    app.add_middleware(OwnHostOnly, hosts=hosts_of(settings), public_url=settings.public_url)
+    app.add_middleware(LimitedBodies, limits=BodyLimits(in_force().body, in_force().client))
+    app.add_middleware(SameSiteOnly, public_url=settings.public_url)
+    app.state.gate = RequestGate()
+    app.add_middleware(GracefulStop, gate=app.state.gate)
+    app.add_middleware(AllowedHostsOnly, hosts=hosts_of(settings), public_url=settings.public_url)
 
 
 __all__ = ["guard"]

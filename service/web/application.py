@@ -1,4 +1,4 @@
-"""What is joined at the start and every request can reach, as ``app.state.application``."""
+"""What is set up at the start and is available to every request, as ``app.state.application``."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -17,22 +17,22 @@ from service.storage import Storage
 P = TypeVar("P")
 """A part of the application."""
 SMALL_BODY = 1024 * 1024
-"""Bytes of an upload that needs no place: a session of positions has a hundredth."""
+"""Bytes of an upload that needs no slot: a session of positions has a hundredth."""
 
 
-class Places:
-    """Of large uploads: each holds its bytes in memory. Used by the event loop alone, so it needs no lock."""
+class UploadSlots:
+    """Slots for large uploads: each holds its bytes in memory. Used by the event loop alone, so it needs no lock."""
 
     def __init__(self) -> None:
         self._taken = 0
 
     @contextmanager
-    def one_for(self, length: str, most: int) -> Iterator[None]:
-        """A place for an upload of this announced length, until it is worked on; BusyError where all are taken."""
+    def one_for(self, length: str, limit: int) -> Iterator[None]:
+        """A slot for an upload of this announced length, until it has been processed; BusyError where none is free."""
         if length.isdecimal() and int(length) <= SMALL_BODY:
             yield
             return
-        if self._taken >= most:
+        if self._taken >= limit:
             raise BusyError("Too many large files are being received; nothing of this one was stored. Send it again.")
         self._taken += 1
         try:
@@ -43,7 +43,7 @@ class Places:
 
 @dataclass(frozen=True)
 class Application:
-    """What `create_app` joins."""
+    """Composed by `create_app`."""
 
     settings: Settings
     storage: Storage
@@ -51,23 +51,23 @@ class Application:
     bell: Bell
     metrics: Metrics
     parts: Mapping[type, object]
-    """What subjects give to their routes, each under its type."""
-    places: Places = field(default_factory=Places)
+    """Services of the subjects for their routes, by type."""
+    places: UploadSlots = field(default_factory=UploadSlots)
 
     def find(self, kind: type[P]) -> P | None:
-        """A part that the operator may have left out."""
-        found = self.parts.get(kind)
-        assert found is None or isinstance(found, kind)
-        return found
+        """An optional part."""
+        part = self.parts.get(kind)
+        assert part is None or isinstance(part, kind)
+        return part
 
     def part(self, kind: type[P]) -> P:
         """A part that is always there."""
-        found = self.find(kind)
-        assert found is not None, kind
-        return found
+        part_found = self.find(kind)
+        assert part_found is not None, kind
+        return part_found
 
 
 def application_of(request: Request) -> Application:
-    """The application that a request came to."""
+    """The application of a request."""
     application: Application = request.app.state.application
     return application

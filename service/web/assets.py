@@ -1,4 +1,4 @@
-"""Style, scripts and the Vega bundle, served by us: named by content and kept by the browser for a year."""
+"""Style, scripts and the Vega bundle, served locally: named by content and cached by the browser for a year."""
 
 import gzip
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from fastapi import APIRouter, HTTPException, Request, Response
 STATIC = Path(__file__).parent / "static"
 KINDS = {".css": "text/css; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml"}
 VEGA = f"vega-{version('vl-convert-python')}.js"
-"""The bundle is made by the installed vl-convert, so its version names the content."""
+"""The bundle is made by the installed vl-convert, whose version therefore names it."""
 
 router = APIRouter(include_in_schema=False)
 
@@ -56,7 +56,7 @@ def asset_url(name: str) -> str:
 
 @router.get("/static/{name}")
 def static(name: str, request: Request) -> Response:
-    """A static file under its content's name."""
+    """A static file, named by its content."""
     if name != VEGA and name not in _files():
         raise HTTPException(404, "There is no such file.")
     asset = _asset(name)

@@ -1,8 +1,8 @@
-"""How large the body of a request may be, and how slowly it may come.
+"""Limits of size and time for the body of a request.
 
-Bodies of uploads have limits of their own, where they are received. Any other body is a few fields: what announces
-more is refused before it is read, what turns out to be more as soon as it is. The time that counts is the client's
-alone: while the service works, nobody waits for the client.
+Bodies of uploads have limits of their own, where they are received. Any other body is a few fields: one that announces
+more is refused before it is read, one that turns out to be more as soon as it is. Only the time of the client counts,
+not that of the service.
 """
 
 import asyncio
@@ -30,48 +30,48 @@ UPLOADS = frozenset(
         "/missing",
     }
 )
-"""Where files are received; these routes count what comes themselves."""
+"""Routes that receive files; they limit the size themselves."""
 TOO_LARGE, TOO_SLOW = 413, 408
 SLOWEST = 4000
-"""Bytes a second: a sixth of what a mobile line of the second generation (EDGE) carries."""
-LATE = 1.0
-"""Seconds: a clock that goes off later than this was held up by the service itself, and blames no client."""
+"""Bytes a second: a sixth of the rate of a second-generation mobile line (EDGE)."""
+LATE_SECONDS = 1.0
+"""Seconds: a timeout later than this was delayed by the service itself, and is not the client's fault."""
 CLOSE = {"Connection": "close"}
-"""With the answer to a body that does not come. What is too large comes and is passed over: a connection that is
-closed before would take the answer with it."""
+"""With the answer to a body that does not arrive. A body that is too large is read and discarded: closing the
+connection before would lose the answer."""
 
 
 class Unfinished(HTTPException):
-    """A body that is too large or too slow; whoever reads it passes this on, as FastAPI does."""
+    """A body that is too large or too slow; passed on by its reader, as FastAPI does."""
 
 
 @dataclass(frozen=True)
-class Limits:
-    """What a body may take."""
+class BodyLimits:
+    """Limits of a body."""
 
     most: int
     """Bytes, except of uploads."""
     patience: float
-    """Seconds that the client may keep the service waiting, beside what a slow line needs."""
+    """Seconds that the client may keep the service waiting, besides the time of a slow line."""
 
 
 class LimitedBodies:
-    """Stops bodies that grow too large or come too slowly."""
+    """Stops bodies that are too large or too slow."""
 
-    def __init__(self, app: ASGIApp, limits: Limits) -> None:
+    def __init__(self, app: ASGIApp, limits: BodyLimits) -> None:
         self.app = app
         self.limits = limits
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuses what announces too much; the rest is watched while it is read."""
+        """Refuses a body that announces too much; counts the rest while it is read."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        most = None if scope["path"] in UPLOADS else self.limits.most
-        if most is not None and _announced(scope) > most:
-            await _answer(_too_large(most))(scope, receive, send)
+        limit = None if scope["path"] in UPLOADS else self.limits.most
+        if limit is not None and _announced(scope) > limit:
+            await _answer(_too_large(limit))(scope, receive, send)
             return
-        body = _Body(receive, send, most, self.limits.patience)
+        body = _Body(receive, send, limit, self.limits.patience)
         try:
             await self.app(scope, body.receive, body.send)
         except Unfinished as fault:  # by whoever reads a body outside of the routes
@@ -81,21 +81,21 @@ class LimitedBodies:
 
 
 class _Body:
-    """One body on its way in: how much came, and for how long it was waited for."""
+    """One incoming body: bytes received, and time waited for it."""
 
-    def __init__(self, receive: Receive, send: Send, most: int | None, patience: float) -> None:
-        self._receive, self._send, self._most = receive, send, most
+    def __init__(self, receive: Receive, send: Send, limit: int | None, patience: float) -> None:
+        self._receive, self._send, self._most = receive, send, limit
         self._patience = patience
         self._came, self._waited, self._complete = 0, 0.0, False
         self.answered = False
 
     async def send(self, message: Message) -> None:
-        """Notes that the answer has begun: from then on a body matters to nobody."""
+        """Notes that the answer has begun: from then on the body no longer matters."""
         self.answered = True
         await self._send(message)
 
     async def receive(self) -> Message:
-        """The next part; `Unfinished` where there is too much of it, or where it does not come."""
+        """The next part; `Unfinished` where it exceeds the limit, or does not arrive."""
         if self._complete or self.answered:
             return await self._receive()
         message = await self._in_time()
@@ -108,35 +108,35 @@ class _Body:
     async def _in_time(self) -> Message:
         loop = asyncio.get_running_loop()
         start = loop.time()
-        left = self._patience + self._came / SLOWEST - self._waited
+        remaining = self._patience + self._came / SLOWEST - self._waited
         while True:
-            end = loop.time() + max(left, 0.0)
+            end = loop.time() + max(remaining, 0.0)
             try:
                 async with asyncio.timeout_at(end):
                     message = await self._receive()
                 break
             except TimeoutError:
-                if loop.time() - end < LATE:
+                if loop.time() - end < LATE_SECONDS:
                     raise Unfinished(TOO_SLOW, _slow(self._patience), CLOSE) from None
-                left = LATE  # It was the service that was late: what came meanwhile is still to be looked at.
+                remaining = LATE_SECONDS  # The service was late, not the client: look for what came meanwhile.
         self._waited += loop.time() - start
         return message
 
 
 def _announced(scope: Scope) -> int:
-    """The length that a request gives itself; the server has made sure that it is a number."""
+    """The announced length; the server has checked that it is a number."""
     return int(Headers(scope=scope).get("content-length", "0"))
 
 
-def _too_large(most: int) -> Unfinished:
+def _too_large(limit: int) -> Unfinished:
     return Unfinished(
-        TOO_LARGE, say("A request of this kind may hold {most} bytes; this one is larger.", most=f"{most:,}")
+        TOO_LARGE, say("A request of this kind may hold {limit} bytes; this one is larger.", limit=f"{limit:,}")
     )
 
 
 def _slow(patience: float) -> str:
     return say(
-        "The request did not arrive: it was waited for {patience} s longer than a slow line takes.",
+        "The request did not arrive within {patience} s more than a slow line needs.",
         patience=f"{patience:g}",
     )
 

@@ -1,4 +1,4 @@
-"""What routes ask for by type: settings, clock, database, language, a place for a large upload."""
+"""Dependencies of routes: settings, clock, database, language, a slot for a large upload."""
 
 from collections.abc import AsyncIterator, Iterator
 from datetime import datetime
@@ -24,10 +24,10 @@ def _settings(request: Request) -> Settings:
     return application_of(request).settings
 
 
-async def _place(request: Request) -> AsyncIterator[None]:
-    """Of a large upload, from before its first byte until it has been worked on."""
-    own = application_of(request)
-    with own.places.one_for(request.headers.get("content-length", ""), in_force().in_flight):
+async def _slot(request: Request) -> AsyncIterator[None]:
+    """Slot of a large upload, from before its first byte until it has been processed."""
+    application = application_of(request)
+    with application.places.one_for(request.headers.get("content-length", ""), in_force().in_flight):
         yield
 
 
@@ -49,23 +49,23 @@ def _language(request: Request) -> Language:
 
 
 LanguageOf = Annotated[Language, Depends(_language)]
-"""What is made for people is made in the language of the one who asks."""
+"""Language of what is made for people."""
 
 
-def limited(request: Request, most: int, *, is_form: bool) -> Request:
-    """The same request, but a body that grows beyond ``most`` bytes is stopped, whatever it announced."""
-    longest = most + (ENVELOPE if is_form else 0)
-    seen = 0
+def limited(request: Request, limit: int, *, is_form: bool) -> Request:
+    """The same request with a body limited to ``limit`` bytes, whatever length it announced."""
+    limit_in_all = limit + (ENVELOPE if is_form else 0)
+    received = 0
 
     async def counted() -> Message:
-        nonlocal seen
+        nonlocal received
         message = await request.receive()
-        seen += len(message.get("body", b""))
-        if seen > longest:
+        received += len(message.get("body", b""))
+        if received > limit_in_all:
             raise TooLargeError(
                 say(
-                    "An upload may hold {most} bytes at a time; this one is larger. Average or split it.",
-                    most=f"{most:,}",
+                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                    limit=f"{limit:,}",
                 )
             )
         return message
@@ -75,11 +75,11 @@ def limited(request: Request, most: int, *, is_form: bool) -> Request:
 
 SettingsOf = Annotated[Settings, Depends(_settings)]
 """The settings of the service."""
-PlaceOf = Annotated[None, Depends(_place, scope="function")]
-"""A place for an upload; BusyError where all are taken."""
+UploadSlotOf = Annotated[None, Depends(_slot, scope="function")]
+"""A slot for an upload; BusyError where none is free."""
 MetricsOf = Annotated[Metrics, Depends(_metrics)]
-"""The figures of the service."""
+"""The metrics of the service."""
 Now = Annotated[datetime, Depends(_now)]
 """The time of the request, UTC."""
 Reading = Annotated[Store, Depends(_reading, scope="function")]
-"""The database as one read-only transaction sees it."""
+"""A read-only transaction of the database."""

@@ -1,4 +1,4 @@
-"""What pydantic finds in a request, as messages: its kinds of faults, and what their sentences are made of."""
+"""Pydantic's validation errors as messages with their parts."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,7 +19,7 @@ SENTENCES = {
     "date_from_datetime_parsing": "Input should be a valid date or datetime, {error}",
     "url_parsing": "Input should be a valid URL, {error}",
 }
-"""By the type of the fault; all others have no parts."""
+"""By type of error; all others have no parts."""
 COUNTED = {
     "string_too_short": (
         "String should have at least {n} character",
@@ -42,11 +42,11 @@ COUNTED = {
         "max_length",
     ),
 }
-"""The same of one and of several, and what is counted."""
+"""Singular, plural, and the counted part."""
 
 
 def fault_in_words(fault: Mapping[str, Any]) -> str:
-    """The sentence of one of the errors of a `ValidationError`, with its parts where they make it."""
+    """The message of a validation error, with its parts where they give the same text."""
     message = _with_parts(fault["type"], fault.get("ctx", {}))
     return message if message == fault["msg"] else str(fault["msg"])
 

@@ -1,4 +1,4 @@
-"""Kinds of value that requests share."""
+"""Types of values in requests."""
 
 import re
 from dataclasses import dataclass
@@ -12,55 +12,55 @@ from service.kit.moments import EARLIEST, EPOCH, LATEST, MILLISECOND, aware, in_
 from service.sessions.decision import Verdict
 
 TEXT = r"^[^\x00]*$"
-"""PostgreSQL keeps any character but NUL."""
+"""PostgreSQL stores any character but NUL."""
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
 FEWEST_MS = 100_000_000_000
-"""In milliseconds a day of March 1973, long before anything was measured; in seconds the year 5138."""
+"""In milliseconds a day of March 1973, long before any measurement; in seconds the year 5138."""
 MOST_MS = 7_258_118_400_000
-"""The start of 2200, after which nothing is kept."""
+"""The start of 2200, the latest date stored."""
 
 
-def _counted(given: object) -> object:
-    """A bound may be counted in milliseconds since 1970, as dashboards do. Seconds would lie in 1970 and are refused,
-    for they would cut nothing, or all."""
-    if not isinstance(given, str) or not given.isdecimal():
-        return _written(given)
-    if int(given) < FEWEST_MS:
+def _counted(value: object) -> object:
+    """A bound may be in milliseconds since 1970, as dashboards send it. Seconds would lie in 1970 and are refused,
+    since they would select nothing, or everything."""
+    if not isinstance(value, str) or not value.isdecimal():
+        return _written(value)
+    if int(value) < FEWEST_MS:
         raise ValueError("a bare number is milliseconds since 1970; of seconds, write the date and time")
-    return EPOCH + min(int(given), MOST_MS) * MILLISECOND
+    return EPOCH + min(int(value), MOST_MS) * MILLISECOND
 
 
 def _bounded(moment: datetime) -> datetime:
-    """Nothing is kept from before 1900 or after 2200: a bound beyond asks for the same."""
+    """No date before 1900 or after 2200 is stored: a bound beyond selects the same."""
     return min(max(aware(moment), EARLIEST), LATEST).astimezone(UTC)
 
 
-def _written(given: object) -> object:
+def _written(value: object) -> object:
     """A bare number would be taken for seconds since 1970."""
-    if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
+    if isinstance(value, int | float) or (isinstance(value, str) and NUMBER.fullmatch(value)):
         raise ValueError("must be a date and time like 2026-03-01T09:00:00Z")
-    return given
+    return value
 
 
-def _day_written(given: object) -> object:
-    if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
+def _day_written(value: object) -> object:
+    if isinstance(value, int | float) or (isinstance(value, str) and NUMBER.fullmatch(value)):
         raise ValueError("must be a day like 2026-03-01")
-    return given
+    return value
 
 
 Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(in_utc)]
-"""A time; without a zone it is UTC."""
+"""A time; UTC without a zone."""
 Bound = Annotated[datetime, BeforeValidator(_counted), AfterValidator(_bounded)]
-"""A time that a list begins or ends at; without a zone it is UTC. Also as milliseconds since 1970."""
+"""First or last time of a list; UTC without a zone. Also in milliseconds since 1970."""
 Day = Annotated[date, BeforeValidator(_day_written)]
-"""A day, as on a calendar."""
+"""A calendar day."""
 Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
 LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]
 Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
-Said = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=200)]
-"""A name that says something."""
+NonBlankName = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=200)]
+"""A name that is not blank."""
 Reason = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=2000)]
-"""A text that says something."""
+"""A text that is not blank."""
 Number = Annotated[int, Path(ge=1, le=2_000_000_000, description="Number of the entry.", examples=[1])]
 
 SessionId = Annotated[
@@ -95,23 +95,23 @@ WantedText = Annotated[Text | None, Query(alias="q", description="Part of a seri
 
 @dataclass(frozen=True)
 class Window:
-    """Which part of a list is wanted."""
+    """Requested part of a list."""
 
     page: int
     limit: int
 
     @property
     def offset(self) -> int:
-        """How many entries come before it."""
+        """Number of entries before it."""
         return (self.page - 1) * self.limit
 
-    def next_after(self, found: int) -> int | None:
+    def next_after(self, count: int) -> int | None:
         """The number of the next page; None after one that is not full."""
-        return self.page + 1 if found == self.limit else None
+        return self.page + 1 if count == self.limit else None
 
-    def place(self, found: int) -> dict[str, Any]:
-        """What a `Paged` answer says of its place."""
-        return {"page": self.page, "limit": self.limit, "next_page": self.next_after(found)}
+    def place(self, count: int) -> dict[str, Any]:
+        """Fields of a `Paged` answer."""
+        return {"page": self.page, "limit": self.limit, "next_page": self.next_after(count)}
 
 
 class Paged(BaseModel):

@@ -1,4 +1,4 @@
-"""Records as tables that other programs read: CSV, Parquet and Arrow."""
+"""Records as tables for other programs: CSV, Parquet and Arrow."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -8,22 +8,26 @@ from urllib.parse import quote
 import polars as pl
 from fastapi import Request, Response
 
+from estimator.json_object import Json
+
 FORMS = {
     "application/json": "json",
     "text/csv": "csv",
     "application/vnd.apache.parquet": "parquet",
     "application/vnd.apache.arrow.stream": "arrow",
 }
-"""Media types of tables and what the parameter `format` calls them; the first one is for whoever names none."""
+"""Media types of tables and their values of the parameter `format`; the first one is the default."""
 
 
-def wanted_form(request: Request, named: str | None, forms: Mapping[str, str] = FORMS) -> str:
-    """What the address names, else what the header likes best, else the first form."""
-    if named is not None:
-        return named
-    liked = _liked(request.headers.get("accept", ""))
-    offered = {media: max((liked[kind] for kind in _covering(media) if kind in liked), default=0.0) for media in forms}
-    best = max(offered, key=offered.__getitem__)
+def wanted_form(request: Request, stated: str | None, forms: Mapping[str, str] = FORMS) -> str:
+    """The form in the address, else the one preferred by the header, else the first."""
+    if stated is not None:
+        return stated
+    weights = _weights(request.headers.get("accept", ""))
+    ranked = {
+        media: max((weights[kind] for kind in _covering(media) if kind in weights), default=0.0) for media in forms
+    }
+    best = max(ranked, key=ranked.__getitem__)
     return forms[best]
 
 
@@ -31,26 +35,26 @@ def _covering(media: str) -> tuple[str, str, str]:
     return media, f"{media.partition('/')[0]}/*", "*/*"
 
 
-def _liked(header: str) -> dict[str, float]:
-    """Media types with their weights (RFC 9110, 12.5.1); one whose weight is no number is passed over."""
-    found = {}
+def _weights(header: str) -> dict[str, float]:
+    """Media types with their weights (RFC 9110, 12.5.1); an invalid weight is ignored."""
+    weights = {}
     for part in header.split(","):
         media, _, rest = part.partition(";")
         weight = rest.strip().removeprefix("q=") or "1"
         if weight.replace(".", "", 1).isdecimal():
-            found[media.strip().lower()] = float(weight)
-    return found
+            weights[media.strip().lower()] = float(weight)
+    return weights
 
 
 TIME = pl.Datetime("us", "UTC")
-"""Microseconds, as both databases keep them."""
+"""Microseconds, as stored by both databases."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
-"""How OpenAPI describes a table."""
-TABLES: dict[str, Any] = {media: BINARY for media, form in FORMS.items() if form != "json"}
+"""Schema of a table in OpenAPI."""
+TABLES: Json = {media: BINARY for media, form in FORMS.items() if form != "json"}
 BY_HEADER = {"Vary": "Accept"}
-"""Of an answer whose form the header `Accept` may choose."""
+"""Of an answer whose form depends on the header `Accept`."""
 FORMULA = r"^[=+\-@\t\r]"
-"""How a cell begins that a spreadsheet would work out instead of showing."""
+"""First character of a cell that a spreadsheet would evaluate instead of showing."""
 
 
 def as_csv(table: pl.DataFrame, filename: str) -> Response:
@@ -73,14 +77,14 @@ def as_parquet(table: pl.DataFrame, filename: str) -> Response:
 
 
 def as_arrow(table: pl.DataFrame, filename: str) -> Response:
-    """Arrow's streaming format, with text in the layout that every reader of Arrow knows."""
+    """Arrow's streaming format, with text in the layout that every Arrow reader supports."""
     target = io.BytesIO()
     table.write_ipc_stream(target, compat_level=pl.CompatLevel.oldest())
     return as_file(target.getvalue(), "application/vnd.apache.arrow.stream", filename)
 
 
 WRITERS = {"csv": as_csv, "parquet": as_parquet, "arrow": as_arrow}
-"""By what the parameter `format` calls them."""
+"""By the value of the parameter `format`."""
 
 
 def as_table(table: pl.DataFrame, form: str, name: str) -> Response:
@@ -102,12 +106,12 @@ def _plain(value: Any) -> Any:
 
 
 def as_file(content: bytes, media_type: str, filename: str) -> Response:
-    """Bytes that a browser keeps as a file of this name."""
+    """Bytes as a file of this name in the browser."""
     return Response(content, media_type=media_type, headers={"Content-Disposition": disposition(filename)})
 
 
 def disposition(filename: str) -> str:
-    """The header that makes a browser keep an answer under a name, whatever is written in it."""
+    """The header for saving an answer under a name, whatever characters it has."""
     return f"attachment; filename*=UTF-8''{quote(filename, safe='')}"
 
 

@@ -29,7 +29,7 @@ HEADERS = {
 
 
 class SecurityHeaders:
-    """Everything a page loads is ours, nothing runs from inside a page, and no other site may frame it."""
+    """Everything a page loads is from this service, no inline script runs, and no other site may frame it."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -48,7 +48,7 @@ class SecurityHeaders:
 
 
 class HeadAsGet:
-    """Works out what GET would answer (RFC 9110, 9.3.2); the server, whose own scope says HEAD, sends the head only."""
+    """Computes the answer to GET (RFC 9110, 9.3.2); the server, whose own scope says HEAD, sends the head only."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -58,11 +58,11 @@ class HeadAsGet:
         if scope["type"] != "http" or scope["method"] != "HEAD":
             await self.app(scope, receive, send)
             return
-        asked = {**scope, "method": "GET"}
+        get_scope = {**scope, "method": "GET"}
 
-        async def named(message: Message) -> None:
-            if "route" in asked:
-                scope["route"] = asked["route"]  # which the log and the figures name
+        async def with_route(message: Message) -> None:
+            if "route" in get_scope:
+                scope["route"] = get_scope["route"]  # which the log and the figures name
             await send(message)
 
-        await self.app(asked, receive, named)
+        await self.app(get_scope, receive, with_route)

@@ -1,4 +1,4 @@
-"""Answers that a caller may hold: each has a tag of its content, and is not sent again to whoever has it."""
+"""Cacheable answers: each has a tag of its content, and is not sent again to a caller that has it."""
 
 from hashlib import sha256
 
@@ -6,14 +6,14 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 OK, NOT_MODIFIED = 200, 304
-HELD = "private, no-cache"
-"""It may be held by who asked for it, and is to be asked for again before it is used."""
-KEPT = ("etag", "cache-control", "vary")
-"""Headers that an answer without content still has (RFC 9110, 15.4.5)."""
+CACHE_CONTROL = "private, no-cache"
+"""May be cached by the caller, and must be revalidated before use."""
+HEADERS_OF_304 = ("etag", "cache-control", "vary")
+"""Headers of an answer without content (RFC 9110, 15.4.5)."""
 
 
-class Held:
-    """Tags every answer to GET below a prefix that comes in one piece and has no tag of its own."""
+class EntityTags:
+    """Tags every complete answer to GET below a prefix that has no tag of its own."""
 
     def __init__(self, app: ASGIApp, prefix: str) -> None:
         self.app, self.prefix = app, f"{prefix}/"
@@ -40,20 +40,20 @@ class Held:
 
 
 def _is_plain(start: Message) -> bool:
-    """Whether it says 200 and has no tag yet."""
+    """Whether it has status 200 and no tag."""
     return start["status"] == OK and "etag" not in MutableHeaders(scope=start)
 
 
 def _answer(start: Message, whole: Message, known: str) -> tuple[Message, Message]:
-    """The answer with its tag, or that the caller has it already.
+    """The answer with its tag, or 304 where the caller has it.
 
-    The tag is weak: what is sent may be compressed on its way.
+    The tag is weak: the answer may be compressed in transit.
     """
     headers = MutableHeaders(scope=start)
-    mark = f'"{sha256(whole["body"]).hexdigest()[:32]}"'
-    headers["ETag"] = f"W/{mark}"
-    headers.setdefault("Cache-Control", HELD)
-    if mark not in known and known.strip() != "*":
+    tag_value = f'"{sha256(whole["body"]).hexdigest()[:32]}"'
+    headers["ETag"] = f"W/{tag_value}"
+    headers.setdefault("Cache-Control", CACHE_CONTROL)
+    if tag_value not in known and known.strip() != "*":
         return start, whole
-    kept = [(name, value) for name, value in start["headers"] if name.decode() in KEPT]
-    return {**start, "status": NOT_MODIFIED, "headers": kept}, {**whole, "body": b""}
+    headers_left = [(name, value) for name, value in start["headers"] if name.decode() in HEADERS_OF_304]
+    return {**start, "status": NOT_MODIFIED, "headers": headers_left}, {**whole, "body": b""}

@@ -1,4 +1,4 @@
-"""Every answer that people read tells caches and browsers of its language."""
+"""Language of answers: templates, and headers for caches and browsers."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,52 +14,52 @@ from service.languages.language import COOKIE, YEAR, Language, asked, chosen_by_
 from service.languages.templates import in_language
 
 
-class Spoken:
-    """What the templates of a language use. English is what everything is written in, and is left alone."""
+class TemplateLanguage:
+    """Translation of templates. English is the language of the sources, and is left alone."""
 
     def __init__(self, language: Language) -> None:
         self._catalogue = None if language is Language.ENGLISH else catalogue_of(language)
 
     def templates(self, folders: Sequence[Path]) -> BaseLoader:
-        """Where the templates come from."""
-        return FileSystemLoader(folders) if self._catalogue is None else _Exchanged(folders, self._catalogue)
+        """Loader of the templates."""
+        return FileSystemLoader(folders) if self._catalogue is None else _TranslatedLoader(folders, self._catalogue)
 
     def say(self, value: Any) -> Any:
-        """A value of a page as people read it; markup and numbers are not touched."""
+        """A value of a page in the language; markup and numbers are unchanged."""
         if self._catalogue is None or isinstance(value, Markup) or not isinstance(value, str):
             return value
         return self._catalogue.say(value)
 
     def plural(self, number: int) -> int:
-        """Which plural form a number needs."""
+        """Index of the plural form for a number."""
         return 0 if self._catalogue is None else self._catalogue.plural(int(number))
 
     def chart(self, data: Any) -> Any:
-        """A chart's definition with its titles said in the language."""
+        """A chart's definition with translated titles."""
         return data if self._catalogue is None else self._catalogue.chart(data)
 
 
-class _Exchanged(FileSystemLoader):
-    """Templates with their texts exchanged before they are compiled."""
+class _TranslatedLoader(FileSystemLoader):
+    """Loader that translates templates before they are compiled."""
 
     def __init__(self, folders: Sequence[Path], catalogue: Catalogue) -> None:
         super().__init__(folders)
         self._catalogue = catalogue
 
     def get_source(self, environment: Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
-        """The source in the language of the catalogue."""
+        """The translated source."""
         source, path, is_current = super().get_source(environment, template)
         return in_language(source, self._catalogue.forms), path, is_current
 
 
 READ_BY_PEOPLE = ("text/html", "application/problem+json")
-"""Kinds of answers that depend on the language; all others are for programs, or their routes say it."""
+"""Media types that depend on the language; all others are for programs, or their routes decide."""
 PAPERS = ("application/pdf", "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet")
-"""Made in the language of the one who asks, or kept in that of the one who approved them."""
+"""In the language of the requester, or stored in that of the approver."""
 
 
-class InOneLanguage:
-    """Outside of everything that answers: errors of any part pass it."""
+class LanguageHeaders:
+    """Outermost middleware: errors of any part pass through it."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -69,10 +69,10 @@ class InOneLanguage:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        await self.app(scope, receive, _Speaker(scope, send))
+        await self.app(scope, receive, _LanguageSend(scope, send))
 
 
-class _Speaker:
+class _LanguageSend:
     """Adds the headers of a language."""
 
     def __init__(self, scope: Scope, send: Send) -> None:
@@ -83,10 +83,10 @@ class _Speaker:
         if message["type"] == "http.response.start":
             kind = MutableHeaders(scope=message).get("content-type", "")
             if kind.startswith((*READ_BY_PEOPLE, *PAPERS)):
-                self._tell(MutableHeaders(scope=message), kind)
+                self._add_headers(MutableHeaders(scope=message), kind)
         await self._send(message)
 
-    def _tell(self, headers: MutableHeaders, kind: str) -> None:
+    def _add_headers(self, headers: MutableHeaders, kind: str) -> None:
         if kind.startswith(READ_BY_PEOPLE):
             headers.setdefault("Content-Language", self._language.value)
         headers.add_vary_header("Accept-Language")

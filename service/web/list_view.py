@@ -1,17 +1,29 @@
 """What a visitor asked a list for: it stands in the address, so that it can be kept, sent on and gone back to."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Generic, TypeVar
 from urllib.parse import urlencode
 
-from pydantic import Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 
 from estimator.message import say
 from service.web.fields import NO_NUL
 
 Asked = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
 """A part of an address, as it came."""
+Words = Annotated[Asked, AfterValidator(str.strip)]
+"""Part of a name."""
+Entry = TypeVar("Entry")
+LAST = ("sort", "page", "after", "before")
+"""What stands at the end of an address."""
+PLACE = LAST[1:]
+"""Which page of the list is shown."""
+
+
+def one_of(known: Collection[str]) -> AfterValidator:
+    """Leaves out what nobody knows."""
+    return AfterValidator(lambda asked: asked if asked in known else "")
 
 
 def address_of(path: str, asked: Mapping[str, object]) -> str:
@@ -20,21 +32,35 @@ def address_of(path: str, asked: Mapping[str, object]) -> str:
     return f"{path}?{urlencode(kept)}" if kept else path
 
 
-@dataclass(frozen=True)
-class ListView:
-    """A list that is narrowed and ordered by its address. Every field is empty where nothing is asked."""
+class ListView(BaseModel):
+    """A list that is narrowed and ordered by its address: every field is a part of it, in the order of the address.
+    Every field is empty where nothing is asked, and where it asks for what nobody knows."""
 
+    model_config = ConfigDict(frozen=True)
     PATH: ClassVar[str]
-    NAMES: ClassVar[Mapping[str, str]]
-    """Fields as they are called in an address, in its order."""
-    PLAIN: ClassVar[Mapping[str, object]]
-    """What an address need not say: the list as it is unasked."""
-    FIRST: ClassVar[Mapping[str, str | int]]
-    """What leads to the first page."""
     ORDERS: ClassVar[Mapping[str, str]]
-    """What the list can be ordered by, in words."""
-    sort: str = ""
-    """One of these, with ``-`` before it where backwards."""
+    """What the list can be ordered by, in words; by the first where nothing else is asked."""
+    PAGE_SIZE: ClassVar[int] = 50
+    """Entries on a page: two screens."""
+
+    sort: Annotated[Asked, Field(validate_default=True)] = ""
+    """One of the orders, with ``-`` before it where backwards."""
+    after: Asked = ""
+    """The entry that this page follows."""
+    before: Asked = ""
+    """The entry that it comes before."""
+
+    @field_validator("sort")
+    @classmethod
+    def known_order(cls, asked: str) -> str:
+        """The order that is asked for, or the first where nobody knows it."""
+        return asked if asked.removeprefix("-") in cls.ORDERS else next(iter(cls.ORDERS))
+
+    @field_validator("before")
+    @classmethod
+    def one_place(cls, asked: str, info: ValidationInfo) -> str:
+        """A page that follows an entry comes before none."""
+        return "" if info.data.get("after") else asked
 
     @property
     def order(self) -> str:
@@ -54,19 +80,47 @@ class ListView:
     @property
     def narrows(self) -> bool:
         """Whether it leaves anything out."""
-        return any(value for field, value in vars(self).items() if field not in ("sort", *self.FIRST))
+        return any(value for name, value in self if name not in LAST)
 
     def url(self, **changes: str | int) -> str:
-        """The address of this view with something changed."""
-        asked = {**vars(self), **changes}
-        shown = {name: asked[f] for f, name in self.NAMES.items() if asked[f] != self.PLAIN.get(f, "")}
-        return address_of(self.PATH, shown)
+        """The address of this view with something changed; what the list is as it is unasked need not be said."""
+        asked, plain = self.model_dump() | changes, type(self)().model_dump()
+        names = sorted(asked, key=lambda name: LAST.index(name) if name in LAST else -1)
+        return address_of(self.PATH, {name: asked[name] for name in names if asked[name] != plain[name]})
+
+    def first(self, **changes: str | int) -> str:
+        """The address of its first page."""
+        plain = type(self)().model_dump(include={*PLACE})
+        return self.url(**plain | changes)
 
     def sorted_by(self, order: str) -> str:
         """The address of the list in another order, or backwards where it has this one; from its first page on."""
-        return self.url(**{**self.FIRST, "sort": f"-{order}" if self.sort == order else order})
+        return self.first(sort=f"-{order}" if self.sort == order else order)
+
+    def earlier(self, entry: str, *, others: bool) -> str:
+        """The address of the page before an entry; empty where there is none."""
+        is_first = not others if self.before else not self.after
+        return "" if is_first or not entry else self.url(before=entry, after="")
+
+    def later(self, entry: str, *, others: bool) -> str:
+        """The address of the page after an entry; empty where there is none."""
+        return self.url(after=entry, before="") if entry and (others or self.before) else ""
 
 
-def known_order(asked: str, orders: Mapping[str, str], otherwise: str) -> str:
-    """The order that an address asks for, or another where nobody knows it."""
-    return asked if asked.removeprefix("-") in orders else otherwise
+@dataclass(frozen=True)
+class Shown(Generic[Entry]):
+    """One page of a list."""
+
+    entries: tuple[Entry, ...]
+    earlier: str
+    """Address of the page before this one; empty where it is the first."""
+    later: str
+    """Address of the next page; empty where it is the last."""
+
+    @classmethod
+    def of(cls, view: ListView, found: Sequence[Entry], name: Callable[[Entry], object]) -> "Shown[Entry]":
+        """One entry more than fit on a page says that there are others in the direction of reading."""
+        size, others = view.PAGE_SIZE, len(found) > view.PAGE_SIZE
+        entries = tuple(found[-size:] if view.before else found[:size])
+        first, last = (str(name(one)) for one in (entries[0], entries[-1])) if entries else ("", "")
+        return cls(entries, view.earlier(first, others=others), view.later(last, others=others))

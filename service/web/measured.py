@@ -1,4 +1,4 @@
-"""Every request under an id, counted in the figures and told in the log by one line."""
+"""Every request under an id, counted in the metrics and logged in one line."""
 
 import re
 from time import perf_counter
@@ -13,56 +13,56 @@ from service.kit.metrics import Metrics
 from service.web.headers import API as PREFIX
 
 PLAIN_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
-"""An id that came with a request is handed on if nothing in it can be taken for anything else in a log."""
+"""An id of the client is accepted if it cannot be mistaken for anything else in a log."""
 FAILED = 500
-"""The status of an answer that never came: what is then sent comes from outside of here."""
+"""Status of an answer that was never sent: the server then sends its own."""
 
 
-class Measured:
-    """Names and times every request; stands outside of all that answers, so that what it notes is what was sent."""
+class RequestLog:
+    """Identifies and times every request; outermost, so that it records what was sent."""
 
     def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
         self.app = app
         self.metrics = metrics
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Passes everything through; an answer is noted when its end is sent, before what may run after it."""
+        """Passes everything through; an answer is recorded when its end is sent, before background tasks."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        id, start, status, noted = _id(scope), perf_counter(), FAILED, False
+        id, start, status, is_recorded = _id(scope), perf_counter(), FAILED, False
         scope.setdefault("state", {})["request_id"] = id
 
-        async def named(message: Message) -> None:
-            nonlocal status, noted
+        async def with_id(message: Message) -> None:
+            nonlocal status, is_recorded
             if message["type"] == "http.response.start":
                 status = message["status"]
                 MutableHeaders(scope=message)[REQUEST_ID] = id
             elif message["type"] == "http.response.body" and not message.get("more_body"):
-                noted = True
-                self._note(scope, status, perf_counter() - start)
+                is_recorded = True
+                self._record(scope, status, perf_counter() - start)
             await send(message)
 
         with bound_contextvars(request_id=id):
             try:
-                await self.app(scope, receive, named)
+                await self.app(scope, receive, with_id)
             finally:
-                if not noted:
-                    self._note(scope, status, perf_counter() - start)
+                if not is_recorded:
+                    self._record(scope, status, perf_counter() - start)
 
-    def _note(self, scope: Scope, status: int, seconds: float) -> None:
+    def _record(self, scope: Scope, status: int, seconds: float) -> None:
         method, operation = scope["method"], getattr(scope.get("route"), "name", None)
         self.metrics.count_request(method, operation, status, seconds)
         log.info("request", method=method, path=_template(scope), status=status, milliseconds=round(1000 * seconds, 1))
 
 
 def _id(scope: Scope) -> str:
-    """The id that the request brought, if it is short and plain; else a new one."""
-    brought = Headers(scope=scope).get(REQUEST_ID, "")
-    return brought if PLAIN_ID.fullmatch(brought) else uuid4().hex
+    """The client's id, if it is short and plain; else a new one."""
+    client_id = Headers(scope=scope).get(REQUEST_ID, "")
+    return client_id if PLAIN_ID.fullmatch(client_id) else uuid4().hex
 
 
 def _template(scope: Scope) -> str | None:
-    """The path of the route, with blanks for what stands in them; None where no route took the request."""
+    """Path template of the route; None where no route matched."""
     path = getattr(scope.get("route"), "path", None)
     return f"{PREFIX}{path}" if path is not None and scope["path"].startswith(f"{PREFIX}/") else path

@@ -1,11 +1,11 @@
 """The one shape of every error: application/problem+json (RFC 9457)."""
 
 from collections.abc import Iterable
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 
 
 class Fault(BaseModel):
@@ -46,6 +46,6 @@ def faults(problems: Iterable[Problem]) -> list[Fault]:
     return [Fault(**vars(one)) for one in problems]
 
 
-def errors(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """OpenAPI entries of the problems that a route can answer with; any route can find the database away."""
+def errors(*statuses: int) -> dict[int | str, Json]:
+    """OpenAPI entries of a route's problems; any route can find the database unavailable."""
     return {status: {"model": ProblemDocument} for status in (*statuses, 503)}

@@ -1,8 +1,7 @@
-"""Error pages: the service's one problem shape, shown to people who came with a browser."""
+"""Error pages: the service's one problem shape, shown to browsers."""
 
 import json
 from dataclasses import dataclass
-from typing import Any
 from urllib.parse import quote
 
 from fastapi import FastAPI, Request, Response
@@ -10,6 +9,7 @@ from fastapi.responses import RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.kit.log import REQUEST_ID
 from service.web.headers import HEADERS
 from service.web.render import render
@@ -18,7 +18,10 @@ PROBLEM = b"application/problem+json"
 UNAUTHORIZED, SEE_OTHER = 401, 303
 ADVICE = {
     401: "Sign in, then go back and send it once more.",
-    403: "If it was a form, open its page again and send it once more. If it is not yours to do, ask who may.",
+    403: (
+        "If it was a form, open its page again and send it once more. If your role does not permit it, ask someone "
+        "whose role does."
+    ),
     404: "The address may be mistyped, or the link is older than the data.",
     408: "The connection may be slow or was interrupted: send it again.",
     409: "Look at the record again: it may have changed since the page was loaded.",
@@ -26,14 +29,14 @@ ADVICE = {
     421: "Open the service by the address that its operator gives.",
     422: "Correct what is listed and try again.",
     503: "Nothing was lost. The page works again as soon as the database answers: try again in a few seconds.",
-    507: "Nothing was lost. Ask whoever runs this service to make room.",
+    507: "Nothing was lost. Ask the operator of this service to free disk space.",
 }
-OTHERWISE = "Nothing was lost. Try again; if it happens again, tell whoever runs this service."
+DEFAULT_ADVICE = "Nothing was lost. Try again; if it happens again, tell the operator of this service."
 
 
 @dataclass(frozen=True)
 class ProblemPage:
-    """Everything an error page shows."""
+    """Contents of an error page."""
 
     status: int
     title: str
@@ -41,10 +44,10 @@ class ProblemPage:
     problems: tuple[Problem, ...]
     advice: str
     request_id: str
-    """Under which the log knows the request; empty where it has none."""
+    """Of the request in the log; empty where it has none."""
 
 
-def problem_page(problem: dict[str, Any]) -> ProblemPage:
+def problem_page(problem: Json) -> ProblemPage:
     """The page of a problem+json document."""
     status = int(problem["status"])
     return ProblemPage(
@@ -55,13 +58,13 @@ def problem_page(problem: dict[str, Any]) -> ProblemPage:
             Problem(str(p.get("field", "")), str(p.get("message", "")), p.get("row"))
             for p in problem.get("problems", ())
         ),
-        advice=ADVICE.get(status, OTHERWISE),
+        advice=ADVICE.get(status, DEFAULT_ADVICE),
         request_id=str(problem.get("request_id", "")),
     )
 
 
 def unexpected_pages(app: FastAPI) -> None:
-    """Answers what nobody foresaw with a page too: that handler stands outside of every middleware.
+    """Answers unexpected errors with a page too: that handler is outside of every middleware.
 
     The server closes the connection after it, and the answer says so, lest the next request is sent into it.
     """
@@ -80,26 +83,26 @@ def unexpected_pages(app: FastAPI) -> None:
 
 
 class ProblemPages:
-    """Turns problems on their way to somebody's screen into error pages; programs get them as they are."""
+    """Turns problems for browsers into error pages; programs get them unchanged."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Passes everything through but problems on their way to a person."""
+        """Passes everything through but problems for a browser."""
         if scope["type"] != "http" or not _wants_page(scope):
             await self.app(scope, receive, send)
             return
-        await self.app(scope, receive, _Turner(scope, receive, send))
+        await self.app(scope, receive, _PageSend(scope, receive, send))
 
 
 def _wants_page(scope: Scope) -> bool:
-    """Whether a browser asks for something to show, be it by a link into the API; programs do not ask for HTML."""
+    """Whether a browser asks for a page, perhaps by a link into the API; programs do not ask for HTML."""
     accepted = dict(scope["headers"]).get(b"accept", b"")
     return b"text/html" in accepted
 
 
-class _Turner:
+class _PageSend:
     """Holds back a problem until it is complete, then sends the page in its place."""
 
     def __init__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -120,12 +123,12 @@ class _Turner:
     async def _send_page(self, start: Message) -> None:
         page = problem_page(json.loads(self.body))
         if page.status == UNAUTHORIZED and self.scope["method"] == "GET":
-            back = quote(Request(self.scope).url.path)
-            await RedirectResponse(f"/sign-in?next={back}", SEE_OTHER)(self.scope, self.receive, self.send)
+            path = quote(Request(self.scope).url.path)
+            await RedirectResponse(f"/sign-in?next={path}", SEE_OTHER)(self.scope, self.receive, self.send)
             return
         response = render(Request(self.scope), "problem.html", page, page.status)
-        kept = [(k, v) for k, v in start["headers"] if k.lower() in (b"retry-after", b"allow")]
-        response.raw_headers.extend(kept)
+        headers = [(k, v) for k, v in start["headers"] if k.lower() in (b"retry-after", b"allow")]
+        response.raw_headers.extend(headers)
         await response(self.scope, self.receive, self.send)
 
 

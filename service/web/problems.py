@@ -13,6 +13,7 @@ from starlette.routing import Match
 from starlette.types import Receive, Scope, Send
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, RefusedError, ServiceError, SignInError, TooOftenError
 from service.kit.log import log, request_id
@@ -22,13 +23,13 @@ from service.web.faults import fault_in_words
 
 MEDIA_TYPE = "application/problem+json"
 """RFC 9457."""
-UNEXPECTED = "Something went wrong that should not have. It was logged; nothing was stored half."
-"""Says nothing of the cause, which may hold what others must not read; the log has it."""
+UNEXPECTED = "Unexpected error. It was logged; nothing was stored in part."
+"""Does not state the cause, which may be confidential; the log has it."""
 CUT_OFF = "The request ended before it was complete. Nothing was stored."
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
-"""That a route may take."""
+"""Methods of routes."""
 BODY_PARTS = ("body", "query", "path", "header")
-"""What FastAPI puts before the name of a field."""
+"""FastAPI's prefixes of a field's name."""
 
 
 def add_problem_handlers(app: FastAPI) -> None:
@@ -41,7 +42,7 @@ def add_problem_handlers(app: FastAPI) -> None:
 
 
 class ProblemAnswer(JSONResponse):
-    """A problem, its sentences in the language of the one who asked."""
+    """A problem, with its sentences in the language of the requester."""
 
     media_type = MEDIA_TYPE
 
@@ -50,20 +51,20 @@ class ProblemAnswer(JSONResponse):
         self._content = content
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Says it where it is known who asked."""
+        """Translates it when the requester is known."""
         language = asked(scope)
         if language is not Language.ENGLISH:
-            self.body = self.render(_told(self._content, catalogue_of(language).say))
+            self.body = self.render(_translated(self._content, catalogue_of(language).say))
             self.headers["Content-Length"] = str(len(self.body))
         await super().__call__(scope, receive, send)
 
 
-def _told(content: Mapping[str, Any], say: Callable[[str], str]) -> dict[str, Any]:
-    """A problem with its sentences said; its keys and fields stay."""
-    told = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
-    if "problems" in told:
-        told["problems"] = [one | {"message": say(one["message"])} for one in told["problems"]]
-    return told
+def _translated(content: Mapping[str, Any], say: Callable[[str], str]) -> Json:
+    """A problem with translated sentences; its keys and fields stay."""
+    translated = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
+    if "problems" in translated:
+        translated["problems"] = [one | {"message": say(one["message"])} for one in translated["problems"]]
+    return translated
 
 
 def problem(
@@ -73,16 +74,16 @@ def problem(
     headers: Mapping[str, str] | None = None,
     id: str | None = None,
 ) -> ProblemAnswer:
-    """The answer to a request that was not carried out; ``id`` where it is not known from what surrounds it."""
-    content: dict[str, Any] = {
+    """The answer to a request that was not carried out; ``id`` where the context does not have it."""
+    content: Json = {
         "type": "about:blank",
         "title": HTTPStatus(status).phrase,
         "status": status,
         "detail": detail,
     }
-    known = id or request_id()
-    if known is not None:
-        content["request_id"] = known
+    known_id = id or request_id()
+    if known_id is not None:
+        content["request_id"] = known_id
     if problems is not None:
         content["problems"] = [{"field": p.field, "row": p.row, "message": p.message} for p in problems]
     return ProblemAnswer(content, status, headers)
@@ -93,18 +94,18 @@ def _service_error(_: Request, error: Exception) -> ProblemAnswer:
     headers = {"Retry-After": str(error.retry_after)} if isinstance(error, AwayError | TooOftenError) else None
     if isinstance(error, SignInError):
         headers = {"WWW-Authenticate": "Bearer"}
-    found = error.problems if isinstance(error, RefusedError) else None
-    return problem(error.status, error.detail, found, headers)
+    problems = error.problems if isinstance(error, RefusedError) else None
+    return problem(error.status, error.detail, problems, headers)
 
 
 def _invalid_request(_: Request, error: Exception) -> ProblemAnswer:
     assert isinstance(error, RequestValidationError)
-    found = [Problem(_place(fault["loc"]), fault_in_words(fault)) for fault in error.errors()]
-    return problem(422, "The request cannot be used.", found)
+    problems = [Problem(_place(fault["loc"]), fault_in_words(fault)) for fault in error.errors()]
+    return problem(422, "The request cannot be used.", problems)
 
 
 def _place(location: Sequence[int | str]) -> str:
-    """``body.kind`` of FastAPI is ``kind`` to the one who asked."""
+    """``body.kind`` of FastAPI is ``kind`` to the requester."""
     parts = location[1:] if location and location[0] in BODY_PARTS and len(location) > 1 else location
     return ".".join(map(str, parts))
 
@@ -120,20 +121,20 @@ def _http_error(request: Request, error: Exception) -> ProblemAnswer:
 
 
 def _cut_off(_: Request, error: Exception) -> ProblemAnswer:
-    """Nobody is there to read this; it is one line in the log and no fault of the service."""
+    """Nobody reads this answer; it is one line in the log and no fault of the service."""
     return problem(400, CUT_OFF)
 
 
 def _allowed(request: Request) -> str:
-    """Every method that is taken where the request went; the framework names those of one route.
+    """Every method that is accepted at this address; the framework names those of one route.
 
-    What only a more general route takes is left out: /units/X/lot can be read as the page of a unit named "X/lot".
+    Methods of a more general route are left out: /units/X/lot can be read as the page of a unit named "X/lot".
     """
     template = getattr(request.scope.get("route"), "path", None)
     every = _every(request.app.router.routes)
-    own = {m for route in every if route.path in (template, request.scope["path"]) for m in route.methods}
-    asked = ((m, "GET" if m == "HEAD" else m) for m in METHODS)  # HEAD is answered wherever GET is
-    return ", ".join(m for m, by in asked if by in own and _is_taken(request, by))
+    accepted = {m for route in every if route.path in (template, request.scope["path"]) for m in route.methods}
+    pairs = ((m, "GET" if m == "HEAD" else m) for m in METHODS)  # HEAD is answered wherever GET is
+    return ", ".join(m for m, method in pairs if method in accepted and _is_taken(request, method))
 
 
 def _is_taken(request: Request, method: str) -> bool:
@@ -142,13 +143,13 @@ def _is_taken(request: Request, method: str) -> bool:
 
 
 def _every(routes: Iterable[Any]) -> Iterator[Any]:
-    """The routes themselves, out of the routers that hold them."""
+    """The routes themselves, out of nested routers."""
     for route in routes:
-        held = getattr(route, "original_router", None)
-        yield from (route,) if held is None else _every(held.routes)
+        router = getattr(route, "original_router", None)
+        yield from (route,) if router is None else _every(router.routes)
 
 
 def _unexpected(request: Request, error: Exception) -> ProblemAnswer:
-    """The one boundary for what nobody foresaw."""
+    """The one boundary for unexpected errors."""
     log.error("request failed", request_id=request.state.request_id, exc_info=error)
     return problem(500, UNEXPECTED, id=request.state.request_id)

@@ -1,4 +1,4 @@
-"""From a frozen context to a page: the one Jinja environment and what every template may use."""
+"""From a frozen context to a page: the one Jinja environment and the globals of every template."""
 
 import json
 from collections.abc import Iterable, MutableMapping
@@ -21,21 +21,21 @@ from service.kit.person import EVERYBODY, Person, Role
 from service.languages.language import QUERY, Language, asked
 from service.sessions.words.conditions import CONDITIONS, REFERENCE, RESERVED, but, but_alone
 from service.web.assets import asset_url
-from service.web.in_language import Spoken
+from service.web.in_language import TemplateLanguage
 
 SOONEST, LATEST = 2, 60
 """Seconds: a usual diagnosis takes one or two; behind many others it takes minutes."""
 
 
 def follow_seconds(uploaded_at: datetime, now: datetime, workers: int) -> int | None:
-    """After how long a page looks again: half of what it has taken so far. None where nobody makes it unasked."""
+    """Interval of a page's refresh: half of the time so far. None where no background process makes the result."""
     if not workers:
         return None
     return round(min(max((now - uploaded_at).total_seconds() / 2, SOONEST), LATEST))
 
 
 TEMPLATES = sorted(Path(__file__).parents[1].glob("*/templates"))
-"""Each subject has its own; what all pages share is here."""
+"""Each subject has its own; shared ones are here."""
 
 
 def embed(data: Any) -> Markup:
@@ -46,13 +46,13 @@ def embed(data: Any) -> Markup:
 
 @pass_context
 def _may(context: Context, role: str) -> bool:
-    """Whether the one who looks may do what a role may; what they may not is not offered."""
+    """Whether the visitor has a role; other actions are not offered."""
     return _person(context).may(Role(role))
 
 
 @pass_context
 def _your_name(context: Context) -> Markup:
-    """Under what a form is sent: the account's name, or a field for it where nobody signs in."""
+    """Name under which a form is sent: the account's, or a field for it where there are no accounts."""
     name, say = _person(context).name, context.environment.filters["translated"]
     if name:
         field = Markup('<input type="hidden" name="by" value="{}"><p class="quiet">{}</p>')
@@ -63,7 +63,7 @@ def _your_name(context: Context) -> Markup:
 
 @pass_context
 def _csrf_field(context: Context) -> Markup:
-    """What proves that a form is of the page that this browser was given."""
+    """Proof that a form is from the page given to this browser."""
     csrf = _person(context).csrf
     return Markup('<input type="hidden" name="csrf" value="{}">').format(csrf) if csrf else Markup("")
 
@@ -81,16 +81,16 @@ def _person(context: Context) -> Person:
 
 
 def _joined(parts: Iterable[object], joint: str) -> str:
-    """Jinja's own would lose the parts of sentences."""
+    """Jinja's own filter would lose the parts of sentences."""
     return joined(joint, map(str, parts))
 
 
 @lru_cache
 def _environment(language: Language) -> Environment:
-    """The templates in a language; English ones are what is written in the files."""
-    spoken = Spoken(language)
+    """The templates in a language; English is the language of the files."""
+    translation = TemplateLanguage(language)
     environment = Environment(
-        loader=spoken.templates(TEMPLATES),
+        loader=translation.templates(TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -108,19 +108,19 @@ def _environment(language: Language) -> Environment:
     environment.filters.update(
         join=_joined,
         as_written=escape,
-        translated=spoken.say,
-        plural_form=spoken.plural,
-        embed=lambda data: embed(spoken.chart(data)),
+        translated=translation.say,
+        plural_form=translation.plural,
+        embed=lambda data: embed(translation.chart(data)),
     )
     return environment
 
 
 def render(request: Request, template: str, page: Any, status: int = 200) -> HTMLResponse:
-    """The page of a frozen context in the language of the one who asks; templates see it as ``page``."""
+    """The page of a frozen context in the language of the requester; templates see it as ``page``."""
     person = getattr(request.state, "person", EVERYBODY)  # an address that no route took offers what it may
     language = asked(request.scope)
-    found = _environment(language).get_template(template)
-    text = found.render(
+    compiled = _environment(language).get_template(template)
+    text = compiled.render(
         page=page,
         path=request.scope["path"],
         person=person,
@@ -131,7 +131,7 @@ def render(request: Request, template: str, page: Any, status: int = 200) -> HTM
 
 
 def _address(scope: MutableMapping[str, Any], language: Language) -> str:
-    """Of the same page in another language; of what a form answered, the fleet's."""
+    """Of the same page in another language; of the answer to a form, the fleet's."""
     if scope.get("method", "GET") not in ("GET", "HEAD"):
         return f"/?{urlencode({QUERY: language.value})}"
     asked_for = [pair for pair in parse_qsl(scope["query_string"].decode("latin-1")) if pair[0] != QUERY]

@@ -1,4 +1,4 @@
-"""Uploads are refused while there is still room, so that the database never meets a full disk."""
+"""Uploads are refused while there is still some space, so that the database never meets a full disk."""
 
 from pathlib import Path
 
@@ -15,14 +15,14 @@ FULL = 507
 
 
 class RoomForUploads:
-    """Looks at the disk before an upload is read."""
+    """Checks the disk before an upload is read."""
 
     def __init__(self, app: ASGIApp, folder: Path, least: int) -> None:
         self.app = app
         self.folder, self.least = folder, least
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Passes everything but uploads that there is no room for."""
+        """Passes everything but uploads without enough space."""
         if scope["type"] != "http" or scope["method"] != "POST" or scope["path"] not in UPLOADS:
             await self.app(scope, receive, send)
             return

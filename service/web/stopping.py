@@ -1,4 +1,4 @@
-"""A stop that loses nothing: who is inside finishes, who comes after is asked to come back."""
+"""A graceful stop: running requests finish, later ones are rejected with Retry-After."""
 
 import asyncio
 from dataclasses import dataclass
@@ -9,61 +9,61 @@ from service.web.problems import problem
 
 STOPPING = "The service is stopping. Nothing was stored; send this again in a few seconds."
 RETRY_AFTER = 5
-"""Seconds: about what a restart takes."""
-GLANCE = 0.05
-"""Seconds between two looks at who is still inside."""
+"""Seconds: about the time of a restart."""
+POLL_SECONDS = 0.05
+"""Seconds between two checks for running requests."""
 STILL_ANSWERED = frozenset({"/healthz"})
-"""The process is alive until it is gone."""
+"""The process is alive until it ends."""
 
 
 @dataclass
-class Door:
-    """Who is inside, and whether anybody is let in."""
+class RequestGate:
+    """Number of running requests, and whether new ones are accepted."""
 
     inside: int = 0
     closed: bool = False
 
     async def empty(self, within: float) -> None:
-        """Lets nobody in any more, and waits until the last one has left, or for so many seconds."""
+        """Rejects new requests, and waits for the running ones, or until the time limit."""
         self.closed = True
         loop = asyncio.get_running_loop()
         end = loop.time() + within
         while self.inside and loop.time() < end:
-            await asyncio.sleep(GLANCE)
+            await asyncio.sleep(POLL_SECONDS)
 
 
-class Doorkeeper:
-    """Counts the requests that are being answered, and lets none in once the service stops."""
+class GracefulStop:
+    """Counts running requests, and rejects new ones once the service stops."""
 
-    def __init__(self, app: ASGIApp, door: Door) -> None:
+    def __init__(self, app: ASGIApp, gate: RequestGate) -> None:
         self.app = app
-        self.door = door
+        self.gate = gate
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """A request is inside until the end of its answer is sent; what then runs after it is made up for later."""
+        """A request runs until the end of its answer is sent; background tasks are resumed at the next start."""
         if scope["type"] != "http" or scope["path"] in STILL_ANSWERED:
             await self.app(scope, receive, send)
-        elif self.door.closed:
+        elif self.gate.closed:
             headers = {"Retry-After": str(RETRY_AFTER), "Connection": "close"}
             await problem(503, STOPPING, headers=headers)(scope, receive, send)
         else:
             await self._inside(scope, receive, send)
 
     async def _inside(self, scope: Scope, receive: Receive, send: Send) -> None:
-        left = False
+        has_left = False
 
         def leave() -> None:
-            nonlocal left
-            self.door.inside -= not left
-            left = True
+            nonlocal has_left
+            self.gate.inside -= not has_left
+            has_left = True
 
-        async def noted(message: Message) -> None:
+        async def counted(message: Message) -> None:
             await send(message)
             if message["type"] == "http.response.body" and not message.get("more_body"):
                 leave()
 
-        self.door.inside += 1
+        self.gate.inside += 1
         try:
-            await self.app(scope, receive, noted)
+            await self.app(scope, receive, counted)
         finally:
             leave()

@@ -1,1 +1,1 @@
-"""Work beside the requests: diagnoses, messages to other programs, due dates and stands."""
+"""Background work: diagnoses, messages to other programs, due dates and stands."""

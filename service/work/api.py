@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.jobs.changes import cancel_job, file_of
 from service.jobs.records import Job, JobKind, NewJob
 from service.jobs.store import Failures, Jobs
@@ -78,12 +79,12 @@ class JobPage(BaseModel):
 
 
 def job_answer(job: Job, problems: Iterable[Problem] = ()) -> JobAnswer:
-    """A job as the API tells of it, with the faults of the file that it refused."""
+    """A job as an answer of the API, with the problems of a refused file."""
     return JobAnswer(**vars(job), problems=tuple(faults(problems)))
 
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
-ACCEPTED: dict[int | str, dict[str, Any]] = {
+ACCEPTED: dict[int | str, Json] = {
     202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "Where the job is followed."}}}
 }
 MEDIA_TYPES = {"xlsx": XLSX, "pdf": PDF}
@@ -100,8 +101,8 @@ def list_jobs(
 ) -> JobPage:
     """Long work that was asked for, the newest first."""
     account = person.login if mine else ""
-    found = Jobs(store).page(limit, before=before, account=account, subject=subject)
-    return JobPage(jobs=list(map(job_answer, found)), before=found[-1].id if len(found) == limit else None)
+    jobs = Jobs(store).page(limit, before=before, account=account, subject=subject)
+    return JobPage(jobs=list(map(job_answer, jobs)), before=jobs[-1].id if len(jobs) == limit else None)
 
 
 @router.get("/failed", responses=errors(422))
@@ -125,8 +126,8 @@ def ask_for_recalibration(
     new: NewRecalibration, response: Response, desk: JobDeskOf, storage: StorageOf, person: PersonOf
 ) -> JobAnswer:
     """Have stored sessions computed again under the models in force, unit by unit. Nothing is overwritten."""
-    own = NewJob(JobKind.RECALIBRATION, person.signs(new.by or CREW), person.login, new.scope, new.subject)
-    return _accepted(response, desk.ask(storage, own))
+    job = NewJob(JobKind.RECALIBRATION, person.signs(new.by or CREW), person.login, new.scope, new.subject)
+    return _accepted(response, desk.ask(storage, job))
 
 
 @router.post("/report", status_code=202, responses={**ACCEPTED, **errors(400, 422, 503)})
@@ -134,8 +135,8 @@ def ask_for_report(
     new: NewReport, response: Response, desk: JobDeskOf, storage: StorageOf, person: PersonOf, language: LanguageOf
 ) -> JobAnswer:
     """Have a report of the whole fleet made; it is kept for a week."""
-    own = NewJob(JobKind.REPORT, person.signs(new.by or CREW), person.login, form=new.format, language=language.value)
-    return _accepted(response, desk.ask(storage, own))
+    job = NewJob(JobKind.REPORT, person.signs(new.by or CREW), person.login, form=new.format, language=language.value)
+    return _accepted(response, desk.ask(storage, job))
 
 
 @router.get("/{id}", responses=errors(404, 422))

@@ -1,4 +1,4 @@
-"""What routes ask for by type: readers of diagnoses and groups, the desk of long work."""
+"""Dependencies of routes: readers of diagnoses and groups, the desk of long jobs."""
 
 from collections.abc import Iterator
 from typing import Annotated
@@ -12,9 +12,9 @@ from service.work.readers import GroupReader, Reader
 
 
 def _summarised(request: Request) -> Iterator[Store]:
-    own = application_of(request)
-    own.part(Reader).until_summarised()
-    with own.storage.database.reading() as store:
+    application = application_of(request)
+    application.part(Reader).until_summarised()
+    with application.storage.database.reading() as store:
         yield store
 
 
@@ -31,10 +31,10 @@ def _groups(request: Request) -> GroupReader:
 
 
 ReaderOf = Annotated[Reader, Depends(_reader)]
-"""What reads diagnoses."""
+"""Reader of diagnoses."""
 GroupReaderOf = Annotated[GroupReader, Depends(_groups)]
-"""What reads what groups of sessions show."""
+"""Reader of what groups of sessions show."""
 JobDeskOf = Annotated[JobDesk, Depends(_jobs)]
-"""Where long work is asked for."""
+"""Where long jobs are requested."""
 ReadingFleet = Annotated[Store, Depends(_summarised, scope="function")]
-"""The same, with what is kept of the fleet as a whole made before, where no process beside the requests makes it."""
+"""A store for reading the fleet; its summaries are made first where no background process makes them."""

@@ -1,7 +1,7 @@
-"""A process of its own that makes what waits in the queue: numerical work in threads stands in the way of requests.
+"""A separate process for the computations in the queue: numerical work in threads would slow down requests.
 
-It is forked from one that holds nothing but the loaded program (`forkserver`), so that it has no connection to the
-database, no lock and no file of the service's. It ends with the service: it reads the end of its pipe.
+It is forked from one with only the loaded program (`forkserver`), so it inherits no database connection, lock or file
+of the service. It ends with the service, when its pipe is closed.
 """
 
 import multiprocessing
@@ -25,27 +25,26 @@ from service.settings import Settings
 from service.storage import Storage
 from service.work.kinds import KINDS, Kind
 
-LOOK_EVERY = 0.25
-"""Seconds between two looks whether the service is stopping while a diagnosis is made."""
-ANSWERS = multiprocessing.get_context("forkserver")
+POLL_SECONDS = 0.25
+"""Seconds between two checks whether the service is stopping during a diagnosis."""
+CONTEXT = multiprocessing.get_context("forkserver")
 """How processes are started."""
 NICENESS = 10
-"""How far they stand back, as `nice` counts: where all cores are busy they leave a request nine tenths of one."""
+"""Priority, as `nice` counts: where all cores are busy a request gets nine tenths of one."""
 
 
-Still = Callable[[], bool]
-"""Whether the service goes on; asked now and then while something is made."""
+KeepGoing = Callable[[], bool]
+"""Whether the service goes on; called repeatedly during the work."""
 DIED, LATE = "ProcessDied", "TookTooLong"
-"""As the figures name a process that ended before it answered, and one that was ended because it was not done in time.
-"""
+"""Names in the metrics of a process that died, and of one that was ended at its time limit."""
 
 
 class StoppingError(ServiceError):
-    """The service stops: the process was ended at its work."""
+    """The service stops: the process was ended during its work."""
 
 
 class Helper:
-    """A process that makes diagnoses one after another; another one takes its place when it died."""
+    """A process that makes one diagnosis after another, replaced when it dies."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -53,29 +52,29 @@ class Helper:
         self._pipe: Connection | None = None
 
     def start(self) -> None:
-        """Starts it where it is not there."""
+        """Starts it where it is not running."""
         if self._process is not None and self._process.is_alive():
             return
         self.end()
-        ANSWERS.set_forkserver_preload([__name__])
-        ours, theirs = ANSWERS.Pipe()
-        own = (theirs, self._settings, limits.in_force())
-        self._process = ANSWERS.Process(target=work, args=own, name="diagnoses", daemon=True)
+        CONTEXT.set_forkserver_preload([__name__])
+        ours, theirs = CONTEXT.Pipe()
+        args = (theirs, self._settings, limits.in_force())
+        self._process = CONTEXT.Process(target=work, args=args, name="diagnoses", daemon=True)
         self._process.start()
         theirs.close()
         self._pipe = ours
 
-    def make(self, kind: Kind, of: str, now: datetime, still: Still) -> Failure | None:
-        """Makes and stores a piece of work, while ``still`` says to go on."""
-        if not still():
+    def make(self, kind: Kind, of: str, now: datetime, keep_going: KeepGoing) -> Failure | None:
+        """Makes and stores a piece of work, as long as ``keep_going`` is true."""
+        if not keep_going():
             raise StoppingError(f"The {kind.kind} of {of} was not begun.")
         self.start()
         assert self._pipe is not None
         answered = False
         try:
             self._pipe.send((kind.kind, of, now))
-            while not self._pipe.poll(LOOK_EVERY):
-                if not still():
+            while not self._pipe.poll(POLL_SECONDS):
+                if not keep_going():
                     raise StoppingError(f"The {kind.kind} of {of} was interrupted.")
             answer: Failure | None = self._pipe.recv()
             answered = True
@@ -87,7 +86,7 @@ class Helper:
         return answer
 
     def _ended(self, kind: WorkKind, of: str) -> Failure:
-        """Why it answers no more."""
+        """Why it did not answer."""
         assert self._process is not None
         self._process.join()
         if self._process.exitcode == -signal.SIGALRM:
@@ -95,7 +94,7 @@ class Helper:
         return Failure(DIED, f"The process died at the {kind} of {of}.", is_foreseen=False)
 
     def end(self) -> None:
-        """Ends it, whatever it is at: a transaction of its is undone."""
+        """Ends it at once: an open transaction is rolled back."""
         if self._pipe is not None:
             self._pipe.close()
         if self._process is not None:
@@ -106,7 +105,7 @@ class Helper:
 
 
 def work(pipe: Connection, settings: Settings, most: Limits) -> None:
-    """In the process: makes what is asked for until nobody is there to ask."""
+    """In the process: does requested work until the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
     os.nice(NICENESS)  # a request that waits for what it holds leaves it the core
     limits.use(most)
@@ -123,6 +122,6 @@ def work(pipe: Connection, settings: Settings, most: Limits) -> None:
 
 def _made(storage: Storage, kind: Kind, of: str, now: datetime, coverage_factor: float) -> Failure | None:
     assert kind.make is not None
-    with ending_here(kind.kind.value, of) as met:
+    with ending_here(kind.kind.value, of) as outcome:
         kind.make(storage, of, now, coverage_factor)
-    return met.failure
+    return outcome.failure

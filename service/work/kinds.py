@@ -1,4 +1,4 @@
-"""The kinds of work beside the requests: how each is made, how often it is tried, and what it does when given up."""
+"""The kinds of background work: how each is done, how often it is attempted, and what happens when it is given up."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 from service.fleet.changes import summarise
 from service.groups.records import Group
 from service.groups.store import Groups
-from service.jobs.records import KEPT, Job, JobFailure, JobKind, Made, Piece
+from service.jobs.records import KEPT, Job, JobFailure, JobKind, Made, RecalibrationPiece
 from service.jobs.store import Jobs
 from service.jobs.words import AT_FAULT, FILE_AT_FAULT, left_in_words
 from service.kit.failure import with_last_try
@@ -26,37 +26,39 @@ from service.storage.queries import Store
 from service.uploads.take_in import give_up
 
 PUT_OFF = timedelta(minutes=10)
-"""After a try that something passing hindered, as on a file that is lost; whoever reads a diagnosis tries at once."""
+"""Delay after an attempt that a passing cause prevented, such as a lost file; a reader of a diagnosis retries at once.
+"""
 MOST_ATTEMPTS = 3
-"""Tries at which the program may fail, or its process die, before work is given up: two could be a machine in need."""
-MOST_TRIES_OF_A_FILE = 10
-"""At which the program may fail, or its service be ended: a file that is read for minutes outlives some restarts, and
-what was acknowledged is not given up for them."""
-PUT_OFF_A_FILE = timedelta(minutes=1)
-"""After a try that something passing hindered: somebody waits for the verdict."""
+"""Attempts at which the program may fail, or its process die, before work is given up: two could be a machine in
+trouble."""
+MOST_ATTEMPTS_OF_FILE = 10
+"""The same for a file, which is read for minutes: it survives some restarts, and what was acknowledged is not lost by
+them."""
+PUT_OFF_FILE = timedelta(minutes=1)
+"""Delay after an attempt that a passing cause prevented: somebody waits for the verdict."""
 LEASE = timedelta(seconds=30)
-"""What a dead service was at is begun anew after it."""
+"""Time after which the work of a dead service is started again."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of it."""
+    """One kind of background work."""
 
     name: str
-    """As the log and the figures name it."""
+    """Name in the log and the metrics."""
     kind: WorkKind
     make: Callable[[Storage, str, datetime, float], object] | None
-    """In a process of its own, by its key, with the time and the coverage factor; None for what the service does
+    """Done in a separate process, from its key, the time and the coverage factor; None for what the service does
     itself."""
     give_up: Callable[[Storage, str, datetime], None] | None = None
-    """Keeps that the program failed at it, or that no process outlived it; None where the queue keeps it."""
+    """Records that the program failed, or its process died, every time; None where the queue records it."""
     most: int = MOST_ATTEMPTS
     put_off: timedelta = PUT_OFF
     is_awaited: bool = False
-    """Somebody may wait for one, which then comes before the others."""
+    """Somebody may wait for one, which is then done first."""
 
     def queue(self, store: Store) -> WorkQueue:
-        """Where it waits."""
+        """Its queue."""
         return WorkQueue(store, self.kind)
 
     def end(self, storage: Storage, key: str, now: datetime) -> None:
@@ -81,7 +83,7 @@ def work_piece(storage: Storage, id: int, now: datetime, coverage_factor: float)
 
 
 def skip_piece(storage: Storage, id: int, now: datetime) -> None:
-    """The program failed at it, or no process outlived it: it is listed, and the next one follows."""
+    """Lists a piece at which the program failed, or its process died, every time; the next one follows."""
     with storage.database.writing() as store:
         job = Jobs(store).get(id)
         reason = with_last_try(AT_FAULT, job.held_up)
@@ -89,7 +91,7 @@ def skip_piece(storage: Storage, id: int, now: datetime) -> None:
         if unit is None:
             Jobs(store).fail(id, JobFailure(job.subject, reason), now)
         else:
-            Jobs(store).advance(job, unit[0], Piece(failure=JobFailure(unit[1], reason)), now)
+            Jobs(store).advance(job, unit[0], RecalibrationPiece(failure=JobFailure(unit[1], reason)), now)
 
 
 def _report(storage: Storage, job: Job, now: datetime) -> None:
@@ -98,8 +100,8 @@ def _report(storage: Storage, job: Job, now: datetime) -> None:
     digest = put_made(storage.files, job.id, content)
     made = Made(f"fleet-{now:%Y-%m-%d}.{job.form}", len(content), digest, now + KEPT)
     with storage.database.writing() as store:
-        kept = Jobs(store).finish(job.id, made, now)
-    if not kept:
+        is_open = Jobs(store).finish(job.id, made, now)
+    if not is_open:
         drop_made(storage.files, job.id)
 
 
@@ -113,7 +115,7 @@ def _recalibrate_next(storage: Storage, job: Job, now: datetime, coverage_factor
 
     def count(store: Store, done: Recalibrated) -> None:
         failure = JobFailure(done.unit, left_in_words(done.left)) if done.left else None
-        Jobs(store).advance(job, unit[0], Piece(done.recomputed, len(done.verdicts), failure), now)
+        Jobs(store).advance(job, unit[0], RecalibrationPiece(done.recomputed, len(done.verdicts), failure), now)
 
     recalibrate(storage, unit[1], now, coverage_factor=coverage_factor, who=job.who, then=count)
 
@@ -135,7 +137,7 @@ def _give_up_model(storage: Storage, key: str, now: datetime) -> None:
     task = task_of(key)
     with storage.database.writing() as store:
         Recomputations(store).give_up(task, now)
-        Jobs(store).count_unit(task.revision, Piece(failure=JobFailure(task.unit, AT_FAULT)), now)
+        Jobs(store).count_unit(task.revision, RecalibrationPiece(failure=JobFailure(task.unit, AT_FAULT)), now)
 
 
 DIAGNOSES = Kind("pending diagnoses", WorkKind.DIAGNOSIS, diagnose.diagnose, diagnose.give_up, is_awaited=True)
@@ -155,20 +157,20 @@ JOBS = Kind(
     lambda storage, id, now: skip_piece(storage, int(id), now),
 )
 SUMMARIES = Kind("pending summaries", WorkKind.SUMMARY, lambda storage, place, now, _: summarise(storage, place, now))
-"""Given up, what was made last stays until a record of the group changes again."""
+"""Given up, the previous summary stays until a record of the group changes."""
 GROUPS = Kind("pending groups", WorkKind.GROUP, _make_group, _give_up_group, most=MOST_ATTEMPTS + 1)
-"""One try more than others: a session of which no process outlives the statistics is given up at its fourth try, which
+"""One attempt more than others: a session whose statistics no process survives is given up at its fourth attempt, which
 is the group's fourth too, and the group goes on without it."""
 UPLOADS = Kind(
     "uploads",
     WorkKind.UPLOAD,
     None,
     lambda storage, id, now: give_up(storage, int(id), FILE_AT_FAULT, now),
-    most=MOST_TRIES_OF_A_FILE,
-    put_off=PUT_OFF_A_FILE,
+    most=MOST_ATTEMPTS_OF_FILE,
+    put_off=PUT_OFF_FILE,
 )
 IN_TURN: tuple[Kind, ...] = (OUTLOOKS, MODELS, JOBS, DIAGNOSES)
 """One of each in turn, so that none waits for all of the others."""
 AT_LAST: tuple[Kind, ...] = (SUMMARIES, GROUPS)
-"""While nothing else waits: summaries rest on all outlooks, and every diagnosis changes what a group rests on."""
+"""Done when nothing else waits: summaries depend on all outlooks, and groups on every diagnosis."""
 KINDS = {kind.kind: kind for kind in (*IN_TURN, *AT_LAST)}

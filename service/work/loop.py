@@ -1,9 +1,9 @@
-"""Work beside the requests: claimed in the database by one process of all services on it, made in a process of its own,
-and given up where the program fails at it or no process outlives it. Long files are taken in by a thread of their own,
-so that diagnoses and other jobs go on meanwhile; each is read by a process of its own, as in a request.
+"""Background work: claimed in the database by one process of all services on it, done in a separate process, and given
+up where the program fails or its process dies every time. Long files are processed by another thread, so that diagnoses
+and other jobs go on; each is read in a separate process, as in a request.
 
-Whoever begins a piece leases it for a short time, and says again and again that he is still at it. Where a process dies
-the lease expires and another one begins anew.
+A claim is a short lease, which is extended during the work. Where a process dies the lease expires and another one
+starts again.
 """
 
 from collections.abc import Callable, Iterator
@@ -20,24 +20,24 @@ from service.records.reception import Reception
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.take_in import take_in
-from service.work.helper import Helper, Still, StoppingError
+from service.work.helper import Helper, KeepGoing, StoppingError
 from service.work.kinds import AT_LAST, DIAGNOSES, IN_TURN, LEASE, UPLOADS, Kind
 
-EXTEND = timedelta(seconds=10)
-"""Between two words that somebody is still at it."""
-LOOK_EVERY = 1.0
-"""Seconds between two looks at what other services left; what this one takes in rings."""
-RETRY = 60.0
-"""Seconds after a look that failed, as when the database is away."""
-EXTEND_UPLOAD = 5.0
-"""Seconds between two words that somebody is still at an upload."""
-Make = Callable[[Kind, str, datetime, Still], Failure | None]
-"""Makes one piece, as a process does."""
+LEASE_EXTENSION = timedelta(seconds=10)
+"""Between two extensions of a lease."""
+POLL_SECONDS = 1.0
+"""Seconds between two checks for work requested by other services; for work of this one the bell rings."""
+RETRY_SECONDS = 60.0
+"""Seconds after a check that failed, as when the database is unavailable."""
+UPLOAD_EXTENSION_SECONDS = 5.0
+"""Seconds between two extensions of the lease of an upload."""
+Make = Callable[[Kind, str, datetime, KeepGoing], Failure | None]
+"""Does one piece of work in a process."""
 
 
 @dataclass(frozen=True)
 class Worker:
-    """What work beside the requests takes."""
+    """What background work needs."""
 
     settings: Settings
     storage: Storage
@@ -46,138 +46,138 @@ class Worker:
     bell: Bell
 
 
-def work_beside(own: Worker, stop: Event) -> None:
-    """Makes what is asked for until ``stop`` is set."""
-    helper = Helper(own.settings)
+def work_in_background(worker: Worker, stop: Event) -> None:
+    """Does requested work until ``stop`` is set."""
+    helper = Helper(worker.settings)
 
     def work() -> bool:
-        """One piece of each kind that has its turn, else one of the others; whether there was any."""
+        """One piece of each kind in turn, else one of the others; whether there was any."""
         helper.start()
-        worked = [work_next(own, helper.make, stop, kind) for kind in IN_TURN]
-        return any(worked) or any(work_next(own, helper.make, stop, kind) for kind in AT_LAST)
+        worked = [work_next(worker, helper.make, stop, kind) for kind in IN_TURN]
+        return any(worked) or any(work_next(worker, helper.make, stop, kind) for kind in AT_LAST)
 
     try:
-        _work_until(own, stop, DIAGNOSES.name, work)
+        _work_until(worker, stop, DIAGNOSES.name, work)
     finally:
         helper.end()
 
 
-def take_in_waiting(own: Worker, stop: Event) -> None:
-    """Takes in the long files that wait until ``stop`` is set."""
-    make = taking_in(own)
-    _work_until(own, stop, UPLOADS.name, lambda: work_next(own, make, stop, UPLOADS))
+def take_in_waiting(worker: Worker, stop: Event) -> None:
+    """Processes waiting long files until ``stop`` is set."""
+    make = upload_maker(worker)
+    _work_until(worker, stop, UPLOADS.name, lambda: work_next(worker, make, stop, UPLOADS))
 
 
-def _work_until(own: Worker, stop: Event, name: str, work: Callable[[], bool]) -> None:
+def _work_until(worker: Worker, stop: Event, name: str, work: Callable[[], bool]) -> None:
     while not stop.is_set():
-        rung, guard = own.bell.rung, Guard(own.metrics)
+        rung, guard = worker.bell.rung, Guard(worker.metrics)
         with guard.alone(name, ""):
             while not stop.is_set() and work():
-                rung = own.bell.rung
-        own.bell.wait(rung, RETRY if guard.failed else LOOK_EVERY)
+                rung = worker.bell.rung
+        worker.bell.wait(rung, RETRY_SECONDS if guard.failed else POLL_SECONDS)
 
 
-def work_next(own: Worker, make: Make, stop: Event, kind: Kind) -> bool:
-    """Makes what is next of a kind; whether there was anything."""
-    claimed = _claimed(own, kind)
+def work_next(worker: Worker, make: Make, stop: Event, kind: Kind) -> bool:
+    """Does the next piece of a kind; whether there was any."""
+    claimed = _claimed(worker, kind)
     if claimed is None:
         return False
-    one, attempts = claimed
+    key, attempts = claimed
     if attempts > kind.most:
-        log.error("work beside the requests given up", work=kind.name, of=one)
-        kind.end(own.storage, one, own.clock())
+        log.error("work beside the requests given up", work=kind.name, of=key)
+        kind.end(worker.storage, key, worker.clock())
     else:
-        _make(own, make, stop, kind, one)
-    own.bell.ring()
+        _make(worker, make, stop, kind, key)
+    worker.bell.ring()
     return True
 
 
-def _claimed(own: Worker, kind: Kind) -> tuple[str, int] | None:
-    """What somebody waits for, and else what was asked for first; with how often it was begun."""
-    now, urgent = own.clock(), own.bell.urgent() if kind.is_awaited else None
-    with own.storage.database.reading() as store:
-        waiting = kind.queue(store).waiting(now, 1 + own.settings.diagnosis_workers)
-    for one in (*(() if urgent is None else (urgent,)), *waiting):
-        with own.storage.database.writing() as store:
-            attempts = kind.queue(store).claim(one, now, now + LEASE)
+def _claimed(worker: Worker, kind: Kind) -> tuple[str, int] | None:
+    """The piece somebody waits for, else the oldest request; with the number of its leases."""
+    now, urgent = worker.clock(), worker.bell.urgent() if kind.is_awaited else None
+    with worker.storage.database.reading() as store:
+        waiting = kind.queue(store).waiting(now, 1 + worker.settings.diagnosis_workers)
+    for key in (*(() if urgent is None else (urgent,)), *waiting):
+        with worker.storage.database.writing() as store:
+            attempts = kind.queue(store).claim(key, now, now + LEASE)
         if attempts is not None:
-            return one, attempts
+            return key, attempts
     return None
 
 
-def _make(own: Worker, make: Make, stop: Event, kind: Kind, one: str) -> None:
-    """Whatever hinders it leaves it asked for."""
-    last = own.clock()
+def _make(worker: Worker, make: Make, stop: Event, kind: Kind, key: str) -> None:
+    """Does a piece; it stays requested where it fails."""
+    last = worker.clock()
 
-    def still() -> bool:
+    def keep_going() -> bool:
         nonlocal last
-        now = own.clock()
-        if now - last > EXTEND:
+        now = worker.clock()
+        if now - last > LEASE_EXTENSION:
             last = now
-            with own.storage.database.writing() as store:
-                kind.queue(store).extend(one, now + LEASE)
+            with worker.storage.database.writing() as store:
+                kind.queue(store).extend(key, now + LEASE)
         return not stop.is_set()
 
     try:
-        failure = make(kind, one, last, still)
+        failure = make(kind, key, last, keep_going)
     except StoppingError:
-        with own.storage.database.writing() as store:
-            kind.queue(store).put_off(one, None)
+        with worker.storage.database.writing() as store:
+            kind.queue(store).put_off(key, None)
     else:
         if failure is not None:
-            _leave(own, kind, one, failure)
+            _after_failure(worker, kind, key, failure)
 
 
-def _leave(own: Worker, kind: Kind, one: str, failure: Failure) -> None:
-    """What is foreseen passes, and is tried for ever; at what is not, a few times."""
-    log.warning(kind.name, of=one, reason=failure.reason)
-    own.metrics.count_fault(kind.name, failure.fault)
-    with own.storage.database.writing() as store:
+def _after_failure(worker: Worker, kind: Kind, key: str, failure: Failure) -> None:
+    """A foreseen failure passes, and the work is attempted without limit; after any other a few times."""
+    log.warning(kind.name, of=key, reason=failure.reason)
+    worker.metrics.count_fault(kind.name, failure.fault)
+    with worker.storage.database.writing() as store:
         queue = kind.queue(store)
-        queue.hold_up(one, failure.reason)
+        queue.record_failure(key, failure.reason)
         if failure.is_foreseen:
-            queue.put_off(one, own.clock() + kind.put_off)
+            queue.put_off(key, worker.clock() + kind.put_off)
         else:
-            queue.give_back(one, own.clock())
+            queue.give_back(key, worker.clock())
 
 
-def taking_in(own: Worker) -> Make:
-    """What takes one in."""
-    k = own.settings.coverage_factor
-    reception = Reception(own.storage, k, own.metrics, own.bell.ring, is_dated_later=True)
-    return lambda _, id, now, still: _taken_in(lambda tick: take_in(reception, int(id), now, tick), id, still)
+def upload_maker(worker: Worker) -> Make:
+    """Function that processes an upload."""
+    k = worker.settings.coverage_factor
+    reception = Reception(worker.storage, k, worker.metrics, worker.bell.ring, is_dated_later=True)
+    return lambda _, id, now, keep_going: _taken_in(lambda tick: take_in(reception, int(id), now, tick), id, keep_going)
 
 
-def _taken_in(work: Callable[[Callable[[], None]], None], id: str, still: Still) -> Failure | None:
+def _taken_in(work: Callable[[Callable[[], None]], None], id: str, keep_going: KeepGoing) -> Failure | None:
     stopping = False
 
     def tick() -> None:
         nonlocal stopping
-        if not still():
+        if not keep_going():
             stopping = True
             raise StoppingError(f"Upload {id} was interrupted.")
 
-    with ending_here(UPLOADS.name, id) as met, _said_now_and_then(still):
+    with ending_here(UPLOADS.name, id) as outcome, _lease_extended(keep_going):
         work(tick)
     if stopping:
         raise StoppingError(f"Upload {id} was interrupted.")
-    return met.failure
+    return outcome.failure
 
 
 @contextmanager
-def _said_now_and_then(still: Still) -> Iterator[None]:
-    """Keeps the claim also while a file is read in one piece."""
+def _lease_extended(keep_going: KeepGoing) -> Iterator[None]:
+    """Extends the lease while a file is read."""
     done = Event()
 
-    def say() -> None:
-        while not done.wait(EXTEND_UPLOAD):
+    def extend() -> None:
+        while not done.wait(UPLOAD_EXTENSION_SECONDS):
             with suppress(*FORESEEN):
-                still()
+                keep_going()
 
-    teller = Thread(target=say, name="claim of an upload", daemon=True)
-    teller.start()
+    thread = Thread(target=extend, name="claim of an upload", daemon=True)
+    thread.start()
     try:
         yield
     finally:
         done.set()
-        teller.join()
+        thread.join()

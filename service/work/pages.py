@@ -1,4 +1,4 @@
-"""The pages of long work."""
+"""The pages of long jobs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,12 +33,12 @@ from service.work.dependencies import JobDeskOf
 
 PAGE_SIZE = 50
 """Jobs on a page: more than a week's."""
-LATEST = 10
-"""Seconds: as long as somebody looks on without wondering."""
+MAX_REFRESH_SECONDS = 10
+"""Longest interval of the page's refresh, s."""
 TONES = {JobState.DONE: "pass", JobState.FAILED: "fail", JobState.CANCELLED: "none"}
-"""Colours of what has ended."""
+"""Colours of ended jobs."""
 PLACES = {Scope.UNIT: "units", Scope.UNIT_TYPE: "unit-types", Scope.STAND: "stands"}
-"""First parts of the addresses of what a job is about."""
+"""First parts of the addresses of a job's subject."""
 KILO = 1000
 """Bytes in a kilobyte."""
 
@@ -55,7 +55,7 @@ class JobLine:
 
 @dataclass(frozen=True)
 class FailedLine:
-    """Work beside the requests that has failed."""
+    """Failed background work."""
 
     what: str
     of: str
@@ -64,22 +64,22 @@ class FailedLine:
 
 @dataclass(frozen=True)
 class JobsPage:
-    """Everything the list shows."""
+    """Contents of the list."""
 
     lines: tuple[JobLine, ...]
     subject: str
     mine: bool
     can_be_mine: bool
-    """Whether somebody signed in, so that there are jobs of one's own."""
+    """Whether somebody signed in, so that there are jobs of this account."""
     earlier: str
     """Address of the next page; empty where there is none."""
     failed: tuple[FailedLine, ...] = ()
-    """Work beside the requests that has failed."""
+    """Background work that has failed."""
 
 
 @dataclass(frozen=True)
-class JobPage:
-    """Everything the page of one job shows."""
+class JobView:
+    """Contents of the page of one job."""
 
     job: Job
     title: str
@@ -89,42 +89,42 @@ class JobPage:
     outcome: str
     ending: str
     about: str
-    """Address of what it is about; empty where that is the whole fleet."""
+    """Address of its subject; empty for the whole fleet."""
     size: str
     failures: tuple[JobFailure, ...]
     more: int
     """Failures that are not listed."""
     follow: int | None
-    """Seconds after which the page looks again."""
+    """Seconds after which the page refreshes."""
     can_cancel: bool
     problems: tuple[Problem, ...]
     """Of an upload that was refused."""
 
 
 def jobs_page(
-    found: Sequence[Job], person: Person, subject: str, *, mine: bool, failed: Sequence[Failed] = ()
+    jobs: Sequence[Job], person: Person, subject: str, *, mine: bool, failed: Sequence[Failed] = ()
 ) -> JobsPage:
     """The newest first."""
-    lines = tuple(map(job_line, found))
-    narrowed = ({"subject": subject} if subject else {}) | ({"mine": "yes"} if mine else {})
-    earlier = f"/jobs?{urlencode(narrowed | {'before': found[-1].id})}" if len(found) == PAGE_SIZE else ""
-    shown = tuple(FailedLine(NAMES[one.kind], one.of, one.why) for one in failed)
-    return JobsPage(lines, subject, mine, bool(person.login), earlier, shown)
+    lines = tuple(map(job_line, jobs))
+    filters = ({"subject": subject} if subject else {}) | ({"mine": "yes"} if mine else {})
+    earlier = f"/jobs?{urlencode(filters | {'before': jobs[-1].id})}" if len(jobs) == PAGE_SIZE else ""
+    failed_lines = tuple(FailedLine(NAMES[one.kind], one.of, one.why) for one in failed)
+    return JobsPage(lines, subject, mine, bool(person.login), earlier, failed_lines)
 
 
 def job_line(job: Job) -> JobLine:
-    """One of a list."""
-    said = progress_of(job)
+    """One line of the list."""
+    progress = progress_of(job)
     if job.kind is JobKind.UPLOAD and not job.is_open:
-        said = outcome_in_words(job) or ending_of(job)
-    return JobLine(job, title_of(job), STATES[job.state], said)
+        progress = outcome_in_words(job) or ending_of(job)
+    return JobLine(job, title_of(job), STATES[job.state], progress)
 
 
-def job_page(job: Job, person: Person, now: datetime, workers: int, problems: Sequence[Problem] = ()) -> JobPage:
+def job_page(job: Job, person: Person, now: datetime, workers: int, problems: Sequence[Problem] = ()) -> JobView:
     """One job as it stands."""
     follow = follow_seconds(job.asked_at, now, workers) if job.is_open else None
-    latest = SOONEST if job.kind is JobKind.UPLOAD else LATEST
-    return JobPage(
+    longest = SOONEST if job.kind is JobKind.UPLOAD else MAX_REFRESH_SECONDS
+    return JobView(
         job=job,
         title=title_of(job),
         state=STATES[job.state],
@@ -136,7 +136,7 @@ def job_page(job: Job, person: Person, now: datetime, workers: int, problems: Se
         size="" if job.made is None else f"{number(job.made.size / KILO, 0)} kB",
         failures=job.failures,
         more=job.failed - len(job.failures),
-        follow=None if follow is None else min(follow, latest),
+        follow=None if follow is None else min(follow, longest),
         can_cancel=job.is_open and not job.is_storing and may_cancel(job, person),
         problems=tuple(problems),
     )
@@ -163,14 +163,14 @@ def show_jobs(
 ) -> HTMLResponse:
     """Long work that was asked for, the newest first."""
     account = person.login if mine else ""
-    found = Jobs(store).page(PAGE_SIZE, before=before, account=account, subject=subject)
+    jobs = Jobs(store).page(PAGE_SIZE, before=before, account=account, subject=subject)
     failed = Failures(store).listed(now, PAGE_SIZE)
-    return render(request, "jobs.html", jobs_page(found, person, subject, mine=bool(account), failed=failed))
+    return render(request, "jobs.html", jobs_page(jobs, person, subject, mine=bool(account), failed=failed))
 
 
 @router.post("/jobs/failed/retry")
 def retry_failed(by: By, desk: JobDeskOf, storage: StorageOf, now: Now) -> RedirectResponse:
-    """Tries again what failed beside the requests."""
+    """Tries again what failed in the background."""
     desk.try_again(storage, now, by)
     return RedirectResponse("/jobs#failed", SEE_OTHER)
 
@@ -214,7 +214,7 @@ def show_job(request: Request, id: Number, store: Reading, desk: JobDeskOf, pers
 
 @router.get("/jobs/{id}/outcome")
 def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Number) -> HTMLResponse:
-    """What became of an upload by now, as the card of the upload page."""
+    """Outcome of an upload so far, as the card of the upload page."""
     job = Jobs(store).get(id)
     return render(request, "outcome.html", upload_page((_outcome(store, job),), settings))
 

@@ -1,6 +1,5 @@
-"""The diagnosis of a session, the outlook of a unit and what a group of sessions shows, for whoever reads them: awaited
-where they are made beside the requests, and else made.
-"""
+"""The diagnosis of a session, the outlook of a unit and what a group of sessions shows: awaited where they are made in
+the background, else made at once."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -32,18 +31,18 @@ from service.storage import Storage
 from service.work.kinds import DIAGNOSES, GROUPS, OUTLOOKS, PUT_OFF, SUMMARIES
 
 PATIENCE = 15.0
-"""Seconds that a program is let wait: a usual diagnosis takes one or two, and a few may be before it."""
-GLANCE = 0.3
-"""Seconds that a page is let wait: it follows by itself."""
-LOOK_EVERY = 0.25
-"""Seconds between two looks at what another service may have made."""
+"""Seconds that a program waits: a usual diagnosis takes one or two, and a few may be before it."""
+PAGE_PATIENCE = 0.3
+"""Seconds that a page waits: it refreshes by itself."""
+POLL_SECONDS = 0.25
+"""Seconds between two checks for results of other services."""
 MOST_WAITING = 8
-"""Requests that wait at a time, of the 40 that are answered at once; others are asked back."""
+"""Requests that may wait, of the 40 that are answered at once; others are rejected with Retry-After."""
 
 LEASE = timedelta(minutes=2)
-"""Of a reader, who does not say again that he is at it: longer than nearly all diagnoses take."""
+"""Lease of a reader, which is not extended: longer than nearly all diagnoses take."""
 MOST_WAITING_FOR_GROUPS = 4
-"""Requests that wait at a time, of the 40 that are answered at once; others are asked back."""
+"""Requests that may wait, of the 40 that are answered at once; others are rejected with Retry-After."""
 T = TypeVar("T")
 """What is read."""
 
@@ -62,11 +61,11 @@ class Reader:
     _places: BoundedSemaphore = field(default_factory=lambda: BoundedSemaphore(MOST_WAITING))
 
     def read(self, id: str, patience: float = PATIENCE) -> StoredDiagnosis | None:
-        """The diagnosis of a session; None while it is still being made, NotFoundError where there is no session."""
-        known, asked = self._look(id)
+        """The diagnosis of a session; None while it is being made, NotFoundError where there is no session."""
+        known, request = self._look(id)
         if known is not None:
             return known
-        if self._is_left_to_readers(asked):
+        if self._is_left_to_readers(request):
             return self._made(id)
         self.bell.hurry(id)
         if not self._places.acquire(blocking=False):
@@ -77,18 +76,18 @@ class Reader:
             self._places.release()
 
     def made(self, id: str) -> StoredDiagnosis:
-        """The diagnosis of a session for what rests on it, where the program failed one that says so.
+        """The diagnosis of a session for results that depend on it, or why the program failed at it.
 
-        PendingError while it is still being made.
+        PendingError while it is being made.
         """
-        found = self.read(id)
-        if found is None:
+        diagnosis = self.read(id)
+        if diagnosis is None:
             raise PendingError(STILL_MADE)
-        return found
+        return diagnosis
 
     def until_dated(self, serial: str, patience: float = PATIENCE) -> bool:
-        """Waits for the outlook of a unit whose history has changed, or makes it where nobody else does; whether it is
-        as the history says."""
+        """Waits for the outlook of a unit whose history has changed, or makes it where no process does; whether it is
+        up to date."""
         if not self._is_undated(serial):
             return True
         if not self.workers:
@@ -101,17 +100,17 @@ class Reader:
             self._places.release()
 
     def until_summarised(self) -> None:
-        """Makes what pages of the fleet read, where nobody else does."""
+        """Makes the summaries of the fleet where no process does."""
         if self.workers:
             return
         with self.storage.database.reading() as store:
-            is_asked = WorkQueue(store, WorkKind.SUMMARY).count() > 0
-        if is_asked:
+            is_requested = WorkQueue(store, WorkKind.SUMMARY).count() > 0
+        if is_requested:
             with Guard(self.metrics).at_request(SUMMARIES.name, ""):
                 summarise_all(self.storage, self.clock())
 
     def _date(self, serial: str) -> bool:
-        """Here; where that fails it is kept, and nobody waits for it."""
+        """Makes the outlook here; a failure is recorded, and not awaited."""
         guard = Guard(self.metrics)
         with guard.at_request(OUTLOOKS.name, serial):
             date_one(self.storage, serial, self.clock())
@@ -119,26 +118,26 @@ class Reader:
 
     def _is_undated(self, serial: str) -> bool:
         with self.storage.database.reading() as store:
-            return WorkQueue(store, WorkKind.OUTLOOK).is_coming(serial)
+            return WorkQueue(store, WorkKind.OUTLOOK).is_pending(serial)
 
     def _look(self, id: str) -> tuple[StoredDiagnosis | None, Waiting | None]:
         with self.storage.database.reading() as store:
             Sessions(store).get(id)
             return known_of(store, id), WorkQueue(store, WorkKind.DIAGNOSIS).get(id)
 
-    def _is_left_to_readers(self, asked: Waiting | None) -> bool:
-        """Where nobody makes it, or where it failed: then the reader is told why."""
-        return not self.workers or asked is None or asked.not_before is not None
+    def _is_left_to_readers(self, request: Waiting | None) -> bool:
+        """Whether no process makes it, or it failed: then the reader gets the reason."""
+        return not self.workers or request is None or request.not_before is not None
 
     def _awaited(self, id: str, patience: float) -> StoredDiagnosis | None:
         return _awaited(self.bell, lambda: self._look(id)[0], patience)
 
     def _made(self, id: str) -> StoredDiagnosis | None:
-        """Here, unless somebody is at it; where the program fails that is kept, and whoever reads is told."""
+        """Makes it here, unless another process has it; a failure of the program is recorded and shown."""
         now = self.clock()
         with self.storage.database.writing() as store:
             queue = WorkQueue(store, WorkKind.DIAGNOSIS)
-            queue.ask_once((id,), now)
+            queue.enqueue_once((id,), now)
             is_ours = queue.claim(id, now, now + LEASE) is not None
         if not is_ours:
             return self._awaited(id, PATIENCE)
@@ -155,7 +154,7 @@ class Reader:
         except (ServiceError, SessionError) as fault:
             with self.storage.database.writing() as store:
                 queue = WorkQueue(store, WorkKind.DIAGNOSIS)
-                queue.hold_up(id, str(fault))
+                queue.record_failure(id, str(fault))
                 queue.put_off(id, now + PUT_OFF)
             raise
 
@@ -173,20 +172,20 @@ class GroupReader:
     places: BoundedSemaphore = field(default_factory=lambda: BoundedSemaphore(MOST_WAITING_FOR_GROUPS))
 
     def read(self, level: Level, name: str, patience: float = PATIENCE) -> GroupAnswer | None:
-        """The answer of a group for its sessions of now; None while it is still being made, NotFoundError where there
-        is no such unit, unit type or stand."""
+        """The answer of a group for its current sessions; None while it is being made, NotFoundError where there is no
+        such unit, unit type or stand."""
         with self.storage.database.reading() as store:
             group = Groups(store).find(level, name)
-            known, asked = current(store, group), WorkQueue(store, WorkKind.GROUP).get(group.place)
+            known, request = current(store, group), WorkQueue(store, WorkKind.GROUP).get(group.place)
         if known is not None:
             return known
         if not self.workers:
             return self._made(group)
-        if asked is not None and asked.failed:
-            return GroupAnswer("", 0, group_failed(asked.failed), "", None, VERSION, self.clock())
-        if asked is None:
+        if request is not None and request.failed:
+            return GroupAnswer("", 0, group_failed(request.failed), "", None, VERSION, self.clock())
+        if request is None:
             with self.storage.database.writing() as store:
-                WorkQueue(store, WorkKind.GROUP).ask_each((group.place,), self.clock())
+                WorkQueue(store, WorkKind.GROUP).enqueue_each((group.place,), self.clock())
             self.bell.ring()
         if not self.places.acquire(blocking=False):
             return None
@@ -196,12 +195,12 @@ class GroupReader:
             self.places.release()
 
     def _made(self, group: Group) -> GroupAnswer | None:
-        """Here, without the sessions at which the program fails; where it fails at the answer itself that is kept."""
+        """Makes it here, without the sessions at which the program fails; a failure of the answer is recorded."""
         guard = Guard(self.metrics)
-        for tried in range(GROUPS.most):
+        for attempt in range(GROUPS.most):
             with guard.at_request(GROUPS.name, group.name):
                 refresh_group.refresh_group(self.storage, group, self.clock())
-            if guard.failed == tried:
+            if guard.failed == attempt:
                 break
         else:
             refresh_group.give_up(self.storage, group, self.clock())
@@ -213,10 +212,10 @@ class GroupReader:
 
 
 def _awaited(bell: Bell, look: Callable[[], T | None], patience: float) -> T | None:
-    """What is looked for, as soon as it is there; None where that takes too long."""
+    """The result as soon as it is there; None after the time limit."""
     end = monotonic() + patience
     while True:
-        rung, found, left = bell.rung, look(), end - monotonic()
-        if found is not None or left <= 0:
-            return found
-        bell.wait(rung, min(left, LOOK_EVERY))
+        rung, result, remaining = bell.rung, look(), end - monotonic()
+        if result is not None or remaining <= 0:
+            return result
+        bell.wait(rung, min(remaining, POLL_SECONDS))

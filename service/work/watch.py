@@ -1,5 +1,5 @@
-"""Work beside the requests that nobody claims: the fleet is looked at now and then, what is missing is asked for, and
-what a change of records or of a model left is derived again."""
+"""Background work without a queue: the fleet is checked periodically, missing work is requested, and verdicts are
+derived again after a change of records or of a model."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from threading import Event
 
 from service.fleet.store import Fleet
 from service.groups.store import Groups
-from service.jobs.changes import drop_outlived
+from service.jobs.changes import drop_expired
 from service.jobs.store import Failures
 from service.judging.store import Derivations
 from service.kit.bell import Bell
@@ -19,8 +19,8 @@ from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import Deriving
-from service.records.flagging.lasting import flag_shifted_stands
 from service.records.flagging.overdue_units import flag_overdue
+from service.records.flagging.stands import flag_shifted_stands
 from service.records.follow import date, date_one, derive_waiting_of
 from service.records.refresh_group import current
 from service.sessions.store import Sessions
@@ -35,25 +35,25 @@ from service.work.kinds import DIAGNOSES
 
 @dataclass(frozen=True)
 class Pace:
-    """How often the fleet is looked at, s."""
+    """Intervals of the checks, s."""
 
     first: float = 20.0
     """After the start, which has other work."""
     every: float = 3600.0
-    """Between two looks: dates fall due by the day."""
+    """Between two checks: dates fall due by the day."""
     retry: float = 60.0
-    """After a look in which something failed; twice as long after each further one, up to `every`. A database that
-    restarts is back within a minute, and what fails for good is not told more often than it is looked at."""
+    """After a check in which something failed; doubled after each further one, up to `every`. A database that restarts
+    is back within a minute, and a permanent failure is not reported more often than a check."""
 
     def after(self, failures: int) -> float:
-        """The pause after so many looks in a row in which something failed."""
+        """The pause after a number of failed checks in a row."""
         return self.every if not failures else min(self.every, self.retry * 2 ** min(failures - 1, 20))
 
 
 def watch_fleet(
     storage: Storage, clock: Callable[[], datetime], metrics: Metrics, stop: Event, pace: Pace | None = None
 ) -> None:
-    """Looks at every outlook, due date and stand now and then until ``stop`` is set."""
+    """Checks every outlook, due date and stand periodically until ``stop`` is set."""
     pace = pace or Pace()
     pause, failures = pace.first, 0
     while not stop.wait(pause):
@@ -62,10 +62,10 @@ def watch_fleet(
 
 
 def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> bool:
-    """One look at the whole fleet and at what dead processes left; whether all of it could be looked at."""
+    """Checks the whole fleet and what dead processes left; whether all of it succeeded."""
     guard = Guard(metrics)
     with guard.alone("outlooks", ""):
-        relearn(storage, clock(), guard.alone)
+        update_outlooks(storage, clock(), guard.alone)
     with guard.alone("due dates", ""):
         flag_overdue(storage, clock(), guard.alone)
     with guard.alone("stands", ""):
@@ -75,43 +75,43 @@ def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> b
     with guard.alone("half-written files", ""):
         storage.files.sweep()
     with guard.alone("files of jobs", ""):
-        drop_outlived(storage, clock())
+        drop_expired(storage, clock())
     with guard.alone("files that wait", ""):
         sweep_waiting(storage, clock())
         drop_stale(storage.files, clock())
     return not guard.failed
 
 
-def relearn(storage: Storage, now: datetime, alone: Alone = plainly) -> int:
-    """Brings every outlook up to what its type tells by now, and returns how many that were.
+def update_outlooks(storage: Storage, now: datetime, alone: Alone = plainly) -> int:
+    """Updates every outlook to the current drift of its type, and returns the number of updated ones.
 
-    What a unit tells of its type does not depend on the type, so one round is enough, and the outlooks of a fleet do
-    not depend on the order in which its sessions came; where no unit has told yet, after the store was brought up to
-    date, it takes two.
+    A unit's contribution to its type does not depend on the type, so one round is enough, and the outlooks of a fleet
+    do not depend on the order of its sessions; where no unit has contributed yet, after an upgrade of the store, it
+    takes two.
     """
     with storage.database.reading() as store:
         serials = Units(store).every()
     done = 0
     for serial in serials:
         with alone("outlooks", serial):
-            done += _relearned(storage, serial, now)
+            done += _updated(storage, serial, now)
     return done
 
 
-def _relearned(storage: Storage, serial: str, now: datetime) -> bool:
+def _updated(storage: Storage, serial: str, now: datetime) -> bool:
     with storage.database.reading() as store:
         if not _is_stale(store, serial):
             return False
     with storage.database.writing() as store:
         Units(store).hold(serial)
-        WorkQueue(store, WorkKind.OUTLOOK).ask_again(serial, now)
+        WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, now)
     date_one(storage, serial, now)
     return True
 
 
 def _is_stale(store: Store, serial: str) -> bool:
-    """A unit of which no session is accepted has no outlook; one whose outlook is asked for is left to whoever makes
-    it, in a process of its own."""
+    """A unit without an accepted session has no outlook; one whose outlook is requested is left to the background
+    process."""
     summary = Fleet(store).unit(serial)
     if summary is None or summary.last_session is None or summary.is_undated:
         return False
@@ -120,56 +120,58 @@ def _is_stale(store: Store, serial: str) -> bool:
 
 
 MISSING_AT_ONCE = 500
-"""Sessions that one query brings."""
+"""Sessions per query."""
 
 
 def ask_for_missing(storage: Storage, clock: Callable[[], datetime], metrics: Metrics, bell: Bell, stop: Event) -> None:
-    """At the start: asks for the diagnosis of every session that has none, or on which an older version failed; what
-    failed is tried again."""
-    last = ""
+    """At the start: requests the diagnosis of every session that has none, or at which an older version failed; failed
+    work is retried."""
+    last_session = ""
     with Guard(metrics).alone(DIAGNOSES.name, ""):
         with storage.database.writing() as store:
             Failures(store).try_again()
         while not stop.is_set():
             with storage.database.reading() as store:
-                missing = Sessions(store).without_diagnosis(last, MISSING_AT_ONCE, VERSION)
+                missing = Sessions(store).without_diagnosis(last_session, MISSING_AT_ONCE, VERSION)
             if not missing:
                 return
             with storage.database.writing() as store:
-                WorkQueue(store, WorkKind.DIAGNOSIS).ask_once(missing, clock())
+                WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once(missing, clock())
             bell.ring()
-            last = missing[-1]
+            last_session = missing[-1]
 
 
 def ask_for_outdated(storage: Storage, clock: Callable[[], datetime], alone: Alone = plainly) -> int:
-    """Asks for every group whose answer does not rest on its sessions of now, as after an update; returns how many."""
+    """Requests groups whose answer does not match their current sessions, as after an upgrade; returns the number."""
     with storage.database.reading() as store:
         groups = Groups(store).every()
     count = 0
     for group in groups:
         with alone("groups", group.name):
             with storage.database.reading() as store:
-                is_wanted = current(store, group) is None and WorkQueue(store, WorkKind.GROUP).get(group.place) is None
-            if is_wanted:
+                is_outdated = (
+                    current(store, group) is None and WorkQueue(store, WorkKind.GROUP).get(group.place) is None
+                )
+            if is_outdated:
                 count += 1
                 with storage.database.writing() as store:
-                    WorkQueue(store, WorkKind.GROUP).ask_each((group.place,), clock())
+                    WorkQueue(store, WorkKind.GROUP).enqueue_each((group.place,), clock())
     return count
 
 
 DERIVE_EVERY = 2.0
-"""Seconds between two looks: a person who changed a record waits for it."""
+"""Seconds between two checks: a person who changed a record waits for it."""
 DERIVE_RETRY = 60.0
-"""Seconds after a look in which something failed: what fails for good is told once a minute."""
+"""Seconds after a check in which something failed: a permanent failure is reported once a minute."""
 DERIVED_AT_ONCE = 10
-"""Sessions that are worked out before they are put down together."""
+"""Sessions that are judged before they are stored together."""
 
 
 def derive_pending(
     storage: Storage, coverage_factor: float, clock: Callable[[], datetime], metrics: Metrics, stop: Event
 ) -> None:
-    """Judges what waits until ``stop`` is set; what a crash interrupts still waits at the next start, and a unit on
-    which something fails waits for the next look."""
+    """Derives pending verdicts until ``stop`` is set; what a crash interrupts is still pending at the next start, and a
+    unit at which something fails waits for the next check."""
     pause = DERIVE_EVERY
     while not stop.wait(pause):
         guard = Guard(metrics)
@@ -181,7 +183,7 @@ def derive_pending(
 def derive_waiting(
     storage: Storage, coverage_factor: float, clock: Callable[[], datetime], stop: Event, alone: Alone = plainly
 ) -> None:
-    """Judges everything that waits now, unit after unit."""
+    """Derives all pending verdicts, unit after unit."""
     with storage.database.reading() as store:
         serials = Derivations(store).waiting()
     for serial in serials:
@@ -192,7 +194,7 @@ def derive_waiting(
 def _failed_at(storage: Storage, serial: str, clock: Callable[[], datetime]) -> Callable[[str], None]:
     def keep(why: str) -> None:
         with storage.database.writing() as store:
-            WorkQueue(store, WorkKind.DERIVATION).keep_failed(serial, why, clock())
+            WorkQueue(store, WorkKind.DERIVATION).add_failed(serial, why, clock())
 
     return keep
 
@@ -200,8 +202,8 @@ def _failed_at(storage: Storage, serial: str, clock: Callable[[], datetime]) -> 
 def _derive_unit(
     storage: Storage, coverage_factor: float, clock: Callable[[], datetime], stop: Event, serial: str
 ) -> None:
-    left = 1
-    while left and not stop.is_set():
-        way = Deriving(storage.files, coverage_factor, clock())
-        left = derive_waiting_of(storage, way, serial, DERIVED_AT_ONCE)
-    date(storage, way, serial)
+    remaining = 1
+    while remaining and not stop.is_set():
+        deriving = Deriving(storage.files, coverage_factor, clock())
+        remaining = derive_waiting_of(storage, deriving, serial, DERIVED_AT_ONCE)
+    date(storage, deriving, serial)

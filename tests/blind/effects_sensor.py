@@ -60,6 +60,16 @@ def bias_temperature(session: Session, effect: Effect, n: Array, a: Array, force
     return effect.k * centred(session.schedule.temperature)
 
 
+def bias_temperature_curve(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: a parabola over T whose slope and bend are given about the mean T."""
+    T = session.schedule.temperature
+    about = T.mean()
+    straight, bent = effect.amplitude
+    at = np.array([about - 1.0, about, about + 1.0])
+    through = np.array([bent - straight, 0.0, bent + straight])
+    return sum(y * np.prod([(T - u) / (x - u) for u in at if u != x], axis=0) for x, y in zip(at, through, strict=True))
+
+
 def scale_temperature(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
     """(R,) m/s² or rad/s: k·(T − mean T)·a."""
     return effect.k * centred(session.schedule.temperature) * a
@@ -169,6 +179,7 @@ INPUT = {
     "scale-asymmetry": scale_asymmetry,
     "cross-coupling": cross_coupling,
     "bias-temperature": bias_temperature,
+    "bias-temperature-curve": bias_temperature_curve,
     "scale-temperature": scale_temperature,
     "bias-ramp": bias_ramp,
     "warm-up": warm_up,

@@ -1,5 +1,8 @@
 """How far a lasting effect is from every other one on the sessions of a group, by the generator's own physics."""
 
+from math import fsum
+from typing import Any
+
 import numpy as np
 
 from tests.blind.catalogue import CATALOGUE, SENSOR
@@ -23,7 +26,8 @@ def pooled_separation(lenses: list[Lens], effect: Effect, acts: list[bool]) -> f
     """
     known = CATALOGUE.get(effect.cause)
     own = known.parameters if known else len(effect.amplitude)
-    truth, blocks = [], {}
+    truth: list[Array] = []
+    blocks: dict[Any, dict[int, Array]] = {}
     for lens, on in zip(lenses, acts, strict=True):
         left = lens.left(signature(lens.session, effect).reshape(-1, 1))[:, 0] if on else None
         truth.append(np.zeros(len(lens.whitened)) if left is None else left)
@@ -33,17 +37,17 @@ def pooled_separation(lenses: list[Lens], effect: Effect, acts: list[bool]) -> f
                 blocks.setdefault(key, {})[number] = columns
     best = np.inf
     for key, parts in blocks.items():
-        left = _left(lenses, truth, parts)
-        if known and CATALOGUE[key[0]].parameters > own and left < 2.0:
+        unlike = _left(lenses, truth, parts)
+        if known and CATALOGUE[key[0]].parameters > own and unlike < 2.0:
             continue
-        best = min(best, left)
+        best = min(best, unlike)
     return float(best)
 
 
 def _left(lenses: list[Lens], truth: list[Array], parts: dict[int, Array]) -> float:
     """Norm of what one pooled fit leaves."""
     p = next(iter(parts.values())).shape[1]
-    gram, moment, whole = np.zeros((p, p)), np.zeros(p), sum(float(t @ t) for t in truth)
+    gram, moment, whole = np.zeros((p, p)), np.zeros(p), fsum(float(t @ t) for t in truth)
     for number, columns in parts.items():
         white = np.linalg.norm(lenses[number].whiten(columns), axis=0)
         left = lenses[number].left(columns)
@@ -51,7 +55,7 @@ def _left(lenses: list[Lens], truth: list[Array], parts: dict[int, Array]) -> fl
         gram, moment = gram + left.T @ left, moment + left.T @ truth[number]
     size = np.sqrt(np.where(np.diagonal(gram) > 0, np.diagonal(gram), 1.0))
     inverse = np.linalg.pinv(gram / size[:, None] / size, rcond=1e-8, hermitian=True)
-    return float(np.sqrt(max(whole - (moment / size) @ inverse @ (moment / size), 0.0)))
+    return float(np.sqrt(max(whole - float((moment / size) @ inverse @ (moment / size)), 0.0)))
 
 
 def _columns(session: Session):

@@ -273,7 +273,7 @@ def _shows(world: Session, cause: str) -> bool:
 
 def _beyond_one_unit(worlds: list[Session], strengths: Array) -> float:
     """Strength in all units but the one that shows it most: what tells a type or stand from a unit."""
-    square = {}
+    square: dict[str, Array] = {}
     for w, s in zip(worlds, strengths, strict=True):
         square[w.unit.name] = square.get(w.unit.name, 0.0) + s**2
     return float(np.sqrt(sum(square.values()) - max(square.values())))

@@ -30,8 +30,8 @@ class StandErrors:
 def draw_errors(session: Session, rng: np.random.Generator) -> StandErrors:
     """Errors drawn from the stated sigmas."""
     s = session.stand.sigma
-    constant = [rng.normal(0, sigma) for sigma in (s.theta_x, s.theta_y, s.alpha)]
-    return StandErrors(*constant, rng.normal(0, s.beta, session.schedule.rows))
+    x, y, alpha = (rng.normal(0, sigma) for sigma in (s.theta_x, s.theta_y, s.alpha))
+    return StandErrors(x, y, alpha, rng.normal(0, s.beta, session.schedule.rows))
 
 
 def direction(elevation: Array, beta: Array, across: Array) -> Array:

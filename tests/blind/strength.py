@@ -63,9 +63,9 @@ def _stand_column(session: Session, which: int) -> Array:
     """(R, m) readings per rad of θ_x, θ_y, δα, or the row's own δβ."""
 
     def moved(by: float) -> Array:
-        values = [by * (which == k) for k in range(4)]
-        beta = np.full(session.schedule.rows, values[3])
-        return mean_readings(session, errors=StandErrors(*values[:3], beta))
+        x, y, alpha, beta = (by * (which == k) for k in range(4))
+        errors = StandErrors(x, y, alpha, np.full(session.schedule.rows, beta))
+        return mean_readings(session, errors=errors)
 
     return (moved(ANGLE) - moved(-ANGLE)) / (2 * ANGLE)
 

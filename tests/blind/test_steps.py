@@ -7,7 +7,7 @@ from estimator import diagnose, read_session
 from estimator.diagnosis import Finding
 from tests.blind.steps import BLOCKS, RAMPS, TURNED, WALKS, Block, Stepped, draw_others, draw_steps
 
-SHARED = "at one moment"
+SHARED = "one step at the same moment"
 STAND, ORIENTATIONS = BLOCKS[0], BLOCKS[2]
 
 
@@ -32,7 +32,7 @@ def test_zeros_that_step_together_are_one_finding_with_one_moment(
     (found,) = found_in(hidden)
     assert (found.cause, set(found.sensors)) == ("bias-jump", set(hidden.sensors))
     assert {shape["row"] for shape in found.nonlinear_each} == set(hidden.rows)
-    assert found.sentence.startswith("The zeros of")
+    assert found.sentence.startswith("The biases of")
     assert SHARED in found.sentence
     size = dict(zip(found.sensors, zip(found.amplitude, found.sigma, strict=True), strict=True))
     for sensor, true in zip(hidden.sensors, hidden.size, strict=True):

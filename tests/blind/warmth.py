@@ -32,10 +32,12 @@ def draw_law(m: int, rng: np.random.Generator, *, curved: bool) -> Array:
     return np.stack([0.2 * line if curved else line, curve if curved else 0 * curve], axis=-1)
 
 
-def at_temperature(world: Session, law: Array, celsius: float, day: str, rng: np.random.Generator) -> dict[str, Any]:
+def at_temperature(
+    world: Session, law: Array, celsius: float, day: str, rng: np.random.Generator, wander: float = WANDER
+) -> dict[str, Any]:
     """The file of a session of a unit that obeys a law, measured at a temperature on some day."""
     rows = world.schedule.rows
-    warm = np.round(celsius + WANDER * np.sin(np.linspace(0, 2 * np.pi, rows) + rng.uniform(0, 6)), 2)
+    warm = np.round(celsius + wander * np.sin(np.linspace(0, 2 * np.pi, rows) + rng.uniform(0, 6)), 2)
     world = replace(world, schedule=replace(world.schedule, temperature=warm), started_at=f"{day}T09:00:00Z")
     away = warm[:, None] - ROOM
     bias, scale = (part[:, 0] * away + part[:, 1] * away**2 for part in law)

@@ -67,5 +67,5 @@ def test_a_notebook_runs_and_shows_what_it_prints(notebook: Path, address: str, 
 
 def test_the_cause_that_was_hidden_is_named_with_its_size() -> None:
     text = "\n".join(printed(nbformat.read(NOTEBOOKS[0], 4)))
-    assert "the zero of A2 drifts steadily through the session" in text
+    assert "the bias of A2 drifts steadily during the session" in text
     assert "hidden 120 µg" in text

@@ -29,7 +29,7 @@ def test_the_table_is_understood_and_diagnosed_as_the_tutorial_says(client: http
     assert stored.status_code == 201, stored.text
     (finding,) = client.get(f"/api/v1/sessions/{stored.json()['id']}/diagnosis").json()["findings"]
     assert (finding["cause"], finding["sensors"]) == ("bias-ramp", ["A2"])
-    assert "**The zero of A2 drifts steadily through the session.**" in TEXT
+    assert "**The bias of A2 drifts steadily during the session.**" in TEXT
 
 
 def test_the_tutorial_says_what_the_pages_are_told() -> None:

@@ -1,5 +1,6 @@
 """What is worked out once for a session's content."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +17,7 @@ class Worked:
     session: CalibrationSession
 
 
-def counted() -> tuple[list[str], object]:
+def counted() -> tuple[list[str], Callable[[CalibrationSession], str]]:
     """The notes of the sessions that a remembered function was really asked for, and the function."""
     asked: list[str] = []
 
@@ -32,7 +33,7 @@ def test_the_same_content_is_worked_out_once() -> None:
     asked, notes_of = counted()
     (session,) = CASES[0].simulated(1)
     again = replace(session, readings=session.readings.copy())
-    assert notes_of(session) == notes_of(again) == notes_of(replace(again, sensors=list(again.sensors)))
+    assert notes_of(session) == notes_of(again) == notes_of(replace(again, sensors=(*again.sensors,)))
     assert len(asked) == 1
 
 

@@ -105,7 +105,7 @@ def test_the_stated_uncertainty_is_honest() -> None:
         [block] = correction_of(session, calibrate(session)).blocks
         error = block.vector(read) - force
         total += float(error @ np.linalg.solve(block.vector_covariance(read), error))
-    low, high = stats.chi2.ppf([0.001, 0.999], 900)
+    low, high = stats.chi2.ppf(np.array([0.001, 0.999]), 900)
     assert low < total < high
 
 

@@ -11,7 +11,7 @@ from estimator.applied_vector import EARTH_RATE, gravity
 from estimator.causes.catalogue import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.hiding import Hidden, TooWeakError, UnhideableError, hide, hide_any, with_input
+from estimator.hiding import HiddenCause, TooWeakError, UnhideableError, hide, hide_any, with_input
 from estimator.hiding.clipping import FEWEST_CUT
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE, CalibrationSession, Sensor, Site, Stand, StandErrors
@@ -60,7 +60,7 @@ def in_orientations(seed: int) -> list[CalibrationSession]:
     return measured(orientation_schedule(own, SITE, directions), np.array([3e-5] * 3 + [3e-4] * 3), seed)
 
 
-def hidden_in(sessions: list[CalibrationSession], name: str, seed: int) -> tuple[CalibrationSession, Hidden]:
+def hidden_in(sessions: list[CalibrationSession], name: str, seed: int) -> tuple[CalibrationSession, HiddenCause]:
     return hide(sessions, cause(name), np.random.default_rng([seed, 9]), strength=12.0, exact=False)
 
 

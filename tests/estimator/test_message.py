@@ -3,6 +3,7 @@
 import json
 import pickle
 from copy import deepcopy
+from typing import Any
 
 import pytest
 
@@ -22,7 +23,7 @@ from estimator.message import (
 MOVED = say("{sensor} moved by {size}.", sensor="A3", size=say("{value} of {limit}", value=12, limit="50 µg"))
 
 
-def parts_of(text: str) -> object:
+def parts_of(text: str) -> Any:
     """All that a text is made of."""
     if not isinstance(text, Message):
         return text

@@ -22,7 +22,7 @@ def rows(document: Document, *kept: int) -> Document:
 
 def after(document: Document, *kept: int, **how: int | bool) -> Missing:
     """What is missing after these rows."""
-    return missing(read_session(rows(document, *kept)), **how)  # type: ignore[arg-type]
+    return missing(read_session(rows(document, *kept)), **how)
 
 
 def test_of_a_run_half_done_the_rest_is_to_come_and_then_the_other_run() -> None:
@@ -69,7 +69,7 @@ def test_more_positions_may_be_wanted_than_the_steps_say() -> None:
 
 def test_steps_that_are_no_parts_of_a_turn_ask_for_the_number() -> None:
     odd = STAND | {"table": STAND["table"] | {"beta_deg": [0, 47.3, *STAND["table"]["beta_deg"][2:]]}}
-    with pytest.raises(ScheduleError, match="how many positions"):
+    with pytest.raises(ScheduleError, match="number of positions"):
         after(odd, 0, 1)
 
 

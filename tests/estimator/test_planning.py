@@ -7,7 +7,7 @@ import pytest
 
 from estimator import ScheduleError, Site, Stand, StandErrors, calibrate
 from estimator.parameters import nominal
-from estimator.planning import Plan, Request, Wanted, optimal_elevation, plan
+from estimator.planning import Plan, Request, ToleranceSet, optimal_elevation, plan
 from estimator.planning.elevation import conditioning
 from estimator.planning.positions import log_information, whitened
 from estimator.session import CalibrationSession, Sensor
@@ -76,7 +76,7 @@ def test_the_proposed_elevation_is_the_least_of_what_it_minimises(unasked: Plan)
 
 def test_the_fewest_positions_that_reach_the_tolerances() -> None:
     like = block(accelerometers(), 24)
-    request = Request(elevation=np.radians(40.0), wanted=Wanted(bias=12e-6 * 9.80665))
+    request = Request(elevation=np.radians(40.0), wanted=ToleranceSet(bias=12e-6 * 9.80665))
     found = plan(like, request, sigma=NOISE)
     fewer = plan(like, replace(request, positions=found.positions - 1), sigma=NOISE)
     assert found.reached
@@ -87,7 +87,7 @@ def test_the_fewest_positions_that_reach_the_tolerances() -> None:
 def test_what_the_stand_cannot_reach_is_said() -> None:
     poor = replace(STAND, sigma=replace(PUBLISHED, alpha=60 * ARCSEC))
     like = replace(block(accelerometers(), 24), stand=poor)
-    found = plan(like, Request(wanted=Wanted(axis=30 * ARCSEC)), sigma=NOISE)
+    found = plan(like, Request(wanted=ToleranceSet(axis=30 * ARCSEC)), sigma=NOISE)
     assert found.reached is False
     assert {j.verdict for j in found.judged if j.parameter == "axis"} == {"undecidable"}
     assert found.positions < found.request.most_positions

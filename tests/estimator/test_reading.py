@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from estimator.calibration.calibrate import averaged
 from estimator.reading import read_session
 from tests import builders
 from tests.builders import ARCSEC
@@ -53,6 +54,33 @@ def test_what_is_not_stated_is_none_or_zero():
     assert (session.started_at, session.operator, session.time, session.temperature) == (None, "", None, None)
     assert session.stand.sigma.beta == 0
     assert np.array_equal(session.mounting, np.eye(3))
+
+
+@pytest.mark.parametrize("first", [0.0, 600.0, -1e6])
+@pytest.mark.parametrize("stated", [{"powered_on_at": "2026-03-01T11:20:00+03:00"}, {"time_since_power_on_s": 2400.0}])
+def test_switching_on_is_known_by_the_clock_of_the_rows(stated, first):
+    document = builders.accelerometer_block() | stated
+    document["table"]["time_s"] = [first + t for t in document["table"]["time_s"]]
+    session = read_session(document)
+    assert (session.switched_on, session.time_since_power_on) == (first - 2400, 2400)
+
+
+def test_without_a_clock_switching_on_counts_from_the_first_row():
+    document = builders.accelerometer_block() | {"time_since_power_on_s": 0}
+    del document["table"]["time_s"]
+    assert read_session(document).time_since_power_on == 0
+
+
+def test_when_it_was_switched_on_need_not_be_said():
+    session = read_session(builders.accelerometer_block() | {"powered_on_at": None})
+    assert (session.switched_on, session.time_since_power_on) == (None, None)
+
+
+def test_a_log_that_is_averaged_was_switched_on_when_it_was():
+    log = read_session(builders.raw_log() | {"time_since_power_on_s": 90.0})
+    rows = averaged(log)
+    assert rows.switched_on == log.switched_on
+    assert rows.time_since_power_on > 90.0
 
 
 def test_pulse_gyros_keep_their_count_time():

@@ -108,7 +108,7 @@ def test_a_row_of_another_width_is_named():
         ("A2,", ",", "has no name"),
         ("A2,", '"A2,', "quote is not closed"),
         ("# {", "# {{", "not valid JSON at line 1"),
-        ("# {", '# {"table": {},', "stands in the metadata"),
+        ("# {", '# {"table": {},', "is in the metadata"),
     ],
 )
 def test_faults_of_the_file_itself(old, new, words):

@@ -51,6 +51,17 @@ FAULTS = [
     (STAND, ["started_at"], "2026-03-01T09:00:00", "started_at", None, "Z for UTC"),
     (STAND, ["started_at"], "yesterday", "started_at", None, "2026-03-01T09:00:00Z"),
     (STAND, ["started_at"], "0001-01-01T00:00:00+23:00", "started_at", None, "year 1"),
+    (STAND, ["powered_on_at"], "2026-03-01T08:20:00", "powered_on_at", None, "Z for UTC"),
+    (STAND, ["powered_on_at"], "an hour before", "powered_on_at", None, "2026-03-01T09:00:00Z"),
+    (STAND, ["powered_on_at"], "2026-03-01T09:00:01Z", "powered_on_at", None, "later than started_at"),
+    (STAND, ["powered_on_at"], "2025-03-01T09:00:00Z", "powered_on_at", None, "more than 185 days"),
+    (STAND, ["powered_on_at"], 2400, "powered_on_at", None, "text in quotes"),
+    (STAND, ["powered_on"], "2026-03-01T08:20:00Z", "powered_on", None, "did you mean powered_on_at"),
+    (STAND, ["time_since_power_on_s"], -1, "time_since_power_on_s", None, "from 0"),
+    (STAND, ["time_since_power_on_s"], float("nan"), "time_since_power_on_s", None, "nan"),
+    (STAND, ["time_since_power_on_s"], 1e9, "time_since_power_on_s", None, "1.6e+07 s"),
+    (STAND, ["time_since_power_on_s"], "40 min", "time_since_power_on_s", None, "write a number"),
+    (STAND, ["time_since_power_on_min"], 40, "time_since_power_on_min", None, "time_since_power_on_s"),
     (STAND, ["notes"], ["a"], "notes", None, "text in quotes"),
     (STAND, ["site", "latitude_deg"], 91, "site.latitude_deg", None, "from -90 to 90"),
     (STAND, ["site", "latitude_deg"], "55.8", "site.latitude_deg", None, "without quotes"),
@@ -69,7 +80,7 @@ FAULTS = [
     (STAND, ["stand", "alpha_deg"], ..., "stand.alpha_deg", None, "missing"),
     (STAND, ["stand", "alpha_rad"], 0.7, "stand.alpha_rad", None, "alpha_deg"),
     (GYRO, ["stand", "chi_deg"], ..., "stand.chi_deg", None, "missing"),
-    (GYRO, ["count_time_s"], ..., "count_time_s", None, "add the time"),
+    (GYRO, ["count_time_s"], ..., "count_time_s", None, "add the count time"),
     (GYRO, ["count_time_s"], 0, "count_time_s", None, "above 0"),
     (STAND, ["count_time_s"], 100.0, "count_time_s", None, "gyroscopes"),
     (STAND, ["stand", "sigma_arcsec", "beta"], -1, "stand.sigma_arcsec.beta", None, "from 0"),
@@ -151,6 +162,24 @@ def test_one_fault_is_not_reported_as_many(build, path, value, field, row, words
     assert len(problems_of(document)) <= (3 if field.split("[")[0] not in wide else 30)
 
 
+def test_a_moment_of_switching_on_needs_one_of_the_start():
+    document = builders.accelerometer_block() | {"powered_on_at": "2026-03-01T08:20:00Z"}
+    del document["started_at"]
+    (problem,) = problems_of(document)
+    assert (problem.field, "needs started_at" in problem.message) == ("powered_on_at", True)
+
+
+def test_switching_on_is_stated_once():
+    both = {"powered_on_at": "2026-03-01T08:20:00Z", "time_since_power_on_s": 2400}
+    (problem,) = problems_of(builders.accelerometer_block() | both)
+    assert (problem.field, "one of the two" in problem.message) == ("powered_on_at", True)
+
+
+def test_a_wrong_start_is_the_only_fault_beside_a_moment_of_switching_on():
+    wrong = {"powered_on_at": "2026-03-01T08:20:00Z", "started_at": "yesterday"}
+    assert [p.field for p in problems_of(builders.accelerometer_block() | wrong)] == ["started_at"]
+
+
 def test_all_faults_are_reported_at_once():
     document = builders.accelerometer_block()
     document["stand"]["alpha_deg"] = 90
@@ -215,7 +244,7 @@ def test_faulty_rows_beyond_five_are_counted(faulty, told):
     document["table"]["A1"][20 : 20 + faulty] = ["x"] * faulty
     found = problems_of(document)
     assert [problem.row for problem in found] == [21, 22, 23, 24, 25, None]
-    assert f"{told} such a fault, up to row {20 + faulty}" in found[-1].message
+    assert f"{told} this fault, up to row {20 + faulty}" in found[-1].message
 
 
 def test_a_column_of_one_value_is_told_as_one():

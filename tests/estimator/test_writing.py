@@ -29,6 +29,8 @@ DOCUMENTS = {
     "raw log": builders.raw_log(),
     "a counter that is reset": builders.gyro_block() | {"counter": "reset"},
     "simulated": builders.accelerometer_block() | {"origin": "simulated"},
+    "switched on before": builders.accelerometer_block() | {"powered_on_at": "2026-03-01T08:20:00.5Z"},
+    "switched on with the first row": builders.raw_log() | {"time_since_power_on_s": 0.0},
     "positions": placed(builders.accelerometer_block()),
 }
 

@@ -67,7 +67,7 @@ def test_the_truth_is_found_within_its_uncertainty(service: httpx.Client, answer
 def test_sessions_are_judged_against_the_first(answers: list[dict[str, Any]]) -> None:
     assert [answer["is_reference"] for answer in answers] == [True, False, False]
     assert [answer["verdict"] for answer in answers[1:]] == ["pass", "fail"]
-    assert answers[2]["reason"].startswith("A1 bias moved +513 µg")
+    assert answers[2]["reason"].startswith("A1 bias changed by +513 µg")
 
 
 def test_a_session_that_never_turned_a_sensor_over_is_refused(service: httpx.Client) -> None:

@@ -99,7 +99,7 @@ def _replay(world: World, fresh: World) -> None:
     types = {serial: world.get(f"/units/{quote(serial, safe='')}")["summary"]["unit_type"] for serial in world.units()}
     begun, first = _begin_types(world, fresh, types), _first_of_units(world)
     counted = [(_revision(world, one["id"]), one) for one in world.sessions("accepted")]
-    for number, session in sorted(counted, key=lambda own: _in_order(*own, first)):
+    for number, session in sorted(counted, key=lambda own: _in_order(own[0], own[1], first)):
         _bring_to_revision(world, fresh, types[session["unit"]], number)
         if session["id"] not in begun:
             _upload_again(world, fresh, session)

@@ -143,7 +143,10 @@ def pages_agree(world: World, everything: bool = False) -> None:
     """Pages of a unit and a session say what programs read of them."""
     units, sessions = world.units(), world.sessions()
     if not everything:
-        units, sessions = (world.chance.sample(found, min(1, len(found))) for found in (units, sessions))
+        units, sessions = (
+            world.chance.sample(units, min(1, len(units))),
+            world.chance.sample(sessions, min(1, len(sessions))),
+        )
     for serial in units:
         unit_agrees(world, serial)
     for session in sessions:

@@ -26,6 +26,7 @@ EDGE = re.compile(
 shows what another knows."""
 SERVICE_LAYERS = tuple({subject} for subject in SUBJECTS)
 ESTIMATOR_LAYERS = (
+    {"json_object"},
     {"message"},
     {"errors", "moments", "on_demand", "wording"},
     {"codec"},

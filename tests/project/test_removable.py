@@ -61,7 +61,7 @@ def unregistered(source: str, name: str) -> str:
 @pytest.mark.parametrize("part", PARTS.values(), ids=PARTS)
 def test_the_service_works_without_an_optional_part(part: Part, tmp_path: Path) -> None:
     for folder in ("estimator", "service", "migrations", "tests"):
-        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__", "golden"))
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("golden"))
     for place in part.places:
         gone = tmp_path / place
         shutil.rmtree(gone) if gone.is_dir() else gone.unlink()

@@ -6,14 +6,14 @@ from tests.project.source import ROOT, modules
 
 SENTENCES = {
     "Cannot tell which": "service.diagnosis.words.causes",
-    "Something is there that no known cause explains": "service.diagnosis.words.findings",
-    "Something common to all sensors": "service.diagnosis.words.findings",
+    "An effect that no known cause explains": "service.diagnosis.words.findings",
+    "An effect common to all sensors": "service.diagnosis.words.findings",
     "stated standard errors": "service.sessions.words.noise",
-    "one that is not in the catalogue": "service.diagnosis.words.causes",
-    "by chance alone in": "service.diagnosis.words.findings",
+    "a cause outside the catalogue": "service.diagnosis.words.causes",
+    "by chance in": "service.diagnosis.words.findings",
     "a sound model would give this much": "service.sessions.words.readings",
-    "cannot be seen without motion": "service.judging.words",
-    "with one another as they did": "service.judging.words",
+    "cannot be observed without motion": "service.judging.words",
+    "with one another as at the calibration": "service.judging.words",
     "beyond the tolerance of": "service.judging.words",
 }
 """Where each is made."""

@@ -25,5 +25,5 @@ SLIGHTLY = (REFERENCE, jumped(14.0))
 """The same with less than a third of the tolerance."""
 MISTAKEN = (REFERENCE, jumped(51.0, EARLY))
 """The same, so early that the quadratic term takes it up and passes for out of tolerance."""
-CLAUSE = "the zero of A2 jumps once and stays ("
+CLAUSE = "the bias of A2 has one step ("
 """How the reservation of `JUMPED` begins, before its size."""

@@ -6,8 +6,8 @@ import numpy as np
 
 from estimator.alignment.simulate import (
     Imperfections,
-    Programme,
     Truth,
+    TurntableProgramme,
     simulate_alignment,
     simulate_rate_table,
     triads,
@@ -40,7 +40,7 @@ def alignment_bytes(
     if places is not None:
         places[1, :2] = a2_stands
     truth = Truth(accelerometer_bias=np.array([x_moved * MICRO_G, 0.0, 0.0]), mounting=mounting, positions=places)
-    programme = Programme(dwell=200.0, row=1.0, ramp=0.0 if places is None else 2.0)
+    programme = TurntableProgramme(dwell=200.0, row=1.0, ramp=0.0 if places is None else 2.0)
     rng = np.random.default_rng(seed)
     session, _ = simulate_alignment(triads(), SITE, programme, truth, rng, imperfections=NOISE, unit=unit)
     return _bytes(session, month)

@@ -19,7 +19,7 @@ from estimator.applied_vector import gravity
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
-from estimator.calibration.free.model import Rows, predicted
+from estimator.calibration.free.model import ModelRows, predicted
 from estimator.calibration.free.optional import solve
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
 from estimator.calibration.free.schedule import Mask, check, classified
@@ -89,7 +89,7 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     return float(np.sqrt(squares.sum() / solution.dof) * (1 + 1 / np.sqrt(2 * solution.dof)))
 
 
-def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> tuple[Rows, bool]:
+def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> tuple[ModelRows, bool]:
     """Dimensionless rows of the accelerometers, and whether their noise is stated."""
     sensors = [s for s, is_chosen in zip(session.sensors, chosen, strict=True) if is_chosen]
     readings, errors = measured(session)
@@ -98,7 +98,7 @@ def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> t
     y = readings[:, chosen] / unit
     directions, prior = stated_directions(session)
     repeatability = np.array([s.bias_repeatability for s in sensors]) / g
-    rows = Rows(y, np.full(y.shape, UNSTATED_NOISE), directions, prior, axes)
+    rows = ModelRows(y, np.full(y.shape, UNSTATED_NOISE), directions, prior, axes)
     gain = np.exp(start(rows).log_scale) if repeatability.any() else 1.0
     sigma = np.hypot(errors[:, chosen] / np.abs(unit), gain * repeatability)
     if np.all(np.isfinite(sigma) & (sigma > 0)):

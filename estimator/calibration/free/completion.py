@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from estimator.calibration.free.information import movable, unseen_below
-from estimator.calibration.free.model import Rows, Unknowns, linearise
+from estimator.calibration.free.model import ModelRows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
@@ -30,7 +30,7 @@ NOISE = 1e-5
 
 def planned_rows(
     axes: Array, directions: Array, noise: float = NOISE, direction_sigma: float | None = None
-) -> tuple[Rows, Unknowns]:
+) -> tuple[ModelRows, Unknowns]:
     """Orientations (R, 3) still to be measured by sensors along axes (m, 3), both unit vectors, nominal parameters.
 
     noise : one sigma of a reading, g; direction_sigma : rad, None where directions will not be stated.
@@ -39,11 +39,11 @@ def planned_rows(
     prior = np.full(R, 0.0 if direction_sigma is None else direction_sigma**-2.0)
     stated = directions if direction_sigma is not None else np.zeros((R, 3))
     zero = np.zeros(len(axes))
-    rows = Rows(directions @ axes.T, np.full((R, len(axes)), noise), stated, prior, axes)
+    rows = ModelRows(directions @ axes.T, np.full((R, len(axes)), noise), stated, prior, axes)
     return rows, Unknowns(zero, zero, zero, axes, directions)
 
 
-def shares(rows: Rows, unknowns: Unknowns) -> Array:
+def shares(rows: ModelRows, unknowns: Unknowns) -> Array:
     """(R, 5 m, 5 m) what each orientation adds to the information, dimensionless elements."""
     linear = linearise(rows, unknowns)
     R, m = rows.y.shape

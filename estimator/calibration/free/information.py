@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.arrays import eigh
-from estimator.calibration.free.model import Linear, Rows, Unknowns, linearise
+from estimator.calibration.free.model import Linear, ModelRows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
@@ -61,7 +61,7 @@ class Information:
         return (self.seen * self.variances) @ self.seen.T
 
 
-def movable(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Array:
+def movable(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Array:
     """(5 m, F) orthonormal basis, dimensionless, of what may move: no fixed elements, and no net turn of the axes where
     no stated directions hold the frame."""
     m = len(unknowns.axes)
@@ -84,7 +84,7 @@ def unseen_below(values: Array) -> float:
     return max(PLAUSIBLE**-2, ROUNDING * float(values[-1]))
 
 
-def information(rows: Rows, unknowns: Unknowns, quadratic: bool, linear: Linear | None = None) -> Information:
+def information(rows: ModelRows, unknowns: Unknowns, quadratic: bool, linear: Linear | None = None) -> Information:
     """What orientations ``unknowns.directions`` tell of sensors like its own under the noise of ``rows``.
 
     Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part. ``linear`` is the

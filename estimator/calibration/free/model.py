@@ -32,7 +32,7 @@ hundred roundings, far below what any reading tells."""
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class ModelRows:
     """What was measured, dimensionless. R orientations, m accelerometers."""
 
     y: Array
@@ -51,7 +51,7 @@ class Rows:
         """Whether stated directions hold the block's frame."""
         return bool(np.any(self.prior > 0))
 
-    def weighted(self, sigma: Array) -> "Rows":
+    def weighted(self, sigma: Array) -> "ModelRows":
         """The same readings under another noise, dimensionless: (R, m) or anything that broadcasts to it."""
         return replace(self, sigma=np.broadcast_to(sigma, self.y.shape))
 
@@ -103,7 +103,7 @@ def predicted(unknowns: Unknowns) -> Array:
     return np.exp(unknowns.log_scale) * (s + unknowns.quadratic * s * s) + unknowns.offset
 
 
-def cost(rows: Rows, unknowns: Unknowns) -> float:
+def cost(rows: ModelRows, unknowns: Unknowns) -> float:
     """χ²: squared residuals of the readings and of the stated directions, in their sigmas."""
     readings = np.sum(((rows.y - predicted(unknowns)) / rows.sigma) ** 2)
     return float(readings + np.sum(rows.prior[:, None] * (rows.directions - unknowns.directions) ** 2))
@@ -161,7 +161,7 @@ def jacobian(unknowns: Unknowns) -> tuple[Array, Array]:
     return local, shared
 
 
-def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
+def linearise(rows: ModelRows, unknowns: Unknowns) -> Linear:
     """Jacobian, normal equations and Schur complement at one point; shapes and units: see `Linear`."""
     R, m = rows.y.shape
     local, shared = jacobian(unknowns)

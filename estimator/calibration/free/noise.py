@@ -30,7 +30,7 @@ import numpy as np
 from scipy import special
 
 from estimator.calibration.free.information import Information
-from estimator.calibration.free.model import Rows, Unknowns, linearise
+from estimator.calibration.free.model import ModelRows, Unknowns, linearise
 from estimator.calibration.free.schedule import Mask
 from estimator.calibration.free.solve import NO_FREEDOM, Solution, search
 from estimator.calibration.noise import ALIKE, CONTRADICTED
@@ -54,7 +54,7 @@ LEAST_FREEDOM = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Projected:
+class ProjectedNoise:
     """What the fit takes of readings of variance one. R orientations, m sensors, F directions seen."""
 
     turns: Array
@@ -86,14 +86,14 @@ class Projected:
         ) + flat @ flat.T
 
 
-def projected(rows: Rows, unknowns: Unknowns, knowledge: Information) -> Projected:
+def projected(rows: ModelRows, unknowns: Unknowns, knowledge: Information) -> ProjectedNoise:
     """What the fit takes of the readings, under the noise of ``rows``."""
     linear = linearise(rows, unknowns)
     through = (linear.shared[:, :, None, :] @ linear.inverse[:, None])[:, :, 0, :]
     root = scaled(knowledge)
     moved = np.einsum("rma,rpa->rmp", through, linear.coupling) @ root
     local = np.einsum("rmi,mif->rmf", linear.local, root.reshape(rows.y.shape[1], 5, -1))
-    return Projected(through @ np.swapaxes(linear.shared, 1, 2), local - moved, linear.residual)
+    return ProjectedNoise(through @ np.swapaxes(linear.shared, 1, 2), local - moved, linear.residual)
 
 
 def scaled(knowledge: Information) -> Array:
@@ -102,7 +102,7 @@ def scaled(knowledge: Information) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Noise:
+class FreeNoise:
     """Variances of m sensors relative to the first guess."""
 
     factor: Array
@@ -115,28 +115,28 @@ class Noise:
         """φ₀."""
         return float(1.0 / np.mean(1.0 / self.factor[self.borrows])) if self.borrows.any() else 1.0
 
-    def improved(self, energy: Array, freedom: Array) -> "Noise":
+    def improved(self, energy: Array, freedom: Array) -> "FreeNoise":
         """One round, from energies (m,) and degrees of freedom (m,), without unit: the common scale, then each sensor.
 
         The common scale first, because it settles at once; one by one, each held by the others, it would creep.
         """
         scale = energy.sum() / float(freedom.sum())
         energy, factor = energy / max(scale, TINY), self.factor * scale
-        moved = Noise(factor, self.borrows)
+        moved = FreeNoise(factor, self.borrows)
         usual = special.fdtri(np.maximum(freedom, 1.0), ALIKE, 1 - CONTRADICTED) * moved.common
         borrows = self.borrows & (energy * factor < usual * np.maximum(freedom, 1.0))
         pull = np.where(borrows, ALIKE, 0.0)
-        held = energy + pull * Noise(factor, borrows).common / np.maximum(factor, TINY)
-        return Noise(factor * held / np.maximum(freedom + pull, LEAST_FREEDOM), borrows)
+        held = energy + pull * FreeNoise(factor, borrows).common / np.maximum(factor, TINY)
+        return FreeNoise(factor * held / np.maximum(freedom + pull, LEAST_FREEDOM), borrows)
 
 
-def search_with_noise(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
+def search_with_noise(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Solution:
     """The search with the noise estimated on the way; ``rows.sigma`` gives the relative weights to begin with.
 
     Without a degree of freedom nothing tells the noise, and the first guess stays.
     """
     solution, m = search(rows, unknowns, quadratic), rows.y.shape[1]
-    iterations, noise = solution.iterations, Noise(np.ones(m), np.ones(m, dtype=bool))
+    iterations, noise = solution.iterations, FreeNoise(np.ones(m), np.ones(m, dtype=bool))
     projection = projected(solution.rows, solution.unknowns, solution.knowledge)
     for _ in range(ROUNDS if projection.redundancy.sum() > NO_FREEDOM else 0):
         noise = noise.improved((projection.residual**2).sum(axis=0), projection.redundancy.sum(axis=0))

@@ -16,14 +16,14 @@ import numpy as np
 
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.information import information
-from estimator.calibration.free.model import Rows, Unknowns, linearise
+from estimator.calibration.free.model import ModelRows, Unknowns, linearise
 from estimator.calibration.free.noise import scaled, search_with_noise
 from estimator.calibration.free.solve import Solution, search
 from estimator.calibration.free.start import starts
 from estimator.coverage import WANTED
 from estimator.significance import p_value
 
-Run = Callable[[Rows, Unknowns, bool], Solution]
+Run = Callable[[ModelRows, Unknowns, bool], Solution]
 
 USEFUL_QUADRATIC = 1e-4
 """Sigma of c·g below which the quadratic term is worth estimating, be it there or not: 100 µg at 1 g. On measured
@@ -51,7 +51,7 @@ PARABOLA = 2.0
 is a parabola, and beyond twice that it is not one."""
 
 
-def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
+def solve(rows: ModelRows, stated: bool, quadratic: bool | None) -> Solution:
     """The search, with or without the quadratic term (None: if it deserves it), with or without stated noise."""
     run: Run = search if stated else search_with_noise
     first, *others = starts(rows)

@@ -50,7 +50,12 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
         return np.zeros_like(gyro), np.zeros_like(gyro), gyro
     if R < FEWEST:
         raise ScheduleError(
-            [Problem("table", say("{r} to estimate anything; {r2}", r=few(R, "orientation"), r2=advice(R)))]
+            [
+                Problem(
+                    "table",
+                    say("{problem} to estimate anything; {advice}", problem=few(R, "orientation"), advice=advice(R)),
+                )
+            ]
         )
     unit = gravity(session.site) * np.array([s.nominal_scale for s in session.sensors])
     readings = measured(session)[0]
@@ -61,8 +66,8 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
                 Problem(
                     "table",
                     say(
-                        "all {r} rows show the same orientation: by nominal_scale the readings vary by {swing} "
-                        "g; {advice}",
+                        "all {r} rows have the same orientation: with nominal_scale the readings vary by {swing} g; "
+                        "{advice}",
                         r=R,
                         swing=f"{swing.max():.1g}",
                         advice=advice(0),
@@ -80,10 +85,10 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
 def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
     """Why the accelerometers cannot measure a vector."""
     silent = [s.name for s, dead in zip(session.sensors, ~live & ~gyro, strict=True) if dead]
-    reason = say(" ({silent} did not answer to the turns)", silent=joined(", ", silent)) if silent else ""
+    reason = say(" ({silent} did not respond to the rotation)", silent=joined(", ", silent)) if silent else ""
     return say(
-        "{live} accelerometers whose nominal axes do not span space{reason}; arbitrary "
-        "orientations need three or more axes that do not lie in one plane",
+        "the nominal axes of {live} accelerometers do not span space{reason}; arbitrary orientations need three or "
+        "more axes that are not in one plane",
         live=int(live.sum()),
         reason=reason,
     )
@@ -92,9 +97,9 @@ def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
 def advice(rows: int) -> str:
     """What to add to ``rows`` orientations."""
     return say(
-        "add at least {generic} so that there are {generic2} or more still orientations spread "
+        "add at least {number} so that there are {total} or more still orientations spread "
         "over the whole sphere, tilted about all three axes, or label six positions with their "
         "directions",
-        generic=GENERIC - rows,
-        generic2=GENERIC,
+        number=GENERIC - rows,
+        total=GENERIC,
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from estimator.arrays import eigh, nearest_turn
 from estimator.calibration.free.information import Information, information, movable, unseen_below
-from estimator.calibration.free.model import Linear, Rows, Unknowns, cost, linearise
+from estimator.calibration.free.model import Linear, ModelRows, Unknowns, cost, linearise
 from estimator.calibration.free.schedule import Mask
 from estimator.session import Array
 
@@ -40,7 +40,7 @@ numbers; half of one is left where loosely labelled ones spend it on the labels.
 class Solution:
     """Where the search ended."""
 
-    rows: Rows
+    rows: ModelRows
     """With the noise that was used."""
     unknowns: Unknowns
     quadratic: bool
@@ -67,14 +67,14 @@ class Solution:
         return R * m + stated - 2 * R - self.knowledge.rank
 
 
-def held_frame(rows: Rows, unknowns: Unknowns) -> Unknowns:
+def held_frame(rows: ModelRows, unknowns: Unknowns) -> Unknowns:
     """The unknowns with the frame turned so that the axes show no net turn against the nominal ones."""
     if rows.held:
         return unknowns
     return unknowns.turned(nearest_turn(unknowns.axes, rows.nominal_axes))
 
 
-def search(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
+def search(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Solution:
     """Least χ² from a start. Not reaching it is a result (`converged` False)."""
     unknowns = held_frame(rows, unknowns)
     damping, chi2 = FIRST_DAMPING, cost(rows, unknowns)

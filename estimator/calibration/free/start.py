@@ -10,7 +10,7 @@ Source: the ellipsoid fit is the classical multi-position calibration.
 import numpy as np
 
 from estimator.arrays import eigh, unit
-from estimator.calibration.free.model import Rows, Unknowns, cost
+from estimator.calibration.free.model import ModelRows, Unknowns, cost
 from estimator.session import Array
 
 PLAIN = 0.02
@@ -31,18 +31,18 @@ FLAT = 1e-3
 """Ratio of the quadric's eigenvalues below which it is no ellipsoid: semi-axes of 1 : 30."""
 
 
-def start(rows: Rows) -> Unknowns:
+def start(rows: ModelRows) -> Unknowns:
     """Of `starts`, the one that fits best."""
     return starts(rows)[0]
 
 
-def starts(rows: Rows) -> list[Unknowns]:
+def starts(rows: ModelRows) -> list[Unknowns]:
     """Parameters and orientations from different linear estimates, the one that fits best first."""
     linear_starts = [with_directions(rows)] if rows.held else from_shape(rows)
     return sorted((oriented(rows, *linear) for linear in linear_starts), key=lambda unknowns: cost(rows, unknowns))
 
 
-def oriented(rows: Rows, sensitivity: Array, offset: Array) -> Unknowns:
+def oriented(rows: ModelRows, sensitivity: Array, offset: Array) -> Unknowns:
     """Unknowns with sensitivity (m, 3) and offset (m,), in nominal scale times g, and the best orientations."""
     gain = np.maximum(np.linalg.norm(sensitivity, axis=1), LEAST_GAIN)
     directions = unit((rows.y - offset) @ np.linalg.pinv(sensitivity).T)
@@ -51,7 +51,7 @@ def oriented(rows: Rows, sensitivity: Array, offset: Array) -> Unknowns:
     return Unknowns(np.log(gain), offset, np.zeros_like(gain), sensitivity / gain[:, None], directions)
 
 
-def with_directions(rows: Rows) -> tuple[Array, Array]:
+def with_directions(rows: ModelRows) -> tuple[Array, Array]:
     """Sensitivity (m, 3) and offset (m,), relative, by least squares on the stated directions, about nominal values."""
     stated = rows.prior > 0
     design = np.column_stack([rows.directions[stated], np.ones(int(stated.sum()))])
@@ -60,7 +60,7 @@ def with_directions(rows: Rows) -> tuple[Array, Array]:
     return rows.nominal_axes + change[:3].T, change[3]
 
 
-def from_shape(rows: Rows) -> list[tuple[Array, Array]]:
+def from_shape(rows: ModelRows) -> list[tuple[Array, Array]]:
     """Sensitivity (m, 3) and offset (m,), relative, from the ellipsoids the readings may lie on: one a `SLIGHT`, those
     once that tell the same of the shape."""
     centre = rows.y.mean(axis=0)

@@ -46,13 +46,13 @@ def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
             cause.identifier,
             None if lacking else (),
             (),
-            lacking and say("the session lacks {lacking}", lacking=lacking),
+            lacking and say("the session lacks {missing}", missing=lacking),
         )
     if not isinstance(cause, Signature):
         return excess_limit(state, cause)
     if traces is None:
-        lacking = missing(state, cause) or "a sensor it acts on"
-        return Limit(cause.identifier, None, cause.units, say("the session lacks {lacking}", lacking=lacking))
+        lacking = missing(state, cause) or cause.lacking
+        return Limit(cause.identifier, None, cause.units, say("the session lacks {missing}", missing=lacking))
     norms = np.linalg.norm(traces.columns, axis=1)
     raw = traces.raw[:, : norms.shape[1]]
     visible = (norms > INVISIBLE * raw) & (raw > 0)
@@ -60,6 +60,7 @@ def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
     if places == 0:
         return Limit(cause.identifier, None, cause.units, "the calibration absorbs it completely")
     need = required(1, LEVEL / (places * state.families))
+    norms = norms / np.array([cause.left(state.baseline.setting, shape) for shape in traces.shapes])[:, None]
     worst = [float(need / n[v].min()) if v.any() else float("nan") for n, v in zip(norms.T, visible.T, strict=True)]
     return Limit(cause.identifier, tuple(w for w in worst if np.isfinite(w)), cause.units, "")
 

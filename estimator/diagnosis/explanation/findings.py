@@ -9,9 +9,10 @@ from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.explanation.naming import merged, named_cause
+from estimator.diagnosis.explanation.power_on import told_from_power_on
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
-from estimator.diagnosis.explanation.shared_course import Member, shared_finding
+from estimator.diagnosis.explanation.shared_course import CourseMember, shared_finding
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.noise_claim import BEYOND_NOISE
@@ -32,19 +33,20 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     ``new``: of every finding, whether it came since the history.
     """
     named = [
-        Member(f, finding(state, f, fitted, part, since), part)
+        CourseMember(f, finding(state, f, fitted, part, since), part)
         for f, part, since in zip(state.detections, fitted.slices, new, strict=True)
     ]
     cause = noise_cause(state)
     excess = [] if cause is None else [excess_finding(state, cause, e) for e in state.excess]
     shared = [shared_finding(state, members, fitted) for members in courses(named)]
     own = merged([(m.detection.best.cause, m.finding) for m in named if not any(m in c for c in courses(named))])
-    return tuple(sorted((*shared, *own, *excess), key=lambda f: -f.strength))
+    whole = (told_from_power_on(f, state.baseline.session) for f in (*shared, *own, *excess))
+    return tuple(sorted(whole, key=lambda f: -f.strength))
 
 
-def courses(named: Sequence[Member]) -> list[list[Member]]:
+def courses(named: Sequence[CourseMember]) -> list[list[CourseMember]]:
     """Findings of sensors that share a course, course by course."""
-    together: dict[tuple[str, tuple[int, ...]], list[Member]] = {}
+    together: dict[tuple[str, tuple[int, ...]], list[CourseMember]] = {}
     for m in named:
         if m.detection.event:
             together.setdefault((m.detection.best.cause.identifier, m.detection.event), []).append(m)
@@ -142,8 +144,8 @@ def common_course(course: AppliedCourse) -> Structure:
     what = joined(" and ", course.components) or "the vector"
     return Structure(
         say(
-            "an error of stand, fixture or reference that no known cause explains ({what}, along {order})",
-            what=what,
+            "an error of stand, fixture or reference that no known cause explains ({quantity}, along {order})",
+            quantity=what,
             order=course.order,
         ),
         (),
@@ -169,7 +171,7 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
     for scale in noise_scales(state):
         if scale.factor > BEYOND_NOISE:
             where = say(
-                "scatter {factor} times the stated standard errors: more than noise can be",
+                "scatter {factor} times the stated standard errors: too large for noise",
                 factor=f"{scale.factor:.0f}",
             )
             yield Structure(where, scale.sensors, 0.0, float(np.sqrt(scale.freedom)) * scale.factor)
@@ -177,7 +179,11 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
 
 def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
     """A sensor whose scatter is not that of noise."""
-    where = "scatter that is not distributed as noise is" if unlike.of_its_kind else "scatter far beyond its kind's"
+    where = (
+        "scatter that is not distributed as noise is"
+        if unlike.of_its_kind
+        else ("scatter far larger than that of the other sensors of its kind")
+    )
     where = "readings that switch between levels from row to row" if unlike.switches else where
     return Structure(where, (state.names[unlike.sensor],), unlike.p_value, unlike.strength)
 
@@ -185,8 +191,8 @@ def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
 def place(course: Autocorrelation) -> str:
     """Where a residual lives that fits no pattern, in words."""
     if course.plain:
-        return say("smooth along {order}, in no pattern known", order=course.order)
-    return say("larger than stated, as well noise as smooth along {order}", order=course.order)
+        return say("smooth along {order}, in no known pattern", order=course.order)
+    return say("larger than stated: either noise or a smooth course along {order}", order=course.order)
 
 
 def notes(state: SearchState) -> tuple[str, ...]:
@@ -196,8 +202,8 @@ def notes(state: SearchState) -> tuple[str, ...]:
     far = max(f.best.strength for f in state.in_tails)
     return (
         say(
-            "Single readings lie up to {far} standard errors off. The errors of all readings have "
-            "such tails: no cause is named for them.",
+            "Single readings deviate by up to {far} standard errors. All readings have errors with such tails, so no "
+            "cause is named for them.",
             far=f"{far:.1f}",
         ),
     )

@@ -17,6 +17,7 @@ from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.prediction import (
     Prediction,
+    by_sensor,
     predicted_without_effects,
     root_mean_square,
     row_redundancy,
@@ -67,4 +68,5 @@ def score(baseline: Baseline, rows: Prediction) -> Score:
         chi2_per_dof=rows.square / rows.count,
         log_score=rows.log_score / rows.count,
         rms_by_kind=root_mean_square(rows.error, baseline),
+        rms_by_sensor=by_sensor(rows.error, baseline),
     )

@@ -20,7 +20,7 @@ def shared_course(cause: Cause, finding: Finding, who: str, more: int) -> Findin
     """A finding of sensors that share a course, in words for all of them; ``more`` only follow it."""
     text = capitalised(say(cause.shared_sentence, sensors=who))
     if more:
-        text = joined(" ", (text, say("{more} more follow it below what can be named of one alone.", more=more)))
+        text = joined(" ", (text, say("{more} more follow it too weakly to be named singly.", more=more)))
     return replace(finding, sentence=text, advice=cause.shared_advice)
 
 
@@ -28,7 +28,7 @@ def listed(sensors: tuple[str, ...]) -> str:
     """``A1``, ``each of A1 and A2``, ``each of A1, A2 and A3``."""
     names = list(dict.fromkeys(sensors))
     return (
-        say("each of {names} and {names2}", names=joined(", ", names[:-1]), names2=names[-1])
+        say("each of {first} and {last}", first=joined(", ", names[:-1]), last=names[-1])
         if len(names) > 1
         else joined("", names)
     )

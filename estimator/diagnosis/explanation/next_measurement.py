@@ -21,6 +21,9 @@ PERIOD = 120.0
 FINE = 12
 """β steps a turn that a proposal makes at least: the 30° steps of a usual programme."""
 
+REPEATS = 4
+"""Times that anybody would repeat a session: what needs more, the stand cannot separate."""
+
 Proposal = Callable[[Baseline], Iterator[tuple[str, Baseline]]]
 
 
@@ -100,7 +103,7 @@ def mixed_order(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     beta, flipped = rows_of(baseline.session)
     order = np.concatenate([np.argsort((np.arange(len(beta)) * ratio) % 1.0) for ratio in (0.618034, 0.4142136)])
     planned = schedule(baseline.session, beta[order], flipped[order])
-    yield "visit the same positions twice in a scattered order", planned_on_stand(planned, baseline)
+    yield "measure the same positions twice in random order", planned_on_stand(planned, baseline)
 
 
 def more_positions(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
@@ -124,7 +127,7 @@ def temperature_cycle(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     cycle = mean + span / 2 * np.sin(2 * np.pi * 2.7 * np.arange(rows) / rows)
     planned = replace(schedule(session, beta, flipped), temperature=cycle, time=PERIOD * np.arange(rows))
     words = say(
-        "repeat the session while the temperature is cycled by {span} °C, almost three times", span=f"{span:.0f}"
+        "repeat the session while the temperature goes through almost three cycles of {span} °C", span=f"{span:.0f}"
     )
     yield words, planned_on_stand(planned, baseline)
 
@@ -151,11 +154,7 @@ def repeated(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     Longer readings would not do: a zero that differs from position to position stays what it is while it is read.
     """
     planned = planned_on_stand(schedule(baseline.session, *rows_of(baseline.session)), baseline)
-    for times in (4, 16, 64):
-        yield (
-            say("repeat the session {times} times over", times=times),
-            replace(planned, variance=planned.variance / times),
-        )
+    yield say("repeat the session {times} times", times=REPEATS), replace(planned, variance=planned.variance / REPEATS)
 
 
 PROPOSALS: tuple[Proposal, ...] = (

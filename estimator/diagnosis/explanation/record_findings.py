@@ -117,7 +117,7 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
     names = tuple(session.sensors[i].name for i in axes.sensors)
     who = "input axes" if names else "the whole block"
     where = say(
-        "{who} {angle}° off: columns, runs or angles of the record are mixed up",
+        "{who} {angle}° wrong: columns, runs or angles of the record are mixed up",
         who=who,
         angle=f"{np.degrees(axes.angle):.0f}",
     )

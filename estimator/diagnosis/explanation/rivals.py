@@ -42,7 +42,8 @@ def alternatives(state: SearchState, detection: Detection) -> list[Scored]:
     """Rivals that the session cannot distinguish from the named cause, most likely first.
 
     A rival with more amplitudes that contains the named cause pays for each of them in its share (`bayes_factor`):
-    it is listed where it is still likely after that, and else parsimony has ruled it out. What by itself would be no
+    it is listed where it is still likely after that, and else parsimony has ruled it out. One that is the named cause
+    and more of the same (`Cause.contains`) says nothing else. What by itself would be no
     evidence of an effect explains nothing and is no alternative, nor is what lies too far from the named cause.
     """
     chosen: list[Scored] = []
@@ -53,8 +54,9 @@ def alternatives(state: SearchState, detection: Detection) -> list[Scored]:
             break
         reached += share
         known = {detection.best.cause.identifier, *(k.cause.identifier for k in chosen)}
+        is_other = rival.cause.identifier not in known and detection.best.cause.identifier not in rival.cause.contains
         near = separation(columns @ amplitude, rival.trace, attributed) < DISTINGUISHED
-        if rival.cause.identifier not in known and rival.p_value < WORTH and near:
+        if is_other and rival.p_value < WORTH and near:
             chosen.append(rival)
     return chosen
 

@@ -31,7 +31,7 @@ LISTED = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Member:
+class CourseMember:
     """A sensor of a shared course."""
 
     detection: Detection
@@ -40,7 +40,7 @@ class Member:
     """Of its amplitudes among all."""
 
 
-def shared_finding(state: SearchState, members: Sequence[Member], fitted: Amplitudes) -> Finding:
+def shared_finding(state: SearchState, members: Sequence[CourseMember], fitted: Amplitudes) -> Finding:
     """The one finding of sensors that share a course; those that only follow it are counted in it."""
     named = [m for m in members if not m.detection.follows] or list(members)
     more, cause = [m for m in members if m not in named], members[0].detection.best.cause
@@ -85,7 +85,7 @@ def group_of(state: SearchState, sensors: Sequence[int]) -> str:
     return kind if len(own) == 1 and kinds.count(kind) == len(sensors) else SOME
 
 
-def shape_of(members: Sequence[Member], fitted: Amplitudes) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def shape_of(members: Sequence[CourseMember], fitted: Amplitudes) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """The shape parameters that all have, as findings state them, and the sigma of the continuous one: that of its
     logarithm is fitted beside the sizes."""
     values = tuple(members[0].finding.nonlinear.values())
@@ -98,7 +98,7 @@ def shape_of(members: Sequence[Member], fitted: Amplitudes) -> tuple[tuple[float
     return values, ()
 
 
-def drawn(state: SearchState, members: Sequence[Member], fitted: Amplitudes) -> tuple[Array, Array, Array]:
+def drawn(state: SearchState, members: Sequence[CourseMember], fitted: Amplitudes) -> tuple[Array, Array, Array]:
     """(R,) course, (R,) as all sensors read it and (R,) one standard error of that, m/s² (rad/s) of the first."""
     rows, m = state.baseline.setting.rows, state.sensor_count
     size = np.array([fitted.value[member.part.start] for member in members])

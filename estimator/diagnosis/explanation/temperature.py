@@ -70,7 +70,7 @@ def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> F
     if not rivals:
         return finding
     named = tuple(name for name in rivals if name != UNEXPLAINED)
-    again = say("measure again at about {usual} °C", usual=f"{temperatures.usual:.0f}")
+    again = say("measure again at about {temperature} °C", temperature=f"{temperatures.usual:.0f}")
     separated = tuple(Separation(name, finding.sensors, 0.0, again, finding.strength) for name in named)
     compared = replace(
         finding,
@@ -78,10 +78,10 @@ def compared_with_temperature(finding: Finding, temperatures: Temperatures) -> F
         separations=(*separated, *finding.separations),
         ranking=tuple(shared(finding, named)),
         advice=say(
-            "Measure again at about {usual} °C, as in the earlier sessions, or calibrate over "
-            "temperature, before you act on this: the session was measured at {now} °C.",
-            usual=f"{temperatures.usual:.0f}",
-            now=f"{temperatures.now:.0f}",
+            "Measure again at about {usual_temperature} °C, as in the earlier sessions, or calibrate over "
+            "temperature, before you act on this: the session was measured at {temperature} °C.",
+            usual_temperature=f"{temperatures.usual:.0f}",
+            temperature=f"{temperatures.now:.0f}",
         ),
     )
     return (

@@ -12,7 +12,7 @@ import numpy as np
 
 from estimator.causes.contract import Correction
 from estimator.causes.record import exchange_rows
-from estimator.diagnosis.record.record_error import BETTER, Attempt, RecordError
+from estimator.diagnosis.record.record_error import BETTER, RecordAttempt, RecordError
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.least_squares import FLAT, orthonormal
@@ -52,14 +52,14 @@ def exchanged_rows(baseline: Baseline, known: Sequence[Correction]) -> RecordErr
 
 def exchanged_back(
     baseline: Baseline, cause: Correction, rows: tuple[int, int], alternatives: int
-) -> tuple[Attempt, float]:
+) -> tuple[RecordAttempt, float]:
     """One exchange, among so many ways, with the χ² that the corrected record leaves under the same noise."""
     before, freedom = weighted_square(baseline), baseline.residual.size
     right = exchange_rows(baseline.session, *rows)
     after = float((baseline_of(right).residual ** 2 / baseline.variance).sum())
     blind = bool(baseline.unstated.any())
     gained = 0.5 * freedom * np.log(before / after) if blind else 0.5 * (before - after)
-    return Attempt(cause, rows, right, float(gained - np.log(alternatives))), after
+    return RecordAttempt(cause, rows, right, float(gained - np.log(alternatives))), after
 
 
 def weighted_square(baseline: Baseline) -> float:

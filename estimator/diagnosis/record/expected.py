@@ -104,16 +104,17 @@ def explained(session: CalibrationSession) -> bool:
 
 
 def unexplained_in_halves(session: CalibrationSession) -> bool:
-    """Whether neither half of the accelerometers, every second one, fits together: it is no single one of them then."""
+    """Whether neither half of the accelerometers, every second triad, fits together: it is no single one of them then.
+    Sensors one by one would not do: every second one of a board of triads may lie in a plane."""
     felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
-    second = felt & (np.cumsum(felt) % 2 == 0)
+    second = felt & ((np.cumsum(felt) - 1) // 3 % 2 == 1)
     return felt.sum() >= HALVED and not fits(session, second) and not fits(session, felt & ~second)
 
 
 def fits(session: CalibrationSession, felt: Array) -> bool:
     """Whether some accelerometers (m,) bool fit together within their stated noise, or state none to judge by."""
     prepared, stated = accelerometer_rows(session, felt, gravity(session.site))
-    if not stated:
+    if not stated or np.linalg.matrix_rank(prepared.nominal_axes, tol=SEEN) < 3:
         return True
     solution = solve(prepared, stated, None)
     return bool(p_value(solution.chi2, solution.dof) >= UNLIKELY)

@@ -13,7 +13,7 @@ BETTER = 10.0
 
 
 @dataclass(frozen=True, eq=False)
-class Attempt:
+class RecordAttempt:
     """One way to put a record right."""
 
     cause: Correction
@@ -29,15 +29,15 @@ class Attempt:
 class RecordError:
     """A record error found and undone."""
 
-    attempts: tuple[Attempt, ...]
+    attempts: tuple[RecordAttempt, ...]
     """Every way tried, most likely first."""
 
     @property
-    def undone(self) -> Attempt:
+    def undone(self) -> RecordAttempt:
         """The way it was undone."""
         return self.attempts[0]
 
-    def posterior(self) -> list[tuple[Attempt, float]]:
+    def posterior(self) -> list[tuple[RecordAttempt, float]]:
         """Every way with its share, given that one of them is right."""
         values = np.array([a.log_evidence for a in self.attempts])
         share = np.exp(values - logsumexp(values))

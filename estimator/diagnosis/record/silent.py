@@ -21,7 +21,7 @@ constant reading to tell of a dead channel: 3°, more than axes are mounted off.
 LEAST_COUNTS = 2.0
 """Counts by which a reading in whole counts must be expected to change: fewer may round to the same."""
 
-SAME = "reads the same in every row, so that nothing can be estimated of it"
+SAME = "has the same reading in every row, so nothing can be estimated from it"
 
 
 def refuse_silent(session: CalibrationSession) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from estimator.causes.contract import Correction
-from estimator.diagnosis.record.record_error import BETTER, Attempt, RecordError
+from estimator.diagnosis.record.record_error import BETTER, RecordAttempt, RecordError
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.errors import SessionError
@@ -35,7 +35,7 @@ def turned_record(baseline: Baseline, expected: Array, known: Sequence[Correctio
     before, worst = misfit(baseline, expected)
     if worst < TELLING:
         return None
-    session, tried = baseline.session, list[Attempt]()
+    session, tried = baseline.session, list[RecordAttempt]()
     m = len(session.sensors)
     for cause in known:
         if not cause.between or not usable(cause, session):
@@ -46,7 +46,7 @@ def turned_record(baseline: Baseline, expected: Array, known: Sequence[Correctio
             if largest < worst / NEARER and scales_agree(right):
                 floor = max(after, m * LEAST)
                 log_evidence = m * float(np.log(before / floor)) - float(np.log(len(alternatives)))
-                tried.append(Attempt(cause, places, right, log_evidence))
+                tried.append(RecordAttempt(cause, places, right, log_evidence))
     tried.sort(key=lambda a: -a.log_evidence)
     return RecordError(tuple(tried)) if tried and tried[0].log_evidence >= BETTER else None
 

@@ -97,6 +97,15 @@ def priors(baseline: Baseline, size: Array) -> Array:
     return prior
 
 
+def by_sensor(error: Array, baseline: Baseline) -> dict[str, dict[str, float]]:
+    """Root mean square of errors (R, m), m/s² (rad/s), of every sensor by name, by kind."""
+    rms = np.sqrt(np.mean(error**2, axis=0))
+    found: dict[str, dict[str, float]] = {}
+    for sensor, own in zip(baseline.session.sensors, rms, strict=True):
+        found.setdefault(sensor.kind, {})[sensor.name] = float(own)
+    return found
+
+
 def root_mean_square(error: Array, baseline: Baseline) -> dict[str, float]:
     """Of errors (R, m), m/s² (rad/s), by kind of sensor: units are never mixed."""
     kinds = np.array(baseline.setting.kinds)

@@ -17,7 +17,7 @@ from estimator.diagnosis.selection.noise_claim import (
 )
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search import search
-from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.selection.search_state import Detection, SearchState
 from estimator.diagnosis.selection.shared_event import is_apart, is_plainly_shared, searched_with_event, shared_event
 from estimator.diagnosis.signatures.noise import NoiseClaim
 
@@ -30,13 +30,19 @@ def accepted(start: SearchState) -> SearchState:
     """
     start = replace(start, apart=True) if is_apart(start) else start
     claims, state = doubted(start), None
-    if not claims or shared_event(start):
+    if not claims or leaves_stated_noise(start, shared_event(start)):
         state = accepted_against_course(start)
         claims = doubted(state) if not claims or explains_scatter(state) else claims
     rival = under_free_scale(start, claims) if claims else None
     return without_names_of_tails(
         without_names_in_no_noise(confirmed(start, rival or state or accepted_against_course(start)))
     )
+
+
+def leaves_stated_noise(start: SearchState, event: tuple[Detection, ...]) -> bool:
+    """Whether there is a course that sensors share, and what it leaves by itself may be the stated noise: a search in
+    errors stated far too small names structure without end."""
+    return bool(event) and not doubted(replace(start, detections=event))
 
 
 def explains_scatter(state: SearchState) -> bool:

@@ -228,7 +228,7 @@ def without_leaks(state: SearchState) -> SearchState:
 
 
 @dataclass(frozen=True, eq=False)
-class Rival:
+class SharedRival:
     """A course of the applied vector, and what holds whatever that vector was."""
 
     course: AppliedCourse
@@ -239,7 +239,7 @@ class Rival:
 
 def with_free_vector(
     start: SearchState, begun: SearchState, course: AppliedCourse, search: Callable[[SearchState], SearchState]
-) -> Rival:
+) -> SharedRival:
     """The course with the causes that parity space shows beside it; its size is free only where that explains more.
 
     ``begun``: the search of ``start`` with the noise by which both are weighed.
@@ -249,10 +249,10 @@ def with_free_vector(
     joint = likeliest_course(begun, supported)
     paid = joint.log_evidence + penalised_log_evidence(replace(begun, detections=supported)) - FURTHER * bool(supported)
     if supported and paid > course.log_evidence:
-        return Rival(joint, parity, paid)
+        return SharedRival(joint, parity, paid)
     if supported and SIZE in course.components:
         parity = search(in_parity_space(start, size=True))
-    return Rival(course, parity, course.log_evidence)
+    return SharedRival(course, parity, course.log_evidence)
 
 
 def with_doubt(state: SearchState, held_there: Set[Group], doubt: float) -> SearchState:

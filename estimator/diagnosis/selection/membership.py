@@ -37,7 +37,7 @@ SIZES = 4.0 ** np.arange(1, 9)
 
 
 @dataclass(frozen=True, eq=False)
-class Members:
+class CauseMembers:
     """Sensors that share a course, by their numbers among those that may."""
 
     chosen: tuple[int, ...]
@@ -67,7 +67,7 @@ class Loadings:
     counts: dict[str, int]
     """Sensors of every kind in the block."""
 
-    def members(self) -> Members:
+    def members(self) -> CauseMembers:
         """The likeliest set.
 
         It is climbed to from none and from all: where what sensors show overlaps, one of them may show what others do,
@@ -78,7 +78,7 @@ class Loadings:
         chosen, value = max(climbed, key=lambda result: result[1])
         lost = self.steps(chosen)[0] - value
         sure = tuple(c for c in chosen if -lost[c] > SURE)
-        return Members(chosen, sure, value, float(self.steps(())[0].max()))
+        return CauseMembers(chosen, sure, value, float(self.steps(())[0].max()))
 
     def climbed(self, begun: tuple[int, ...]) -> tuple[tuple[int, ...], float]:
         """The set to which one sensor joining or leaving at a time leads, and its ln p."""

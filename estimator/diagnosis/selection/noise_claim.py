@@ -63,7 +63,7 @@ FEWEST = 6
 
 
 @dataclass(frozen=True)
-class Scatter:
+class ClaimScatter:
     """Energy, in stated sigmas, and its degrees of freedom."""
 
     energy: float
@@ -74,7 +74,7 @@ class Scatter:
         """Chance of less, and of more, under the stated noise."""
         return float(chdtr(self.freedom, self.energy)), float(p_value(self.energy, self.freedom))
 
-    def is_alike(self, others: "Scatter", side: int) -> bool:
+    def is_alike(self, others: "ClaimScatter", side: int) -> bool:
         """Whether this scatter may be off as that of ``others`` is: not in the other sense, nor plainly as stated."""
         here = replace(self, energy=self.energy * others.freedom / max(others.energy, SMALLEST * others.freedom))
         as_stated = min(self.tails) > SEEN > min(here.tails)
@@ -110,17 +110,17 @@ def _claims(state: SearchState, kind: str, of_kind: Array) -> Iterator[NoiseClai
             yield NoiseClaim(kind, tuple(sensors.tolist()), ratio, claimed.freedom)
 
 
-def together(each: Iterable[Scatter]) -> Scatter:
+def together(each: Iterable[ClaimScatter]) -> ClaimScatter:
     """The scatter of several sensors."""
     parts = tuple(each)
-    return Scatter(sum(s.energy for s in parts), sum(s.freedom for s in parts))
+    return ClaimScatter(sum(s.energy for s in parts), sum(s.freedom for s in parts))
 
 
-def scatter_of(state: SearchState, of_kind: Array) -> list[Scatter]:
+def scatter_of(state: SearchState, of_kind: Array) -> list[ClaimScatter]:
     """What a search leaves of each of some sensors (k,) int, dimensionless, in its stated errors."""
     energy, freedom = sensor_scatter(state)
     scale = np.median(state.baseline.variance / state.stated, axis=0)
-    return [Scatter(float(energy[i] * scale[i]), float(freedom[i])) for i in of_kind]
+    return [ClaimScatter(float(energy[i] * scale[i]), float(freedom[i])) for i in of_kind]
 
 
 def is_credible(baseline: Baseline, of_kind: Array) -> bool:
@@ -129,21 +129,21 @@ def is_credible(baseline: Baseline, of_kind: Array) -> bool:
     return pure.freedom >= FEWEST and min(pure.tails) > AGREES
 
 
-def pure_error(baseline: Baseline, of_kind: Array) -> Scatter:
+def pure_error(baseline: Baseline, of_kind: Array) -> ClaimScatter:
     """Scatter of rows at the same β in the same run about their mean; ``of_kind`` (k,) int, sensors.
 
     In standard errors of a row, its β error among them.
     """
     setting = baseline.setting
     if setting.beta is None or setting.flipped is None:
-        return Scatter(0.0, 0.0)
+        return ClaimScatter(0.0, 0.0)
     whitened = WhitenedResiduals.of(baseline).whiten(baseline.residual[..., None]).reshape(setting.rows, -1)[:, of_kind]
     place = np.stack([np.round(np.mod(setting.beta, 2 * np.pi), 9), setting.flipped], axis=-1)
     _, group = np.unique(place, axis=0, return_inverse=True)
     count = np.bincount(group.ravel())
     mean = np.stack([np.bincount(group.ravel(), weights=column) / count for column in whitened.T], axis=-1)
     deviations = whitened - mean[group.ravel()]
-    return Scatter(float((deviations**2).sum()), float((count - 1).sum() * len(of_kind)))
+    return ClaimScatter(float((deviations**2).sum()), float((count - 1).sum() * len(of_kind)))
 
 
 def of_whole_kinds(state: SearchState, claims: Iterable[NoiseClaim]) -> tuple[NoiseClaim, ...]:

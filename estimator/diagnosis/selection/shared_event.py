@@ -29,7 +29,7 @@ from estimator.content import once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER, backward_elimination
 from estimator.diagnosis.selection.forward import forward_selection, with_structures
-from estimator.diagnosis.selection.membership import SIZES, SURE, Loadings, Members, counts_of, log_sets
+from estimator.diagnosis.selection.membership import SIZES, SURE, CauseMembers, Loadings, counts_of, log_sets
 from estimator.diagnosis.selection.ranking import conditional_log_evidence, extended_basis, scores_given
 from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Detection, SearchState
 from estimator.diagnosis.selection.shared_shape import APART, log_shared, powers, refined_together
@@ -64,7 +64,7 @@ RULED_OUT = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class EventCourse:
     """A cause's shapes with one nonlinear parameter, one shape a sensor."""
 
     traces: Traces
@@ -78,11 +78,11 @@ class Course:
         """Of its shapes."""
         return tuple(int(i) for i in self.traces.sensor[list(self.numbers)])
 
-    def on(self, sensors: Sequence[int]) -> "Course":
+    def on(self, sensors: Sequence[int]) -> "EventCourse":
         """Those of some sensors."""
         return self.of([k for k in self.numbers if self.traces.sensor[k] in sensors])
 
-    def of(self, numbers: Sequence[int]) -> "Course":
+    def of(self, numbers: Sequence[int]) -> "EventCourse":
         """Those of some numbers."""
         return replace(self, numbers=tuple(numbers))
 
@@ -96,7 +96,7 @@ class Course:
 class Followed:
     """A course with the sensors that follow it."""
 
-    course: Course
+    course: EventCourse
     """Of these sensors alone."""
     sure: frozenset[int]
     """Sensors that can be named alone."""
@@ -127,8 +127,7 @@ def searched_with_event(start: SearchState) -> SearchState | None:
 
 
 def is_plainly_shared(start: SearchState) -> bool:
-    """Whether a shared course explains so much more than each sensor's own likeliest cause that nobody need search for
-    what the sensors would have without it."""
+    """Whether a shared course explains so much more than each sensor's own likeliest cause that it is certain."""
     event = shared_event(start)
     if not event:
         return False
@@ -171,7 +170,7 @@ def significant_course(start: SearchState) -> tuple[Followed, tuple[Scored, ...]
     return followed, event
 
 
-def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
+def courses(residuals: WhitenedResiduals, traces: Traces) -> list[EventCourse]:
     """A cause's shapes by their nonlinear parameters, where two sensors or more show them in more rows than one."""
     rows, m = residuals.baseline.residual.size, len(residuals.baseline.unstated)
     square = np.einsum("snq,snq->sn", traces.columns[:, :rows], traces.columns[:, :rows])
@@ -182,10 +181,10 @@ def courses(residuals: WhitenedResiduals, traces: Traces) -> list[Course]:
     for k in np.flatnonzero(shown & (traces.sensor >= 0)).tolist():
         grouped.setdefault(traces.shapes[k].nonlinear, []).append(k)
     several = [tuple(numbers) for numbers in grouped.values() if len(numbers) > 1]
-    return [Course(traces, numbers, len(several)) for numbers in several]
+    return [EventCourse(traces, numbers, len(several)) for numbers in several]
 
 
-def without_formula(start: SearchState) -> list[Course]:
+def without_formula(start: SearchState) -> list[EventCourse]:
     """The likeliest smooth course that no formula gives, of all sensors; none in a block of one, nor in noise that what
     it leaves must tell."""
     residuals, setting, m = start.residuals, start.baseline.setting, start.sensor_count
@@ -201,7 +200,7 @@ def without_formula(start: SearchState) -> list[Course]:
     return [replace(course, tried=found.tried) for course in courses(residuals, traces)]
 
 
-def closest(start: SearchState, every: Sequence[Course]) -> list[Course]:
+def closest(start: SearchState, every: Sequence[EventCourse]) -> list[EventCourse]:
     """The courses that all sensors together, or a few of them, show best; none where that is chance."""
     energy, freedom = energies(start.residuals, every)
     price = np.log([course.tried for course in every])
@@ -213,7 +212,7 @@ def closest(start: SearchState, every: Sequence[Course]) -> list[Course]:
     return [every[k] for k in dict.fromkeys(leaders)]
 
 
-def likeliest_few(start: SearchState, every: Sequence[Course]) -> Array:
+def likeliest_few(start: SearchState, every: Sequence[EventCourse]) -> Array:
     """(C,) ln p of the likeliest set of each course's sensors (`membership.py`) if their traces did not overlap."""
     kinds = start.baseline.setting.kinds
     counts, values = counts_of(kinds), []
@@ -227,7 +226,7 @@ def likeliest_few(start: SearchState, every: Sequence[Course]) -> Array:
     return np.array(values)
 
 
-def likeliest(start: SearchState, near: Sequence[Course]) -> Followed | None:
+def likeliest(start: SearchState, near: Sequence[EventCourse]) -> Followed | None:
     """The likeliest course that several sensors share rather than one having it; None where there is none."""
     tried = [(course, loadings(start, course).members()) for course in near]
     tried = [(course, members) for course, members in tried if members.are_several]
@@ -237,7 +236,7 @@ def likeliest(start: SearchState, near: Sequence[Course]) -> Followed | None:
     return without_departing(start, course, members)
 
 
-def without_departing(start: SearchState, course: Course, members: Members) -> Followed | None:
+def without_departing(start: SearchState, course: EventCourse, members: CauseMembers) -> Followed | None:
     """A course with its members, but for those that have a shape of their own; None where all fit better apart."""
     every = courses(start.residuals, course.traces)
     kept = course.of([course.numbers[k] for k in members.chosen])
@@ -258,7 +257,9 @@ def without_departing(start: SearchState, course: Course, members: Members) -> F
     return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)))
 
 
-def powers_apart(start: SearchState, course: Course, others: Sequence[Course]) -> tuple[list[Array], list[float]]:
+def powers_apart(
+    start: SearchState, course: EventCourse, others: Sequence[EventCourse]
+) -> tuple[list[Array], list[float]]:
     """What each sensor of a course explains by its shape in every one of ``others`` beside what the rest of them share,
     and by the one that it shares with them."""
     shared, every, own = unit_traces(course), list[Array](), list[float]()
@@ -270,13 +271,13 @@ def powers_apart(start: SearchState, course: Course, others: Sequence[Course]) -
     return every, own
 
 
-def energies(residuals: WhitenedResiduals, every: Sequence[Course]) -> tuple[Array, Array]:
+def energies(residuals: WhitenedResiduals, every: Sequence[EventCourse]) -> tuple[Array, Array]:
     """(C,) T and (C,) int its degrees of freedom of courses, each with a size of every sensor."""
     pairs = [energy_of(residuals, course) for course in every]
     return np.array([energy for energy, _ in pairs]), np.array([freedom for _, freedom in pairs])
 
 
-def energy_of(residuals: WhitenedResiduals, course: Course) -> tuple[float, int]:
+def energy_of(residuals: WhitenedResiduals, course: EventCourse) -> tuple[float, int]:
     """T and its degrees of freedom of one course."""
     unit = unit_traces(course)
     size, turn = eigh(unit.T @ unit)
@@ -285,7 +286,7 @@ def energy_of(residuals: WhitenedResiduals, course: Course) -> tuple[float, int]
     return float((along**2 / size[independent]).sum()), int(independent.sum())
 
 
-def unit_traces(course: Course) -> Array:
+def unit_traces(course: EventCourse) -> Array:
     """(n, k) traces of a course's sensors side by side, each of length one."""
     columns = course.traces.columns[list(course.numbers)]
     flat = columns.swapaxes(0, 1).reshape(columns.shape[1], -1)
@@ -293,14 +294,14 @@ def unit_traces(course: Course) -> Array:
     return np.asarray(flat / np.where(norms > 0, norms, 1.0))
 
 
-def loadings(start: SearchState, course: Course) -> Loadings:
+def loadings(start: SearchState, course: EventCourse) -> Loadings:
     """What the sensors show along a course, in the noise that it leaves where none is known."""
     unit, kinds = unit_traces(course), start.baseline.setting.kinds
     along = unit.T @ start.residuals.z / noise_given_course(start.residuals, course, unit)
     return Loadings(unit.T @ unit, along, tuple(kinds[i] for i in course.sensors), counts_of(kinds))
 
 
-def noise_given_course(residuals: WhitenedResiduals, course: Course, unit: Array) -> Array:
+def noise_given_course(residuals: WhitenedResiduals, course: EventCourse, unit: Array) -> Array:
     """(k,) scatter of a course's sensors beside it, standard errors: 1 where the noise is known."""
     size, turn = eigh(unit.T @ unit)
     basis = unit @ (turn[:, size > OVERLAP] / np.sqrt(size[size > OVERLAP]))
@@ -311,7 +312,7 @@ def noise_given_course(residuals: WhitenedResiduals, course: Course, unit: Array
     return np.asarray(np.where(residuals.baseline.unstated[sensors], np.sqrt(ratio), 1.0))
 
 
-def places_of(start: SearchState, course: Course) -> float:
+def places_of(start: SearchState, course: EventCourse) -> float:
     """Number of shapes and sets of sensors among which a course with its sensors was chosen."""
     kinds = start.baseline.setting.kinds
     return course.tried * float(
@@ -380,9 +381,11 @@ def ranked(start: SearchState, followed: Followed, event: Sequence[Scored]) -> t
     return tuple(detections)
 
 
-def shared_rivals(start: SearchState, event: Sequence[Scored], sensors: Sequence[int]) -> list[tuple[Course, float]]:
+def shared_rivals(
+    start: SearchState, event: Sequence[Scored], sensors: Sequence[int]
+) -> list[tuple[EventCourse, float]]:
     """Every other cause that all sensors of a course may share, at its best shape, with its ln evidence."""
-    best: dict[str, tuple[Course, float]] = {}
+    best: dict[str, tuple[EventCourse, float]] = {}
     for traces in start.traces:
         if traces.common or traces.cause.between or traces.nuisance is not None or traces.cause is event[0].cause:
             continue

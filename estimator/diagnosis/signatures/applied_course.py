@@ -74,7 +74,7 @@ class Component:
 
 
 @dataclass(frozen=True, eq=False)
-class Hypothesis:
+class CourseHypothesis:
     """One family of courses: a Gaussian process of r independent unit coefficients, of unknown size."""
 
     order: str
@@ -110,7 +110,7 @@ def kernels(setting: Setting) -> Iterator[tuple[str, Array]]:
     yield "the order measured", np.minimum(place[:, None], place) + 1 / setting.rows
     for length in LENGTHS:
         yield "the order measured", bending(place, length)
-    yield "no order: anew at every row", np.eye(setting.rows)
+    yield "no order: independent in every row", np.eye(setting.rows)
     if setting.beta is None or setting.flipped is None:
         return
     same_run = setting.flipped[:, None] == setting.flipped
@@ -118,10 +118,10 @@ def kernels(setting: Setting) -> Iterator[tuple[str, Array]]:
         kernel = around(setting.beta, length)
         yield "β", kernel
         if not same_run.all():
-            yield "β, each run for itself", kernel * same_run
+            yield "β, each run separately", kernel * same_run
 
 
-def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
+def hypotheses(setting: Setting) -> Iterator[CourseHypothesis]:
     """Every family of courses: components along orders, and changes that stay through a session or a run."""
     parts = components(setting)
     for order, kernel in kernels(setting):
@@ -129,9 +129,9 @@ def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
         for chosen in together(len(parts)):
             columns = np.concatenate([parts[k].columns[..., None] * root[:, None, :] for k in chosen], axis=-1)
             lift = np.kron(np.eye(len(chosen)), root).reshape(len(chosen), setting.rows, -1)
-            yield Hypothesis(order, tuple(parts[k].words for k in chosen), columns, lift)
+            yield CourseHypothesis(order, tuple(parts[k].words for k in chosen), columns, lift)
     for order, columns in changes(setting):
-        yield Hypothesis(order, (), columns, np.zeros((0, setting.rows, columns.shape[-1])))
+        yield CourseHypothesis(order, (), columns, np.zeros((0, setting.rows, columns.shape[-1])))
 
 
 def changes(setting: Setting) -> Iterator[tuple[str, Array]]:
@@ -147,7 +147,7 @@ def changes(setting: Setting) -> Iterator[tuple[str, Array]]:
         yield words, fixed
         if 0 < setting.flipped.sum() < setting.rows:
             yield (
-                say("{words}, each run for itself", words=words),
+                say("{words}, each run separately", words=words),
                 np.concatenate([fixed * flipped, fixed * ~flipped], axis=-1),
             )
 

@@ -44,7 +44,7 @@ USUAL = {
     "temperature": 0.2,
     "β": 0.1,
     "the sensor's input": 0.1,
-    "β, each run for itself": 0.1,
+    "β, each run separately": 0.1,
     "β and the order measured": 0.05,
     "β and temperature": 0.05,
     "the vibration": 0.1,
@@ -82,7 +82,7 @@ def kernels(residuals: WhitenedResiduals, sensor: int) -> dict[str, list[Array]]
     turning = [around(setting.beta, length) for length in ROUND]
     same_run = setting.flipped[:, None] == setting.flipped
     if not same_run.all():
-        by_name["β, each run for itself"] = [kernel * same_run for kernel in turning]
+        by_name["β, each run separately"] = [kernel * same_run for kernel in turning]
     for name in ("the order measured", "temperature"):
         if name in places:
             by_name[f"β and {name}"] = [bending(places[name], LENGTHS[-1]) * kernel for kernel in turning]

@@ -46,7 +46,7 @@ class Pattern(Signature):
     nameless = True
     equation = ""
     units = ()
-    advice = "Look at the residuals there; no cause of the catalogue has this pattern."
+    advice = "Look at the residuals there; no known cause has this pattern."
     description = ""
     """What is said in place of the sentence where one is counted."""
 

@@ -202,7 +202,8 @@ class RemainingProducts:
             return before
         C, p = self.shared, self.projected
         c = C.sum(axis=0)
-        cross = np.einsum("fsp,kfsq->kspq", c, C - 0.5 * np.einsum("kfg,gsq->kfsq", p.square, c))
+        half = C - 0.5 * (p.square @ c.reshape(len(c), -1)).reshape(C.shape)
+        cross = c.transpose(1, 2, 0) @ half.swapaxes(1, 2)
         along = before.along - np.einsum("kfsq,f->ksq", C, p.explained) - np.einsum("fsq,kf->ksq", c, p.rest)
         return Products(before.square - cross - np.swapaxes(cross, -1, -2), along)
 

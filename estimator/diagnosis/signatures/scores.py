@@ -54,7 +54,7 @@ ones that contain them, so that alternatives stay few (docs/diagnosis/study.md, 
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class ScoreFit:
     """S signatures of q amplitudes, each fitted alone to what the findings leave. K parts of the rows."""
 
     products: Products | RemainingProducts
@@ -71,7 +71,7 @@ class Fit:
     @classmethod
     def of(
         cls, products: Products | RemainingProducts, shown: Array, faint: float, group: Array | None = None
-    ) -> "Fit":
+    ) -> "ScoreFit":
         """``shown`` (S, q) bool: columns that count; ``faint``: share of the strongest direction that one must have;
         ``group`` (S,) int: of which signatures all columns but the first are the same, those of one number."""
         whole, along = products.whole
@@ -84,10 +84,10 @@ class Fit:
         value = (directions @ length[..., None])[..., 0]
         return cls(products, value, (length**2).sum(axis=1), live, directions)
 
-    def at(self, chosen: Array) -> "Fit":
+    def at(self, chosen: Array) -> "ScoreFit":
         """Some of the signatures, (S,) bool."""
         parts = (self.value, self.power, self.freedom, self.directions)
-        return Fit(self.products.at(chosen), *(x[chosen] for x in parts))
+        return ScoreFit(self.products.at(chosen), *(x[chosen] for x in parts))
 
     def tested(self, projected: Projected, sensor: Array) -> tuple[Array, Array]:
         """(S,) equivalent χ² and (S,) p-value of signatures that are blamed on ``sensor`` (S,) int, −1 for none."""
@@ -209,7 +209,7 @@ def _scored(projected: Projected, traces: Sequence[Traces], chosen: Sequence[int
     products = projected([t.products for t in selected], [t.columns for t in selected], [t.nuisance for t in selected])
     norms = np.sqrt(np.maximum(np.diagonal(products.whole[0], axis1=1, axis2=2), 0.0))
     shown = norms > np.maximum(INVISIBLE * raw, 1e-300)
-    fit = Fit.of(products, shown, FAINT, sensor if has_nuisance(raw) else None)
+    fit = ScoreFit.of(products, shown, FAINT, sensor if has_nuisance(raw) else None)
     statistic, p_value = fit.tested(projected, sensor)
     visible = (shown & (raw > 0)).any(axis=1)
     tested = np.flatnonzero(visible & (p_value < WORTH))
@@ -239,7 +239,9 @@ def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) ->
     return again
 
 
-def is_visible_within(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: Array, sensor: Array) -> Array:
+def is_visible_within(
+    projected: Projected, traces: Sequence[Traces], fit: ScoreFit, raw: Array, sensor: Array
+) -> Array:
     """(S,) bool: whether shapes of causes that act within the session show there, and not only in what changed since
     the history.
 
@@ -255,7 +257,7 @@ def is_visible_within(projected: Projected, traces: Sequence[Traces], fit: Fit, 
     exempt = np.array([t.cause.between or t.cause.nameless for t in traces])
     exempt |= (raw > 0).all(axis=1) & (seen < TOO_FAINT**2)
     places = np.array([max(t.places, 1) for t in traces])
-    rest = Fit.of(within, amplitude != 0, ALIKE)
+    rest = ScoreFit.of(within, amplitude != 0, ALIKE)
     return np.asarray(exempt | (rest.tested(projected, sensor)[1] * places < ALONE))
 
 
@@ -263,7 +265,7 @@ def tail(projected: Projected, sensor: int, basis: Array) -> float:
     """p-value of what a signature blamed on a sensor (−1 for none) explains through ``basis`` (n, q), orthonormal and
     orthogonal to the findings."""
     remaining = projected([Products.of(projected.residuals, basis[None])], [basis[None]])
-    fit = Fit.of(remaining, np.ones((1, basis.shape[1]), dtype=bool), ALIKE)
+    fit = ScoreFit.of(remaining, np.ones((1, basis.shape[1]), dtype=bool), ALIKE)
     return float(fit.tested(projected, np.array([sensor]))[1][0])
 
 

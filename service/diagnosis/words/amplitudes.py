@@ -11,6 +11,7 @@ from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Shared
 from estimator.message import joined, say
+from estimator.moments import duration
 from service.kit.measures import (
     ARCSEC,
     COVERAGE,
@@ -35,6 +36,7 @@ AMPLITUDE_MEASURES = {
     "1/s": Measure("ppm/h", 1e6 * PER_HOUR),
     "m/s²": Measure("µg", MICRO_G),
     "m/s²/K": Measure("µg/K", MICRO_G),
+    "m/s²/K²": Measure("µg/K²", MICRO_G),
     "m/s²/s": Measure("µg/h", MICRO_G * PER_HOUR),
     "m/s²/(K/s)": Measure("µg/(K/h)", MICRO_G / PER_HOUR),
     "(m/s²)⁻¹": Measure("µg/g²", 1e6 * STANDARD_GRAVITY),
@@ -43,6 +45,7 @@ AMPLITUDE_MEASURES = {
     "rad": ARCSEC,
     "rad/s": Measure("°/h", PER_HOUR / DEGREE),
     "rad/s/K": Measure("(°/h)/K", PER_HOUR / DEGREE),
+    "rad/s/K²": Measure("(°/h)/K²", PER_HOUR / DEGREE),
     "rad/s/s": Measure("(°/h)/h", PER_HOUR**2 / DEGREE),
     "rad/s/(K/s)": Measure("(°/h)/(K/h)", 1 / DEGREE),
     "(rad/s)⁻¹": Measure(say("ppm at Earth rate"), 1e6 * EARTH_RATE),
@@ -142,7 +145,19 @@ def part_of(cause: str, k: int) -> str:
 
 
 def shape_of(finding: Finding) -> str:
-    """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ."""
+    """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ. Of what settles
+    also when its size is counted from."""
+    shape, known = _alone(finding), find(finding.cause)
+    if known is None or not known.since_power_on or not shape:
+        return shape
+    if finding.since_power_on is None:
+        return say("{shape}; size at the session's start", shape=shape)
+    begun = duration(finding.since_power_on)
+    return say("{shape}; size at switching on, {begun} before the first reading", shape=shape, begun=begun)
+
+
+def _alone(finding: Finding) -> str:
+    """What it is of each sensor."""
     if finding.shared is not None:
         return _shared_shape(finding.cause, finding.shared)
     each = finding.nonlinear_each
@@ -152,7 +167,7 @@ def shape_of(finding: Finding) -> str:
     return joined(
         "; ",
         (
-            say("{who}: {shape}", who=who, shape=shape)
+            say("{sensor}: {shape}", sensor=who, shape=shape)
             for who, shape in zip(finding.sensors, shapes, strict=False)
             if shape
         ),
@@ -180,7 +195,7 @@ def more_of(finding: Finding) -> tuple[str, ...]:
     return (
         sizes
         if len(shared.more) > 1
-        else tuple(say("{who}: {shape}", who=shared.more[0], shape=size) for size in sizes)
+        else tuple(say("{sensor}: {shape}", sensor=shared.more[0], shape=size) for size in sizes)
     )
 
 

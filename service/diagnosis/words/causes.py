@@ -15,7 +15,7 @@ EVERY_SENSOR = "every sensor of its kind"
 """Where what a group shows acts on all of them."""
 LEARNED = "empirical term"
 """What a term is called that was learned, in place of a cause."""
-ONE_NOT_KNOWN = "one that is not in the catalogue"
+ONE_NOT_KNOWN = "a cause outside the catalogue"
 COMPARABLE = 3.0
 """Times that one share of probability may be another's and both still pass for equally likely: evidence below that is
 not worth a mention (Jeffreys)."""
@@ -38,6 +38,16 @@ def cause_name(identifier: str) -> str:
 def cause_on(identifier: str, sensors: Sequence[str]) -> str:
     """``bias temperature (A5)``."""
     return cause_name(identifier) + _on(sensors)
+
+
+def weighty_first(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """As they are told: how the block sits in its fixture since earlier sessions, without which it is judged, last."""
+    return tuple(sorted(findings, key=_is_seating))
+
+
+def _is_seating(finding: Finding) -> bool:
+    known = find(finding.cause)
+    return known is not None and known.scope == "fixture" and known.between
 
 
 def is_lone(finding: Finding) -> bool:
@@ -66,19 +76,19 @@ def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
     if len(likely) > 1 or not unlikely:
         less = say("; {unlikely}", unlikely=_less(unlikely, finding)) if unlikely else ""
         return say(
-            "Cannot tell which: {likely}{sensors}{less}.",
+            "Cannot tell which: {likely}{sensors}{less_likely}.",
             likely=_listed(_with_unknown(likely, finding)),
             sensors=_on(finding.sensors),
-            less=less,
+            less_likely=less,
         )
     first, unknown = (
         likely[0],
         say(", or {one_not_known}", one_not_known=ONE_NOT_KNOWN) if UNKNOWN_CAUSE in finding.alternatives else "",
     )
     return say(
-        "Likely {first}, {first2}; {unlikely}{unknown}.",
-        first=cause_on(first, finding.sensors),
-        first2=share_of(first, finding),
+        "Likely {cause}, {share}; {unlikely}{unknown}.",
+        cause=cause_on(first, finding.sensors),
+        share=share_of(first, finding),
         unlikely=_less(unlikely, finding),
         unknown=unknown,
     )
@@ -89,7 +99,12 @@ def choice_of(finding: Finding) -> str:
     likely, unlikely = by_share(finding)
     on = say(" on {sensors}", sensors=joined(" and ", dict.fromkeys(finding.sensors))) if finding.sensors else ""
     less = say(" (less likely {unlikely})", unlikely=_listed(unlikely)) if unlikely else ""
-    return say("{likely}{less} acts{on}", likely=_listed(_with_unknown(likely, finding)), less=less, on=on)
+    return say(
+        "{likely}{less_likely} acts{places}",
+        likely=_listed(_with_unknown(likely, finding)),
+        less_likely=less,
+        places=on,
+    )
 
 
 def by_share(finding: Finding) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -118,8 +133,8 @@ def _share(name: str, finding: Finding) -> float:
 def percent(share: float) -> str:
     """A share of probability as people read it."""
     if share > 1 - SHOWN_SHARE:
-        return say("over 99.9{hard}%", hard=HARD)
-    return f"{number(100 * share, 1)}{HARD}%" if share > SHOWN_SHARE else say("under 0.1{hard}%", hard=HARD)
+        return say("over 99.9{nbsp}%", nbsp=HARD)
+    return f"{number(100 * share, 1)}{HARD}%" if share > SHOWN_SHARE else say("under 0.1{nbsp}%", nbsp=HARD)
 
 
 def _less(unlikely: Sequence[str], finding: Finding) -> str:
@@ -127,14 +142,14 @@ def _less(unlikely: Sequence[str], finding: Finding) -> str:
     ranked = {rival.cause for rival in finding.ranking}
     shown = [
         say(
-            "{name}{name2}",
+            "{name}{share}",
             name=cause_name(name),
-            name2=say(", {name}", name=share_of(name, finding)) if name in ranked else "",
+            share=say(", {name}", name=share_of(name, finding)) if name in ranked else "",
         )
         for name in unlikely[:MOST_NAMES]
     ]
     more = len(unlikely) - MOST_NAMES
-    return "less likely " + joined("; ", (*shown, *([say("{more} more", more=more)] if more > 0 else [])))
+    return "less likely " + joined("; ", (*shown, *([say("{number} more", number=more)] if more > 0 else [])))
 
 
 def _with_unknown(names: Sequence[str], finding: Finding) -> tuple[str, ...]:
@@ -158,8 +173,8 @@ def _listed(causes: Sequence[str]) -> str:
     """``a, b or c``; of many only the first three, and always that it may be an unknown one."""
     names = [cause_name(identifier) for identifier in causes if identifier != UNKNOWN_CAUSE]
     shown, more = names[:MOST_NAMES], len(names) - MOST_NAMES
-    shown += [say("{more} more", more=more)] if more > 0 else []
+    shown += [say("{number} more", number=more)] if more > 0 else []
     shown += [ONE_NOT_KNOWN] if UNKNOWN_CAUSE in causes else []
     if len(shown) == 1:
         return shown[0]
-    return say("{shown} or {shown2}", shown=joined(", ", shown[:-1]), shown2=shown[-1])
+    return say("{first} or {last}", first=joined(", ", shown[:-1]), last=shown[-1])

@@ -13,7 +13,15 @@ from estimator.message import joined, say
 from estimator.results import Calibration
 from estimator.session import GYROSCOPE
 from service.diagnosis.words.amplitudes import amplitude_measure
-from service.diagnosis.words.causes import ONE_NOT_KNOWN, at_once_with, cause_name, is_level, is_lone, what_is_wrong
+from service.diagnosis.words.causes import (
+    ONE_NOT_KNOWN,
+    at_once_with,
+    cause_name,
+    is_level,
+    is_lone,
+    weighty_first,
+    what_is_wrong,
+)
 from service.diagnosis.words.findings import UNEXPLAINED, headline_of, told, what_to_do_about
 from service.kit.measures import THIN, leading_kind, number
 from service.sessions.records import DiagnosisState
@@ -25,8 +33,8 @@ NOT_APPLICABLE = (
     "in alignments on a turntable."
 )
 NOTHING = "Nothing wrong found"
-NOTHING_LEFT = "Too few positions to judge the simulation"
-TAKEN_UP = "The parameters take all that the readings tell, and nothing is left to find a cause by: add positions."
+NOTHING_LEFT = "Too few positions for a diagnosis"
+TAKEN_UP = "There are as many parameters as readings, so no cause can be found: add positions."
 MOST_FINDINGS = 3
 """Findings that one line tells before it counts the rest."""
 HEADLINES = {
@@ -36,27 +44,27 @@ HEADLINES = {
     DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
 }
 """Where the answer itself is not at hand."""
-STILL_MADE = "The diagnosis that this rests on is still being made: ask again in some seconds."
-AGREE = "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
+STILL_MADE = "The diagnosis needed for this is still running: ask again in a few seconds."
+AGREE = "Measurement and simulation agree within the noise: no known cause and no other structure was found."
 RESTATE = (
-    "No cause of the catalogue and no other structure shows. But the readings scatter otherwise than the file says: "
-    "correct the standard errors that it states."
+    "No known cause and no other structure was found. But the scatter of the readings is not the stated one: correct "
+    "the standard errors in the file."
 )
-CHOOSE = "This session cannot distinguish these causes. Take the measurement that can, before you act on one of them."
-RULE_OUT = "This session does not rule the less likely causes out. Take the measurement that would, before you act."
+CHOOSE = "This session cannot separate these causes. Before you act on one of them, make the measurement that can."
+RULE_OUT = "This session does not rule out the less likely causes. Before you act, make the measurement that does."
 REPEAT = say(
-    "One known cause explains it, and {one_not_known} would as well. Repeat the session "
-    "before you act: if the name is right, it comes back.",
+    "One known cause explains it, but so could {one_not_known}. Repeat the session before you act: if the named "
+    "cause is right, it appears again.",
     one_not_known=ONE_NOT_KNOWN,
 )
 REPEAT_BOTH = say(
-    "Two causes at once on one sensor are rare, and {one_not_known} would explain it as "
-    "well. Repeat the session before you act: if the names are right, both come back.",
+    "Two causes at once on one sensor are rare, and {one_not_known} could also explain it. Repeat the session before "
+    "you act: if the named causes are right, both appear again.",
     one_not_known=ONE_NOT_KNOWN,
 )
 
 
-class Answer(Protocol):
+class DiagnosisAnswer(Protocol):
     """What a diagnosis came to, as it was made or as it is stored."""
 
     @property
@@ -69,31 +77,33 @@ class Answer(Protocol):
     def calibration(self) -> Calibration: ...
 
 
-def summary_of(answer: Answer) -> str:
+def summary_of(answer: DiagnosisAnswer) -> str:
     """One line that a technician understands."""
     if answer.findings:
         common = [s for s in answer.structures if not s.sensors]
-        return joined(" ", (_named(answer.findings), *([told(common)] if common else [])))
+        return joined(" ", (_named(weighty_first(answer.findings)), *([told(common)] if common else [])))
     if answer.structures:
         return joined(" ", (told(answer.structures), *errors_of(answer)))
     return nothing_of(answer)
 
 
-def nothing_of(answer: Answer) -> str:
+def nothing_of(answer: DiagnosisAnswer) -> str:
     """That nothing is wrong, unless it is what the file says of the noise, or nothing is left to judge by."""
     if answer.calibration.fit.is_exact:
-        return say("{nothing_left}. {taken_up}", nothing_left=NOTHING_LEFT, taken_up=TAKEN_UP)
+        return say("{summary}. {fits}", summary=NOTHING_LEFT, fits=TAKEN_UP)
     if answer.noise:
-        return say("{nothing}{but}.", nothing=NOTHING, but=but_wrong_errors(answer.noise, _kinds(answer)))
-    return say("{nothing}: the simulation explains the readings.", nothing=NOTHING)
+        return say(
+            "{summary}{reservation}.", summary=NOTHING, reservation=but_wrong_errors(answer.noise, _kinds(answer))
+        )
+    return say("{summary}: the simulation explains the readings.", summary=NOTHING)
 
 
-def errors_of(answer: Answer) -> tuple[str, ...]:
+def errors_of(answer: DiagnosisAnswer) -> tuple[str, ...]:
     """Which stated standard errors are wrong, a sentence each."""
     return wrong_errors(answer.noise, _kinds(answer))
 
 
-def _kinds(answer: Answer) -> set[str]:
+def _kinds(answer: DiagnosisAnswer) -> set[str]:
     return {sensor.kind for sensor in answer.calibration.sensors}
 
 
@@ -101,7 +111,7 @@ def _named(findings: Sequence[Finding]) -> str:
     """The first findings; two that are one choice are told once."""
     said = tuple(dict.fromkeys(what_is_wrong(finding, findings) for finding in findings))
     more = len(said) - MOST_FINDINGS
-    return joined(" ", said[:MOST_FINDINGS]) + (say(" And {more} more.", more=more) if more > 0 else "")
+    return joined(" ", said[:MOST_FINDINGS]) + (say(" And {number} more.", number=more) if more > 0 else "")
 
 
 CANNOT = "The session cannot be diagnosed: {fault}"
@@ -115,30 +125,28 @@ def cannot_be_diagnosed(fault: SessionError) -> str:
 def fault_of_the_program(session: str) -> str:
     """That the program failed, and what holds all the same."""
     return say(
-        "The program failed at this diagnosis, met something that it does not foresee, or needed "
-        "too much time or memory: that is a fault of the program, not of the session. The "
-        "session, its calibration and its verdict are stored and hold, and the next version of "
-        "the program diagnoses it again. The log says what happened, under session {session}: "
-        "send that to those who maintain the program.",
+        "The program failed at this diagnosis or needed too much time or memory: that is a fault of the program, not "
+        "of the session. Session, calibration and verdict are stored and valid, and the next version of the program "
+        "diagnoses the session again. Send the log's lines about session {session} to the maintainers of the program.",
         session=session,
     )
 
 
-def headline(answer: Answer) -> str:
+def headline(answer: DiagnosisAnswer) -> str:
     """The first cause or the choice that cannot be made; without one what the diagnosis came to."""
     if answer.findings:
-        return what_is_wrong(answer.findings[0], answer.findings)
+        return what_is_wrong(weighty_first(answer.findings)[0], answer.findings)
     if answer.structures:
         return headline_of(answer.structures)
     if answer.calibration.fit.is_exact:
         return NOTHING_LEFT
-    return say("{nothing}{but}", nothing=NOTHING, but=but_wrong_errors(answer.noise, _kinds(answer)))
+    return say("{summary}{reservation}", summary=NOTHING, reservation=but_wrong_errors(answer.noise, _kinds(answer)))
 
 
-def what_to_do(answer: Answer) -> str:
+def what_to_do(answer: DiagnosisAnswer) -> str:
     """What a technician does next."""
     if answer.findings:
-        return _about(answer.findings[0], answer.findings)
+        return _about(weighty_first(answer.findings)[0], answer.findings)
     if answer.structures:
         return what_to_do_about(answer.structures)
     if answer.calibration.fit.is_exact:
@@ -156,7 +164,7 @@ def _about(finding: Finding, findings: Sequence[Finding]) -> str:
     return CHOOSE if is_level(finding) else RULE_OUT
 
 
-FULLER = {"the session lacks vibration": "no vibration was recorded, or it was the same everywhere"}
+FULLER = {"the session lacks vibration": "no vibration was recorded, or it was the same in every row"}
 """Reasons that people would take for something else as the estimator puts them."""
 
 

@@ -31,11 +31,11 @@ ALWAYS_SHOWN = 3
 """Lines of the ranking that are shown however small their share."""
 
 
-IF_IT_COMES_BACK = "repeat the session: a cause that is named rightly comes back"
+IF_IT_COMES_BACK = "repeat the session: a correctly named cause appears again"
 
 
 @dataclass(frozen=True)
-class Choice:
+class CauseChoice:
     """One of several causes that this session cannot distinguish."""
 
     cause: str
@@ -58,15 +58,15 @@ class Bar:
     """0 to 100."""
 
 
-def choices_of(finding: Finding) -> Iterator[Choice]:
+def choices_of(finding: Finding) -> Iterator[CauseChoice]:
     """The named cause and its alternatives."""
     apart = {separation.cause: separation for separation in finding.separations}
     for name in (finding.cause, *finding.alternatives) if finding.alternatives else ():
         if name == UNKNOWN_CAUSE:
-            yield Choice(name, cause_on(name, finding.sensors), "–", "", IF_IT_COMES_BACK)
+            yield CauseChoice(name, cause_on(name, finding.sensors), "–", "", IF_IT_COMES_BACK)
             continue
         share = share_of(name, finding)
-        yield Choice(name, cause_on(name, finding.sensors), share, *_apart(apart.get(name)))
+        yield CauseChoice(name, cause_on(name, finding.sensors), share, *_apart(apart.get(name)))
 
 
 def _apart(separation: Separation | None) -> tuple[str, str]:
@@ -75,9 +75,9 @@ def _apart(separation: Separation | None) -> tuple[str, str]:
         return "", ""
     expected = separation.then or 0.0
     if not separation.measurement or expected < DISTINGUISHED:
-        return _sigmas(separation.now), "no further session of this kind would; look at the hardware"
+        return _sigmas(separation.now), "this stand or programme cannot separate them; inspect the hardware"
     return _sigmas(separation.now), say(
-        "{measurement} (expected {expected} apart)", measurement=separation.measurement, expected=_sigmas(expected)
+        "{measurement} (expected separation {expected})", measurement=separation.measurement, expected=_sigmas(expected)
     )
 
 
@@ -121,7 +121,7 @@ class FindingView:
     more: tuple[str, ...]
     """Sensors that follow a shared course faintly, each with its size."""
     evidence: str
-    choices: tuple[Choice, ...]
+    choices: tuple[CauseChoice, ...]
     ranking: tuple[Bar, ...]
     parity: str
     since: str
@@ -193,21 +193,21 @@ def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) 
 def evidence_together(strength: float, over: OverSessions) -> str:
     """How strong an effect is that no session shows alone, and how likely this one has it."""
     return say(
-        "{strength} over {sessions} sessions of the unit together; that this one has it too: {here}",
+        "{strength} over {sessions} sessions of the unit; probability that this one has it too: {probability}",
         strength=standard_errors(strength),
         sessions=over.sessions,
-        here=percent(over.here),
+        probability=percent(over.here),
     )
 
 
 def since_together(over: OverSessions) -> str:
     """Whether earlier sessions had it."""
     if over.since is not None:
-        return say("It began on {since}.", since=day_of(moment(over.since)))
+        return say("It began on {date}.", date=day_of(moment(over.since)))
     if over.form == "since":
         return "It began in one of the earlier sessions."
     if over.form == "varying":
-        return "It was there in the earlier sessions too, but different every time."
+        return "Present in the earlier sessions too, with a different size each time."
     return _since(False)
 
 
@@ -220,11 +220,11 @@ def _chance(p_value: float) -> str:
     if not isfinite(p_value):
         return "no probability is known"
     if p_value < SURE:
-        return "by chance alone in fewer than 1 of 10¹² sound sessions"
+        return "by chance in fewer than 1 of 10¹² sound sessions"
     if p_value < 1e-3:
         exponent = str(floor(-log10(p_value))).translate(SUPERSCRIPT)
-        return say("by chance alone in fewer than 1 of 10{exponent} sound sessions", exponent=exponent)
-    return say("by chance alone in {p_value}{hard}% of sound sessions", p_value=number(100 * p_value, 2), hard=HARD)
+        return say("by chance in fewer than 1 of 10{exponent} sound sessions", exponent=exponent)
+    return say("by chance in {p_value}{hard}% of sound sessions", p_value=number(100 * p_value, 2), hard=HARD)
 
 
 def _parity(split: ParitySplit | None) -> str:
@@ -236,44 +236,42 @@ def _parity(split: ParitySplit | None) -> str:
         return ""
     seen, left = number(split.range_before, 0), number(split.range_after, 0)
     return say(
-        "χ² in parity space {before} → {after}, along the axes {seen} → {left}. An error of the "
-        "stand leaves nothing in parity space; a fault of one sensor does.",
+        "χ² in parity space {before} → {after}, along the axes {axes} → {remaining_axes}. A fault of one sensor shows "
+        "in parity space; an error of the stand does not.",
         before=before,
         after=after,
-        seen=seen,
-        left=left,
+        axes=seen,
+        remaining_axes=left,
     )
 
 
 def _since(new: bool | None) -> str:
     if new is None:
         return ""
-    return "New since the earlier sessions." if new else "It was there in the earlier sessions too."
+    return "New since the earlier sessions." if new else "Present in the earlier sessions too."
 
 
-UNEXPLAINED = "Something is there that no known cause explains"
-COMMON = "Something common to all sensors, of the stand or fixture, that no known cause explains"
-MIXED_UP = "The record cannot be right"
+UNEXPLAINED = "An effect that no known cause explains"
+COMMON = "An effect common to all sensors, of the stand or fixture, that no known cause explains"
+MIXED_UP = "The record is wrong"
 SIZE = "size"
 """The component of a course that no turn of the applied vector makes."""
 COMPONENTS = {
-    "β": "the angle β of the head were off",
-    "α": "the angle α of the stand were off",
+    "β": "the angle β of the head were wrong",
+    "α": "the angle α of the stand were wrong",
     SIZE: "gravity or the rate were larger",
-    "β of the gyros": "the angle β were off, for the gyros alone",
-    "α of the gyros": "the angle α were off, for the gyros alone",
+    "β of the gyros": "the angle β were wrong, for the gyros only",
+    "α of the gyros": "the angle α were wrong, for the gyros only",
 }
 """What each component of a course looks like."""
 IN_COMMON = "the applied vector, common to all sensors: "
 """How the place of a pattern begins that all sensors share: what is said of it says that already."""
-LOOK_AT_SENSOR = (
-    "Do not force a name on it: look where it lives, repeat the session, and compare with another unit or stand."
-)
+LOOK_AT_SENSOR = "Look at where it occurs, repeat the session, and compare with another unit or stand."
 LOOK_AT_STAND = (
-    "All sensors show the same, so it is none of theirs. Look at the stand, the fixture and the reference: play, "
-    "levelling, clamping, what the angles are read from. Then measure another unit there: it would show the same."
+    "All sensors show it, so no sensor causes it. Check the stand, the fixture and the reference: play, levelling, "
+    "clamping, angle readout. Then measure another unit there: it should show the same."
 )
-LOOK_AT_RECORD = "Compare the file with what was done: columns, runs, angles and signs. Correct it and upload it again."
+LOOK_AT_RECORD = "Check columns, runs, angles and signs in the file. Correct it and upload it again."
 
 
 def headline_of(structures: Sequence[Structure]) -> str:
@@ -296,8 +294,14 @@ def leading(structures: Sequence[Structure]) -> Structure:
 def told(structures: Sequence[Structure]) -> str:
     """What is there, in whom and where, in one line."""
     first = leading(structures)
-    who = say(" in {sensors}", sensors=joined(", ", first.sensors)) if first.sensors and not first.of_record else ""
-    return say("{structures}{who}: {first}.", structures=headline_of(structures), who=who, first=where_of(first))
+    named = first.sensors and not first.of_record
+    what = unexplained_in(first.sensors) if named else headline_of(structures)
+    return say("{structures}: {first}.", structures=what, first=where_of(first))
+
+
+def unexplained_in(sensors: Sequence[str]) -> str:
+    """``An effect in A2, A3 that no known cause explains``."""
+    return say("An effect in {sensors} that no known cause explains", sensors=joined(", ", sensors))
 
 
 def summed_up(structures: Sequence[Structure]) -> str:
@@ -305,18 +309,11 @@ def summed_up(structures: Sequence[Structure]) -> str:
     if leading(structures).of_record:
         return told(structures)
     sensors = sorted({sensor for structure in structures for sensor in structure.sensors})
-    beside = (
-        say(
-            " Beside it: {unexplained} in {sensors}.",
-            unexplained=uncapitalised(UNEXPLAINED),
-            sensors=joined(", ", sensors),
-        )
-        if sensors
-        else ""
-    )
-    if any(not structure.sensors for structure in structures):
-        return say("{common}.{beside}", common=COMMON, beside=beside)
-    return say("{unexplained} in {sensors}.", unexplained=UNEXPLAINED, sensors=joined(", ", sensors))
+    own = unexplained_in(sensors)
+    if all(structure.sensors for structure in structures):
+        return say("{unexplained}.", unexplained=own)
+    beside = say(" In addition: {unexplained}.", unexplained=uncapitalised(own)) if sensors else ""
+    return say("{common}.{beside}", common=COMMON, beside=beside)
 
 
 def who_of(structure: Structure) -> str:
@@ -342,5 +339,5 @@ def course_in_words(course: Course) -> str:
         return course.order
     what = joined(" and ", course.components)
     if course.order.startswith("no order"):
-        return say("is off in {what}, anew at every row", what=what)
-    return say("is off in {what}, smoothly along {order}", what=what, order=course.order)
+        return say("deviates in {what}, independently in every row", what=what)
+    return say("deviates in {what}, smoothly along {order}", what=what, order=course.order)

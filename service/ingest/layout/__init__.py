@@ -1,8 +1,8 @@
-"""Tables of people's own layout: looked at, understood, mapped by hand where that is needed, and read as a session.
+"""Tables of custom layout: previewed, recognised, mapped by hand where needed, and read as a session.
 
 envelope    the uploaded bytes and their mapping in one file: what is stored
 decoding    bytes of text → text            grids    any table → cells, headings
 vocabulary, units, understand               what headings mean, in English and Russian
 mapping     `imu-mapping/1`, checked        reading  cells under a mapping → imu-session/1
-look        what a preview shows of a file before anything is decided
+look        what a preview shows of a file
 """

@@ -1,8 +1,8 @@
 """The uploaded bytes, unchanged, and the mapping that reads them, in one file: a ZIP archive of two parts.
 
-Neither is anything without the other, so they are stored, backed up, checked and handed on as one. The archive is not
-compressed and has no dates: the same bytes under the same mapping are the same file, and another mapping of the same
-bytes is another file, as it may be another session. Whether it is another one, its content tells.
+Neither is of use without the other, so they are stored, backed up, checked and passed on as one. The archive is
+uncompressed and undated: the same bytes under the same mapping are the same file; under another mapping they are
+another file. Whether that is another session is decided by its content.
 """
 
 import json
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
@@ -35,7 +36,7 @@ UNREADABLE = (
     EOFError,  # its end comes too soon
     RuntimeError,  # a part that claims to be encrypted, or packed in a way that zipfile does not know
 )
-"""What zipfile ends in at an archive that anybody may have made."""
+"""Raised by zipfile for archives that are not ours."""
 
 
 def wrapped(mapping: Mapping[str, Any], content: bytes) -> bytes:
@@ -50,7 +51,7 @@ def wrapped(mapping: Mapping[str, Any], content: bytes) -> bytes:
 
 
 def is_wrapped(content: bytes | Path) -> bool:
-    """Whether a file is one of these."""
+    """Whether a file is such an archive."""
     name = MAPPING.encode()
     start = content[: NAME_AT + len(name)] if isinstance(content, bytes) else _start(content, NAME_AT + len(name))
     return start.startswith(XLSX) and start[NAME_AT:] == name
@@ -61,15 +62,15 @@ def _start(path: Path, count: int) -> bytes:
         return file.read(count)
 
 
-def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
-    """The mapping and the uploaded bytes; FormatError where the archive is none of ours."""
+def unwrapped(content: bytes, filename: str) -> tuple[Json, bytes]:
+    """The mapping and the uploaded bytes; FormatError for a damaged archive."""
     try:
         with ZipFile(BytesIO(content)) as archive:
             parts = archive.infolist()
             if len(parts) != PARTS or any(part.compress_type != ZIP_STORED for part in parts):
                 raise refusal(
                     filename,
-                    say("must hold two parts that are not compressed: {mapping} and the table", mapping=MAPPING),
+                    say("must contain two uncompressed parts: {mapping} and the table", mapping=MAPPING),
                 )
             text, table = (archive.read(part) for part in parts)
     except UNREADABLE as error:
@@ -77,8 +78,8 @@ def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
     return mapping_of(text, filename), table
 
 
-def mapping_of(text: bytes, filename: str) -> dict[str, Any]:
-    """The mapping that a JSON text holds, not yet checked."""
+def mapping_of(text: bytes, filename: str) -> Json:
+    """The mapping in a JSON text, not yet checked."""
     if len(text) > LONGEST_MAPPING:
         raise refusal(
             filename, say("is longer than {longest_mapping} bytes", longest_mapping=LONGEST_MAPPING), "mapping"

@@ -1,4 +1,4 @@
-"""Any table → columns of cells with their headings, and how it was taken apart."""
+"""Any table → columns of cells with their headings, and the settings of the parser."""
 
 import csv
 import io
@@ -24,18 +24,18 @@ from service.kit.limits import check_table, refusal
 MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
 """Byte order marks."""
 ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")
-"""That tables come in here, and that can be chosen by hand."""
+"""Encodings of tables that are recognised, and can be chosen by hand."""
 CODE_PAGES = ["cp1251", "cp1252", "koi8_r", "cp866"]
-"""That are told from each other by the letters they give."""
-SAMPLED = 64 * 1024
-"""Bytes that an encoding is told by: headings stand at the beginning."""
-BARE_ZEROS = 0.2
-"""Share of zero bytes in one half of the places from which text is UTF-16 without a mark."""
+"""Code pages, told apart by frequencies of letters."""
+SAMPLE_BYTES = 64 * 1024
+"""Bytes from which the encoding is detected: headings stand at the beginning."""
+UTF16_ZEROS = 0.2
+"""Share of zero bytes at even or odd places from which text is UTF-16 without a mark."""
 
 
-def decoded(content: bytes, filename: str, stated: str | None = None) -> tuple[str, str]:
-    """The text, and how it was written."""
-    encoding = stated or _encoding(content)
+def decoded(content: bytes, filename: str, chosen: str | None = None) -> tuple[str, str]:
+    """The text, and its encoding."""
+    encoding = chosen or _encoding(content)
     try:
         return content.decode(encoding).lstrip("\ufeff"), encoding.removesuffix("-sig")
     except (UnicodeDecodeError, LookupError) as error:
@@ -46,43 +46,43 @@ def _encoding(content: bytes) -> str:
     for mark, encoding in MARKS:
         if content.startswith(mark):
             return encoding
-    start = content[:SAMPLED]
+    start = content[:SAMPLE_BYTES]
     for place, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
-        if start[place::2].count(0) > BARE_ZEROS * len(start):
+        if start[place::2].count(0) > UTF16_ZEROS * len(start):
             return encoding
     try:
         content.decode("utf-8")
     except UnicodeDecodeError:
-        best = from_bytes(bytes(_telling(content)), cp_isolation=CODE_PAGES).best()
+        best = from_bytes(bytes(_non_ascii_lines(content)), cp_isolation=CODE_PAGES).best()
         return "cp1252" if best is None else best.encoding
     return "utf-8"
 
 
-def _telling(content: bytes) -> bytes:
-    """The lines that have letters beyond ASCII: digits tell no code page from another."""
-    lines = content[:SAMPLED].splitlines()
+def _non_ascii_lines(content: bytes) -> bytes:
+    """The lines with letters beyond ASCII: digits do not tell code pages apart."""
+    lines = content[:SAMPLE_BYTES].splitlines()
     return b"\n".join(line for line in lines if any(byte > 127 for byte in line))
 
 
 Cell = str | float | None
 SEPARATORS = (";", "\t", "|", ",")
-"""Of columns, the unlikeliest within a cell first: a comma may be a decimal one."""
-LOOKED_AT = 60
-"""Rows among which the headings are."""
-STEADY = 0.8
-"""Share of the first lines that a separator cuts into equally many cells."""
+"""Of columns, the unlikeliest within a cell first: a comma may be a decimal comma."""
+SCANNED_ROWS = 60
+"""Rows among which the headings are searched."""
+EQUAL_SHARE = 0.8
+"""Share of the first lines that a separator cuts into the same number of cells."""
 NUMBER = re.compile(r"^[+\-−]?[\d \u00a0\u202f']*[.,]?\d+(?:[eEЕ][+\-]?\d+)?$|^[+\-−]?\d+[.,]$")
 """A number with a decimal point or comma, and spaces between thousands."""
 DECIMAL_COMMA = re.compile(r"^[+\-−]?[\d \u00a0\u202f]*,\d+(?:[eE][+\-]?\d+)?$")
 FEWEST = 2
-"""Columns of a table: a text of one is no table, or is parted by something else."""
+"""Columns of a table: text with one column is no table, or has another separator."""
 LONGEST_NUMBER = 40
-"""Characters of one, spaces included."""
+"""Characters of a number, spaces included."""
 LONGEST_HEADING = 200
-"""Characters of a heading that are looked at and kept."""
+"""Characters of a heading that are examined and kept."""
 SPACES = re.compile(r"[ \u00a0\u202f']")
 NOTHING = ("", "-", "–", "—", "nan", "none", "null", "n/a", "na", "нет")
-"""What people write into a cell that says nothing."""
+"""CellKind that count as empty."""
 
 
 @dataclass(frozen=True)
@@ -95,12 +95,12 @@ class Grid:
     columns: tuple[Sequence[Cell], ...]
     """As written: numbers where the file has numbers, else texts, None where empty."""
     taken: Mapping[str, Any]
-    """How it was taken apart: encoding, separator, decimal, sheet, header_row, first_row."""
+    """Settings of the parser: encoding, separator, decimal, sheet, header_row, first_row."""
     sheets: tuple[str, ...] = ()
     meanings: Mapping[str, str] = field(default_factory=dict)
-    """What the file itself says of its columns, by heading."""
+    """What the file states of its columns, by heading."""
     facts: Mapping[str, Any] = field(default_factory=dict)
-    """What it says of the session."""
+    """What it states of the session."""
 
     @property
     def rows(self) -> int:
@@ -108,7 +108,7 @@ class Grid:
         return max(map(len, self.columns), default=0)
 
     def place(self, column: int, row: int) -> str:
-        """Where a cell stands in the file; rows count from 1."""
+        """Place of a cell in the file; rows count from 1."""
         line = row + int(self.taken.get("first_row", 1)) - 1
         if self.kind == "xlsx":
             return say(
@@ -121,7 +121,7 @@ class Grid:
 
 
 def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
-    """The table in a file; ``stated`` are the parts of ``taken`` that were chosen by hand."""
+    """The table in a file; ``stated`` are the settings of ``taken`` that were chosen by hand."""
     if content.startswith(XLSX):
         return _workbook(content, filename, stated)
     for magic, read in ((PARQUET, _parquet), (HDF5, _hdf5), (MAT, _mat)):
@@ -134,7 +134,7 @@ def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
 
 
 def number_of(cell: Cell, decimal: str) -> float | None:
-    """The number that a cell is; None where it is none."""
+    """The number in a cell; None where it is not one."""
     if not isinstance(cell, str):
         return cell
     if len(cell) > LONGEST_NUMBER or not NUMBER.match(cell.strip()):
@@ -149,7 +149,7 @@ def number_of(cell: Cell, decimal: str) -> float | None:
 
 
 def is_nothing(cell: Cell) -> bool:
-    """Whether a cell says nothing."""
+    """Whether a cell is empty or says so."""
     return cell is None or (isinstance(cell, str) and cell.strip().casefold() in NOTHING)
 
 
@@ -164,11 +164,11 @@ def _text(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
 
 
 def _separator(text: str) -> str:
-    """The one that cuts most of the first lines into equally many cells."""
-    lines = [line for line in text[:100_000].split("\n")[:LOOKED_AT] if line.strip()]
+    """The separator that cuts most of the first lines into the same number of cells."""
+    lines = [line for line in text[:100_000].split("\n")[:SCANNED_ROWS] if line.strip()]
     for separator in SEPARATORS:
         counts = [line.count(separator) for line in lines if separator in line]
-        if counts and counts.count(most := max(counts, key=counts.count)) >= STEADY * len(lines) and most:
+        if counts and counts.count(count := max(counts, key=counts.count)) >= EQUAL_SHARE * len(lines) and count:
             return separator
     return max(SEPARATORS, key=text[:10_000].count)
 
@@ -234,35 +234,35 @@ def _headed(
     filename: str,
     sheets: tuple[str, ...] = (),
 ) -> Grid:
-    """The headings found, or where they were said to be, and the rows below them."""
+    """The headings, found or stated, and the rows below them."""
     width = max(map(len, rows), default=0)
     rows = [row + [None] * (width - len(row)) for row in rows]
     first = int(stated.get("first_row") or _first_row(rows)) - 1
     header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
     if not 0 <= first < len(rows):
         raise refusal(
-            filename, "has no row of numbers below its headings; say in which row the readings begin", "table"
+            filename, "has no row of numbers below its headings; state the row where the readings begin", "table"
         )
     headings = _headings(rows[header - 1 : first] if header else [], width)
     columns = tuple([row[k] for row in rows[first:]] for k in range(width))
     if sum(any(not is_nothing(cell) for cell in cells) for cells in columns) < FEWEST:
         raise refusal(filename, "has a single column; a table has one for every sensor", "table")
     decimal = str(stated.get("decimal") or _decimal(columns))
-    places = {"decimal": decimal, "header_row": header, "first_row": first + 1}
-    return Grid(kind, headings, columns, {**taken, **places}, sheets)
+    settings = {"decimal": decimal, "header_row": header, "first_row": first + 1}
+    return Grid(kind, headings, columns, {**taken, **settings}, sheets)
 
 
 def _share(row: Sequence[Cell]) -> float:
-    """Of numbers among the cells that say something."""
-    said = [cell for cell in row if not is_nothing(cell)]
-    return sum(number_of(cell, ",") is not None for cell in said) / len(said) if said else 0.0
+    """Share of numbers among the cells that are not empty."""
+    cells = [cell for cell in row if not is_nothing(cell)]
+    return sum(number_of(cell, ",") is not None for cell in cells) / len(cells) if cells else 0.0
 
 
 def _first_row(rows: list[list[Cell]]) -> int:
-    """The first row, from 1, that is mostly numbers and as full as the rows after it; past the end where none is."""
-    full = sorted(sum(not is_nothing(cell) for cell in row) for row in rows[:LOOKED_AT])
-    usual = full[len(full) // 2] if full else 0
-    for j, row in enumerate(rows[:LOOKED_AT]):
+    """The first row, from 1, that is mostly numbers and as full as the rows after it; past the end if none."""
+    counts = sorted(sum(not is_nothing(cell) for cell in row) for row in rows[:SCANNED_ROWS])
+    usual = counts[len(counts) // 2] if counts else 0
+    for j, row in enumerate(rows[:SCANNED_ROWS]):
         if _share(row) >= 0.5 and 2 * sum(not is_nothing(cell) for cell in row) >= usual:
             return j + 1
     return len(rows) + 1
@@ -272,8 +272,10 @@ def _header_row(rows: list[list[Cell]], first: int) -> int:
     """The upper one of one or two rows of headings right above the readings, from 1; 0 where there is none."""
     if first < 1:
         return 0
-    two = first >= 2 and _is_heading(rows[first - 2]) and (_of_units(rows[first - 1]) or _is_torn(rows[first - 2]))
-    return first - 1 if two else first
+    has_two_rows = (
+        first >= 2 and _is_heading(rows[first - 2]) and (_of_units(rows[first - 1]) or _is_torn(rows[first - 2]))
+    )
+    return first - 1 if has_two_rows else first
 
 
 def _is_heading(row: Sequence[Cell]) -> bool:
@@ -281,17 +283,17 @@ def _is_heading(row: Sequence[Cell]) -> bool:
 
 
 def _of_units(row: Sequence[Cell]) -> bool:
-    said = [str(cell) for cell in row if not is_nothing(cell)]
-    return bool(said) and sum(unit_of(cell) is not None for cell in said) >= 0.5 * len(said)
+    texts = [str(cell) for cell in row if not is_nothing(cell)]
+    return bool(texts) and sum(unit_of(cell) is not None for cell in texts) >= 0.5 * len(texts)
 
 
 def _is_torn(row: Sequence[Cell]) -> bool:
-    """Headings of groups, in merged cells: one of several columns."""
+    """Whether headings of groups stand in merged cells, each over several columns."""
     return any(cell is None for cell in row[1:]) and row[0] is not None
 
 
 def _headings(rows: Sequence[Sequence[Cell]], width: int) -> tuple[str, ...]:
-    """One text a column: group, heading and unit of a column below each other are joined."""
+    """One text a column: group, heading and unit below each other are joined."""
     if not rows:
         return tuple(say("column {k}", k=k + 1) for k in range(width))
     lower = rows[-1]
@@ -300,12 +302,12 @@ def _headings(rows: Sequence[Sequence[Cell]], width: int) -> tuple[str, ...]:
         for k in range(1, width):
             if row[k] is None and lower[k] is not None and not _of_units(lower):
                 row[k] = row[k - 1]
-    above = ([str(row[k]).strip()[:LONGEST_HEADING] for row in parts if row[k] is not None] for k in range(width))
-    return tuple(" ".join(_heading(names).split())[:LONGEST_HEADING] for names in above)
+    columns = ([str(row[k]).strip()[:LONGEST_HEADING] for row in parts if row[k] is not None] for k in range(width))
+    return tuple(" ".join(_heading(names).split())[:LONGEST_HEADING] for names in columns)
 
 
 def _heading(names: Sequence[str]) -> str:
-    """Of a column: what stands above each other, a unit last."""
+    """Heading of a column: the texts above each other, a unit last."""
     if len(names) > 1 and unit_of(names[-1]) is not None:
         unit = names[-1].strip("[]()")
         return f"{' '.join(names[:-1])} [{unit}]"
@@ -313,7 +315,7 @@ def _heading(names: Sequence[str]) -> str:
 
 
 def _decimal(columns: Sequence[Sequence[Cell]]) -> str:
-    texts = [cell for cells in columns for cell in cells[:LOOKED_AT] if isinstance(cell, str)]
+    texts = [cell for cells in columns for cell in cells[:SCANNED_ROWS] if isinstance(cell, str)]
     commas = sum(bool(DECIMAL_COMMA.match(text[:LONGEST_NUMBER])) for text in texts)
     points = sum("." in text and number_of(text, ".") is not None for text in texts)
     return "," if commas > points else "."
@@ -328,8 +330,8 @@ def _hdf5(content: bytes, filename: str) -> Grid:
 
 
 def _mat(content: bytes, filename: str) -> Grid:
-    found = mat.variables(content, filename, most_rows=1)
-    return _named("mat", {name: mat.cells(column) for name, column in found.items()})
+    variables = mat.variables(content, filename, most_rows=1)
+    return _named("mat", {name: mat.cells(column) for name, column in variables.items()})
 
 
 def _named(kind: str, table: Mapping[str, Any]) -> Grid:
@@ -344,8 +346,8 @@ def _named(kind: str, table: Mapping[str, Any]) -> Grid:
 
 
 def _log(log: logs.LogTable) -> Grid:
-    plain = _named("log", log.columns)
-    return replace(plain, meanings=dict(zip(plain.headings, log.meanings, strict=True)), facts=log.facts)
+    grid = _named("log", log.columns)
+    return replace(grid, meanings=dict(zip(grid.headings, log.meanings, strict=True)), facts=log.facts)
 
 
 def _listed(cells: Sequence[Cell] | NDArray[Any]) -> list[Cell]:

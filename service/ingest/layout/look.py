@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Mapping
 from typing import Any
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.ingest import hdf5, mat, parquet
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
@@ -15,26 +16,26 @@ from service.ingest.xlsx import session_sheets, sheet_names
 from service.kit.limits import refusal
 
 
-def fingerprint(seen: Mapping[str, Any]) -> str:
-    """SHA-256 of the headings of a first look, in small letters and without spaces."""
-    headings = ["".join(column["heading"].casefold().split()) for column in seen["columns"]]
+def fingerprint(preview: Mapping[str, Any]) -> str:
+    """SHA-256 of the headings of a preview, in lower case and without spaces."""
+    headings = ["".join(column["heading"].casefold().split()) for column in preview["columns"]]
     return hashlib.sha256("\n".join(headings).encode()).hexdigest()
 
 
 SHOWN = 5
-"""First cells of a column."""
+"""First cells of a column that are shown."""
 MOST_COLUMNS = 300
-"""That a mapping is made for; a table with more is another matter."""
+"""Columns that a mapping can have; a table with more is another matter."""
 MOST_WORDS = 12
-"""Different texts of a column that says what each row is."""
+"""Distinct texts of a column of labels."""
 LONGEST_CELL = 60
 """Characters of a cell that are shown."""
 MOSTLY = 0.5
-"""Share of numbers from which a column is one of numbers."""
+"""Share of numbers from which a column counts as numeric."""
 
 
 def is_session(content: bytes, filename: str) -> bool:
-    """Whether a file says itself that it is imu-session/1, rightly or wrongly, or cannot be a table at all."""
+    """Whether a file claims to be imu-session/1, rightly or wrongly, or cannot be a table at all."""
     if is_wrapped(content):
         return True
     if content.startswith(XLSX):
@@ -47,13 +48,13 @@ def is_session(content: bytes, filename: str) -> bool:
         return hdf5.has_metadata(content, filename)
     if content.startswith(MAT):
         return mat.VARIABLE in mat.variables(content, filename, most_rows=1)
-    start = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
-    return not start or start[:1] in b"{[" or (start[:1] == b"#" and start.lstrip(b"# \t")[:1] == b"{")
+    head = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    return not head or head[:1] in b"{[" or (head[:1] == b"#" and head.lstrip(b"# \t")[:1] == b"{")
 
 
 def look(content: bytes, filename: str) -> object:
-    """The first look at a table, or at one with what is said of it already."""
-    table, stated = content, dict[str, Any]()
+    """Preview of a table, with the settings of its mapping where it has one."""
+    table, stated = content, Json()
     if is_wrapped(content):
         document, table = unwrapped(content, filename)
         stated = dict(layout_of(document, filename).table)
@@ -62,7 +63,7 @@ def look(content: bytes, filename: str) -> object:
     grid = grid_of(table, filename, stated)
     if len(grid.headings) > MOST_COLUMNS:
         text = say(
-            "has {headings} columns; a mapping takes at most {most_columns}; take out what is not needed",
+            "has {headings} columns; a mapping takes at most {most_columns}; remove those not needed",
             headings=len(grid.headings),
             most_columns=MOST_COLUMNS,
         )
@@ -78,19 +79,19 @@ def look(content: bytes, filename: str) -> object:
     }
 
 
-def _column(heading: str, cells: Any, grid: Grid) -> dict[str, Any]:
+def _column(heading: str, cells: Any, grid: Grid) -> Json:
     decimal = str(grid.taken.get("decimal", "."))
-    said = [cell for cell in cells if not is_nothing(cell)]
-    numbers = sum(number_of(cell, decimal) is not None for cell in said)
-    words = list(dict.fromkeys(word_text(cell)[:LONGEST_CELL] for cell in said[:10_000]))
+    filled = [cell for cell in cells if not is_nothing(cell)]
+    numbers = sum(number_of(cell, decimal) is not None for cell in filled)
+    words = list(dict.fromkeys(word_text(cell)[:LONGEST_CELL] for cell in filled[:10_000]))
     first = next((j for j, cell in enumerate(cells) if not is_nothing(cell)), len(cells))
     return {
         "heading": heading,
         "cells": [_shown(cell) for cell in cells[:SHOWN]],
-        "numeric": bool(said) and numbers >= MOSTLY * len(said),
-        "empty": not said,
+        "numeric": bool(filled) and numbers >= MOSTLY * len(filled),
+        "empty": not filled,
         "words": words if len(words) <= MOST_WORDS else [],
-        "holes": first == 0 and len(said) < len(cells),
+        "holes": first == 0 and len(filled) < len(cells),
         "meaning": grid.meanings.get(heading),
     }
 

@@ -1,27 +1,30 @@
-"""`imu-mapping/1`: how a table of one's own layout is read. Checked here, once, with every fault by its place."""
+"""`imu-mapping/1`: how a table of custom layout is read. Checked here, once; every fault is named with its place."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from estimator.errors import FormatError, Problem
+from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.reading.keys import COLUMNS, TOP
 from estimator.reading.problems import shown
 
 FORMAT = "imu-mapping/1"
-"""What ``format`` says."""
+"""Value of ``format``."""
 PARTS = ("format", "table", "columns", "session")
 TABLE = {"encoding": str, "separator": str, "decimal": str, "sheet": str, "header_row": int, "first_row": int}
-"""How the file is taken apart, as far as that is said."""
+"""Settings of the parser, as far as stated."""
 COLUMN = {"heading": str, "as": str, "unit": str, "words": dict, "fill_down": bool}
-"""What is said of a column."""
+"""Fields of a column."""
 MOST_ROW = 1_048_576
-"""Of a spreadsheet."""
+"""Rows of a spreadsheet."""
 LONGEST = 1000
 """Characters of a heading or a word."""
-ASKED_ANEW = ("unit", "started_at", "operator", "notes", "stage", "origin")
-"""Of the session; everything else is the same next time."""
+PER_FILE_FIELDS = (
+    "unit", "started_at", "powered_on_at", "time_since_power_on_s", "operator", "notes", "stage", "origin",
+)  # fmt: skip
+"""Fields of a session that differ from file to file; the others are kept for the next one."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +33,11 @@ class ColumnMapping:
 
     heading: str
     meaning: str | None
-    """A column of a session, a sensor or a sensor's standard error; None where it is left out."""
+    """A column of a session, a sensor or a sensor's standard error; None where it is ignored."""
     unit: str = ""
     words: Mapping[str, str] = field(default_factory=dict)
     fill_down: bool = False
-    """Whether an empty cell says what the one above says, as in merged cells."""
+    """Whether an empty cell repeats the one above, as in merged cells."""
 
 
 @dataclass(frozen=True)
@@ -61,27 +64,27 @@ def layout_of(document: Mapping[str, Any], filename: str) -> Layout:
     return Layout(dict(document.get("table", {})), columns, dict(document.get("session", {})))
 
 
-def _column(given: Mapping[str, Any]) -> ColumnMapping:
-    words = {str(word): str(meaning) for word, meaning in given.get("words", {}).items()}
-    unit, fill = given.get("unit") or "", bool(given.get("fill_down", False))
-    return ColumnMapping(given.get("heading", ""), given.get("as") or None, unit, words, fill)
+def _column(document: Mapping[str, Any]) -> ColumnMapping:
+    words = {str(word): str(meaning) for word, meaning in document.get("words", {}).items()}
+    unit, fill = document.get("unit") or "", bool(document.get("fill_down", False))
+    return ColumnMapping(document.get("heading", ""), document.get("as") or None, unit, words, fill)
 
 
 def _wrong_format(document: Mapping[str, Any]) -> list[Problem]:
-    found = [
+    problems = [
         Problem(key, say("is not a part of a mapping; it has {parts}", parts=joined(", ", PARTS)))
         for key in document
         if key not in PARTS
     ]
     if document.get("format") != FORMAT:
-        found.append(Problem("format", say('must be "{format}"', format=FORMAT)))
-    return found
+        problems.append(Problem("format", say('must be "{format}"', format=FORMAT)))
+    return problems
 
 
 def _wrong_table(table: Any) -> list[Problem]:
     if not isinstance(table, Mapping):
         return [Problem("table", say("is {table}; must be an object", table=shown(table)))]
-    found = [
+    problems = [
         Problem(f"table.{key}", say("is unknown; give {table}", table=joined(", ", TABLE)))
         for key in table
         if key not in TABLE
@@ -89,7 +92,7 @@ def _wrong_table(table: Any) -> list[Problem]:
     for key, kind in TABLE.items():
         value = table.get(key)
         if key in table and (not isinstance(value, kind) or isinstance(value, bool)):
-            found.append(
+            problems.append(
                 Problem(
                     f"table.{key}",
                     (
@@ -100,41 +103,41 @@ def _wrong_table(table: Any) -> list[Problem]:
                 )
             )
         elif isinstance(value, int) and not (0 if key == "header_row" else 1) <= value <= MOST_ROW:
-            found.append(Problem(f"table.{key}", say("is {value}; must be a row of the file", value=value)))
+            problems.append(Problem(f"table.{key}", say("is {value}; must be a row of the file", value=value)))
     if "separator" in table and len(str(table["separator"])) != 1:
-        found.append(Problem("table.separator", "must be one character"))
+        problems.append(Problem("table.separator", "must be one character"))
     if table.get("decimal", ".") not in (".", ","):
-        found.append(Problem("table.decimal", "must be . or ,"))
-    return found
+        problems.append(Problem("table.decimal", "must be . or ,"))
+    return problems
 
 
 def _wrong_columns(columns: Any) -> list[Problem]:
     if not isinstance(columns, list | tuple):
         return [Problem("columns", say("is {columns}; must be a list", columns=shown(columns)))]
-    found, seen = [], set()
+    problems, seen = [], set()
     for number, column in enumerate(columns, start=1):
         place = f"columns[{number}]"
         if not isinstance(column, Mapping):
-            found.append(
+            problems.append(
                 Problem(place, say("is {column}; must be an object with heading and as", column=shown(column)))
             )
             continue
-        found += _wrong_column(place, column)
+        problems += _wrong_column(place, column)
         meaning = column.get("as")
         if isinstance(meaning, str) and meaning in seen:
-            found.append(
+            problems.append(
                 Problem(
                     f"{place}.as",
-                    say("{meaning} is what another column is read as; leave one out", meaning=shown(meaning)),
+                    say("another column is also read as {meaning}; remove one", meaning=shown(meaning)),
                 )
             )
         seen.add(meaning if isinstance(meaning, str) and meaning else None)
         seen.discard(None)
-    return found
+    return problems
 
 
 def _wrong_column(place: str, column: Mapping[str, Any]) -> list[Problem]:
-    found = [
+    problems = [
         Problem(f"{place}.{key}", say("is unknown; give {column}", column=joined(", ", COLUMN)))
         for key in column
         if key not in COLUMN
@@ -142,17 +145,17 @@ def _wrong_column(place: str, column: Mapping[str, Any]) -> list[Problem]:
     for key, kind in COLUMN.items():
         value = column.get(key)
         if value is not None and not isinstance(value, kind):
-            found.append(Problem(f"{place}.{key}", say("is {value}; must be of another kind", value=shown(value))))
+            problems.append(Problem(f"{place}.{key}", say("is {value}; must be of another kind", value=shown(value))))
         elif isinstance(value, str) and len(value) > LONGEST:
-            found.append(Problem(f"{place}.{key}", say("is longer than {longest} characters", longest=LONGEST)))
-    return found
+            problems.append(Problem(f"{place}.{key}", say("is longer than {longest} characters", longest=LONGEST)))
+    return problems
 
 
 def _wrong_session(session: Any) -> list[Problem]:
     if not isinstance(session, Mapping):
         return [Problem("session", say("is {session}; must be an object", session=shown(session)))]
-    held = [key for key in ("format", "table") if key in session]
-    return [Problem(f"session.{key}", "is not given in a mapping; it follows from the file") for key in held]
+    extra_keys = [key for key in ("format", "table") if key in session]
+    return [Problem(f"session.{key}", "is not given in a mapping; it follows from the file") for key in extra_keys]
 
 
 def meanings(sensors: list[str]) -> tuple[str, ...]:
@@ -160,9 +163,9 @@ def meanings(sensors: list[str]) -> tuple[str, ...]:
     return (*sensors, *COLUMNS, *(f"{name}_se" for name in sensors))
 
 
-def remembered(document: Mapping[str, Any]) -> dict[str, Any]:
-    """What holds for the next file of the layout too."""
-    session = {key: value for key, value in document.get("session", {}).items() if key not in ASKED_ANEW}
+def remembered(document: Mapping[str, Any]) -> Json:
+    """The mapping for the next file of this layout."""
+    session = {key: value for key, value in document.get("session", {}).items() if key not in PER_FILE_FIELDS}
     return {**document, "session": session}
 
 

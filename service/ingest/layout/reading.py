@@ -1,4 +1,4 @@
-"""Cells under a mapping → imu-session/1, in the units of a session; where each cell stands in the file is kept."""
+"""CellKind under a mapping → imu-session/1, in the units of a session, with the place of each cell in the file."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -15,7 +15,7 @@ from service.ingest.layout.vocabulary import conversion, target_label
 
 FORMAT = "imu-session/1"
 WORDS = ("run", "position")
-"""Columns that hold words."""
+"""Columns of words."""
 CLOCK = re.compile(r"^(?:(?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(?:[.,]\d+)?)$")
 """A time of day, or minutes and seconds."""
 DAY = 86_400.0
@@ -23,67 +23,66 @@ DAY = 86_400.0
 
 
 def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where]:
-    """The session's document, and which cell of the file a field and row stand in."""
+    """The session's document, and a function from field and row to the cell in the file."""
     grid = grid_of(content, filename, layout.table)
     problems = [*_other_columns(grid, layout), *_unit_problems(layout)]
     if problems:
         raise FormatError(problems, filename)
     decimal = str(grid.taken.get("decimal", "."))
-    used = [(k, column) for k, column in enumerate(layout.columns) if column.meaning]
-    kept = _kept_rows([grid.columns[k] for k, _ in used])
-    table = {str(c.meaning): _read([grid.columns[k][j] for j in kept], c, layout, decimal) for k, c in used}
-    places = {str(c.meaning): k for k, c in used}
+    mapped_columns = [(k, column) for k, column in enumerate(layout.columns) if column.meaning]
+    rows = _kept_rows([grid.columns[k] for k, _ in mapped_columns])
+    table = {str(c.meaning): _read([grid.columns[k][j] for j in rows], c, layout, decimal) for k, c in mapped_columns}
+    places = {str(c.meaning): k for k, c in mapped_columns}
 
     def where(field: str, row: int | None) -> str:
-        if field not in places or not kept:
+        if field not in places or not rows:
             return ""
         heading = layout.columns[places[field]].heading
         if row is None:
             return say("column {heading}", heading=shown(heading))
-        return grid.place(places[field], kept[min(row, len(kept)) - 1] + 1)
+        return grid.place(places[field], rows[min(row, len(rows)) - 1] + 1)
 
     return {**layout.session, "format": FORMAT, "table": table}, where
 
 
 def _kept_rows(columns: Sequence[Sequence[Cell]]) -> list[int]:
-    """Rows in which any column that is read says something: a line left empty between two runs is none."""
+    """Rows with a value in any mapped column: an empty line between two runs is none."""
     rows = max(map(len, columns), default=0)
     return [j for j in range(rows) if any(not is_nothing(cells[j]) for cells in columns)]
 
 
 def _other_columns(grid: Grid, layout: Layout) -> list[Problem]:
-    """A mapping is for the headings it names."""
-    named = [column.heading for column in layout.columns]
-    if list(grid.headings) == named:
+    """A mapping applies only to the headings it names."""
+    expected = [column.heading for column in layout.columns]
+    if list(grid.headings) == expected:
         return []
-    missing = [heading for heading in named if heading not in grid.headings]
-    detail = say("; {shown} is not among them", shown=joined(", ", map(shown, missing[:5]))) if missing else ""
+    missing = [heading for heading in expected if heading not in grid.headings]
+    detail = say("; {names} is not among them", names=joined(", ", map(shown, missing[:5]))) if missing else ""
     return [
-        Problem(
-            "columns", say("are not those of the file{detail}; make the mapping anew from its preview", detail=detail)
-        )
+        Problem("columns", say("are not those of the file{detail}; make a new mapping from its preview", detail=detail))
     ]
 
 
 def _unit_problems(layout: Layout) -> list[Problem]:
-    """Units that cannot be turned into those of the session."""
+    """Units that cannot be converted to those of the session."""
     return [
         Problem(
             column.meaning or "",
             say(
-                "is in {unit}, which cannot be turned into {wanted}; choose the unit of column {heading}",
+                "is in {unit}, which cannot be converted to {target_unit}; choose the unit of column {heading}",
                 unit=shown(column.unit),
-                wanted=wanted,
+                target_unit=wanted,
                 heading=shown(column.heading),
             ),
         )
         for column in layout.columns
-        if column.meaning and conversion(column.unit, wanted := _wanted(column.meaning, layout) or column.unit) is None
+        if column.meaning
+        and conversion(column.unit, wanted := _target_unit(column.meaning, layout) or column.unit) is None
     ]
 
 
-def _wanted(meaning: str, layout: Layout) -> str:
-    """The unit of a session's column; of readings the sensor's, empty where it is not said yet."""
+def _target_unit(meaning: str, layout: Layout) -> str:
+    """Unit of a column of the session; of readings the sensor's, empty where it is not stated yet."""
     sensors = layout.session.get("sensors")
     for sensor in sensors if isinstance(sensors, list | tuple) else ():
         if isinstance(sensor, dict) and meaning in (sensor.get("name"), f"{sensor.get('name')}_se"):
@@ -92,7 +91,7 @@ def _wanted(meaning: str, layout: Layout) -> str:
 
 
 def _read(cells: list[Cell], column: ColumnMapping, layout: Layout, decimal: str) -> object:
-    """A column of the session: words as they mean, numbers in its unit, anything else as it was written."""
+    """A column of the session: words by their meaning, numbers in its unit, anything else as written."""
     if column.fill_down:
         cells = _filled_down(cells)
     if column.meaning in WORDS:
@@ -100,13 +99,13 @@ def _read(cells: list[Cell], column: ColumnMapping, layout: Layout, decimal: str
     numbers = [None if is_nothing(cell) else number_of(cell, decimal) for cell in cells]
     if column.meaning == "time_s" and all(number is None for number in numbers):
         return _clock(cells)
-    whole = _in_unit(column, layout)
-    return [cell if n is None and not is_nothing(cell) else whole(n) for n, cell in zip(numbers, cells, strict=True)]
+    convert = _in_unit(column, layout)
+    return [cell if n is None and not is_nothing(cell) else convert(n) for n, cell in zip(numbers, cells, strict=True)]
 
 
 def _in_unit(column: ColumnMapping, layout: Layout) -> Callable[[float | None], float | None]:
-    wanted = _wanted(column.meaning or "", layout)
-    times, over, offset = conversion(column.unit, wanted) or (1.0, 1.0, 0.0)
+    target = _target_unit(column.meaning or "", layout)
+    times, over, offset = conversion(column.unit, target) or (1.0, 1.0, 0.0)
     if column.meaning and column.meaning.endswith("_se"):
         offset = 0.0
     return lambda number: None if number is None else number * times / over + offset
@@ -127,26 +126,26 @@ def word_text(cell: Cell) -> str:
 
 
 def _filled_down(cells: list[Cell]) -> list[Cell]:
-    found: list[Cell] = []
+    filled: list[Cell] = []
     for cell in cells:
-        found.append(found[-1] if is_nothing(cell) and found else cell)
-    return found
+        filled.append(filled[-1] if is_nothing(cell) and filled else cell)
+    return filled
 
 
 def _clock(cells: Sequence[Cell]) -> list[Cell]:
-    """Dates and times of day as seconds since the first; what is none stays as it is."""
+    """Dates and times of day as seconds since the first; anything else unchanged."""
     seconds = [_seconds(cell) for cell in cells]
     start = next((s for s in seconds if s is not None), 0.0)
-    turned: list[Cell] = []
-    days, before = 0.0, start
+    times: list[Cell] = []
+    days, last = 0.0, start
     for cell, second in zip(cells, seconds, strict=True):
         if second is None:
-            turned.append(cell)
+            times.append(cell)
             continue
-        days += DAY if second < DAY and second + days < before - DAY / 2 else 0.0
-        before = second + days
-        turned.append(before - start)
-    return turned
+        days += DAY if second < DAY and second + days < last - DAY / 2 else 0.0
+        last = second + days
+        times.append(last - start)
+    return times
 
 
 def _seconds(cell: Cell) -> float | None:

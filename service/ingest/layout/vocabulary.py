@@ -1,4 +1,4 @@
-"""Words that people head columns with, in English and Russian, and what they mean in a session."""
+"""Words of column headings in English and Russian, and their meaning in a session."""
 
 from dataclasses import dataclass
 from math import pi
@@ -7,7 +7,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
-class Unit:
+class UnitOfMeasure:
     """A number in this unit is number · times / over + offset in the first unit of its quantity."""
 
     quantity: str
@@ -17,52 +17,52 @@ class Unit:
 
 
 SPELLINGS = {
-    Unit("voltage"): "v в volt volts вольт",
-    Unit("voltage", over=1e3): "mv мв millivolt",
-    Unit("voltage", over=1e6): "µv uv мкв microvolt",
-    Unit("current"): "amp ampere ампер",
-    Unit("current", over=1e3): "ma ма",
-    Unit("current", over=1e6): "µa ua мка",
-    Unit("count"): "count counts cnt lsb code adc отсч отсчет отсчеты код ед емр",
-    Unit("pulse"): "pulse pulses imp имп импульс импульсы",
-    Unit("acceleration"): "m/s² m/s2 m/s^2 м/с² м/с2 м/с^2",
-    Unit("acceleration", STANDARD_GRAVITY): "g",
-    Unit("acceleration", STANDARD_GRAVITY, 1e3): "mg мg",
-    Unit("acceleration", STANDARD_GRAVITY, 1e6): "µg ug мкg",
-    Unit("acceleration", over=1e2): "gal",
-    Unit("rate"): "rad/s рад/с",
-    Unit("rate", pi, 180): "°/s deg/s dps °/с град/с",
-    Unit("rate", pi, 180 * 3600): "°/h deg/h °/ч град/ч °/hr",
-    Unit("angle"): "deg degree degrees ° град градус градусы",
-    Unit("angle", 180, pi): "rad рад",
-    Unit("angle", 180e-3, pi): "mrad мрад",
-    Unit("angle", over=60): "arcmin ' ′ угл.мин мин.дуги",
-    Unit("angle", over=3600): 'arcsec " ″ угл.с угл.сек',
-    Unit("time"): "s с sec сек second seconds секунды",
-    Unit("time", over=1e3): "ms мс msec",
-    Unit("time", over=1e6): "µs us мкс",
-    Unit("time", 60): "min мин minutes минуты",
-    Unit("time", 3600): "h ч hr hours час часы",
-    Unit("temperature"): "°c c degc celsius °с",
-    Unit("temperature", offset=-273.15): "k к kelvin",
-    Unit("temperature", 5, 9, -160 / 9): "°f f degf fahrenheit",
+    UnitOfMeasure("voltage"): "v в volt volts вольт",
+    UnitOfMeasure("voltage", over=1e3): "mv мв millivolt",
+    UnitOfMeasure("voltage", over=1e6): "µv uv мкв microvolt",
+    UnitOfMeasure("current"): "amp ampere ампер",
+    UnitOfMeasure("current", over=1e3): "ma ма",
+    UnitOfMeasure("current", over=1e6): "µa ua мка",
+    UnitOfMeasure("count"): "count counts cnt lsb code adc отсч отсчет отсчеты код ед емр",
+    UnitOfMeasure("pulse"): "pulse pulses imp имп импульс импульсы",
+    UnitOfMeasure("acceleration"): "m/s² m/s2 m/s^2 м/с² м/с2 м/с^2",
+    UnitOfMeasure("acceleration", STANDARD_GRAVITY): "g",
+    UnitOfMeasure("acceleration", STANDARD_GRAVITY, 1e3): "mg мg",
+    UnitOfMeasure("acceleration", STANDARD_GRAVITY, 1e6): "µg ug мкg",
+    UnitOfMeasure("acceleration", over=1e2): "gal",
+    UnitOfMeasure("rate"): "rad/s рад/с",
+    UnitOfMeasure("rate", pi, 180): "°/s deg/s dps °/с град/с",
+    UnitOfMeasure("rate", pi, 180 * 3600): "°/h deg/h °/ч град/ч °/hr",
+    UnitOfMeasure("angle"): "deg degree degrees ° град градус градусы",
+    UnitOfMeasure("angle", 180, pi): "rad рад",
+    UnitOfMeasure("angle", 180e-3, pi): "mrad мрад",
+    UnitOfMeasure("angle", over=60): "arcmin ' ′ угл.мин мин.дуги",
+    UnitOfMeasure("angle", over=3600): 'arcsec " ″ угл.с угл.сек',
+    UnitOfMeasure("time"): "s с sec сек second seconds секунды",
+    UnitOfMeasure("time", over=1e3): "ms мс msec",
+    UnitOfMeasure("time", over=1e6): "µs us мкс",
+    UnitOfMeasure("time", 60): "min мин minutes минуты",
+    UnitOfMeasure("time", 3600): "h ч hr hours час часы",
+    UnitOfMeasure("temperature"): "°c c degc celsius °с",
+    UnitOfMeasure("temperature", offset=-273.15): "k к kelvin",
+    UnitOfMeasure("temperature", 5, 9, -160 / 9): "°f f degf fahrenheit",
 }
-"""Every unit with its spellings, in small letters; the first of a quantity is what others are turned into."""
+"""Every unit with its spellings in lower case; others are converted to the first of a quantity."""
 BY_SPELLING = {word: unit for unit, words in SPELLINGS.items() for word in words.split()}
 PLAIN = {unit: words.split()[0] for unit, words in SPELLINGS.items()}
 MICRO = str.maketrans({"μ": "µ", "º": "°", "˚": "°"})
-"""Letters that look alike."""
+"""Characters that look alike."""
 SHOWN = {
     "v": "V", "mv": "mV", "µv": "µV", "amp": "A", "ma": "mA", "µa": "µA", "°c": "°C", "k": "K", "°f": "°F",
     "gal": "Gal",
 }  # fmt: skip
-"""As they are written, where that is not in small letters."""
+"""As they are written, where that is not in lower case."""
 TARGETS = {"beta_deg": "deg", "turn_angle_deg": "deg", "time_s": "s", "temperature_c": "°c", "vibration_m_s2": "m/s²"}
 """Columns of a session with the unit of each; rates of a table are in °/s."""
 
 
-def unit_of(label: str) -> Unit | None:
-    """The unit that a label stands for; None where it is not known. A single A is ampere."""
+def unit_of(label: str) -> UnitOfMeasure | None:
+    """The unit of a label; None where it is not known. A single A is ampere."""
     word = label.strip().strip("[]()").translate(MICRO).replace(" ", "").rstrip(".")
     if word in ("A", "А"):
         return BY_SPELLING["amp"]
@@ -78,7 +78,7 @@ def plain_label(label: str) -> str:
 
 
 def target_label(meaning: str) -> str:
-    """The unit that a column of a session is in; empty where it has none."""
+    """Unit of a column of a session; empty where it has none."""
     return "°/s" if meaning == "turn_rate_deg_s" else plain_label(TARGETS.get(meaning, ""))
 
 
@@ -86,13 +86,13 @@ def conversion(label: str, wanted: str) -> tuple[float, float, float] | None:
     """(times, over, offset) from one unit to another; None where they measure different things."""
     if label.strip().casefold() == wanted.strip().casefold() or not label.strip():
         return 1.0, 1.0, 0.0
-    given, goal = unit_of(label), unit_of(wanted)
-    if given is None or goal is None or given.quantity != goal.quantity:
+    source, target = unit_of(label), unit_of(wanted)
+    if source is None or target is None or source.quantity != target.quantity:
         return None
-    if given == goal:
+    if source == target:
         return 1.0, 1.0, 0.0
-    times, over = given.times * goal.over, given.over * goal.times
-    return times, over, (given.offset - goal.offset) * goal.over / goal.times
+    times, over = source.times * target.over, source.over * target.times
+    return times, over, (source.offset - target.offset) * target.over / target.times
 
 
 MEANINGS = {
@@ -108,13 +108,13 @@ MEANINGS = {
     "direction_y": "directiony diry upy",
     "direction_z": "directionz dirz upz",
 }
-"""Columns of a session and how they are headed, in small letters without spaces and marks."""
+"""Columns of a session and their headings, in lower case without spaces and punctuation."""
 BY_WORD = {word: meaning for meaning, words in MEANINGS.items() for word in words.split()}
 ASIDE = (
     "№", "n", "no", "num", "number", "nr", "row", "строка", "номер", "п/п", "nпп", "№пп", "нпп", "comment", "comments",
     "note", "notes", "примечание",
 )  # fmt: skip
-"""Columns that say nothing of the sensors."""
+"""Columns unrelated to the sensors."""
 SENSOR_WORDS = {
     "accelerometer": "A", "acc": "A", "accel": "A", "a": "A", "акселерометр": "A", "ак": "A", "акс": "A", "aк": "A",
     "gyroscope": "G", "gyro": "G", "gyr": "G", "g": "G", "w": "G", "гироскоп": "G", "дус": "G", "гиро": "G",
@@ -122,12 +122,12 @@ SENSOR_WORDS = {
 }  # fmt: skip
 """Words before the number or axis of a sensor, and the letter that its name begins with here."""
 ERROR_WORDS = ("se", "std", "sigma", "σ", "ско", "err", "error", "stderr", "погрешность", "sd", "uncertainty")
-"""Beside a sensor's name: the standard error of its reading."""
+"""Next to a sensor's name: the standard error of its reading."""
 DIRECT = ("direct", "forward", "прямой", "прямая", "прямо", "прям", "пр", "normal", "d")
 FLIPPED = (
     "flipped", "reverse", "reversed", "inverted", "backward", "обратный", "обратная", "обратно", "обр",
     "перевернутый", "перевернутая", "f", "r",
 )  # fmt: skip
-"""What the two runs are called."""
+"""Words for the two runs."""
 LOOK_ALIKE = str.maketrans("АВСЕНКМОРТХавсеорхуё", "ABCEHKMOPTXaвсеорхуе")
 """Cyrillic capitals that a sensor's name may be typed with."""

@@ -21,8 +21,8 @@ DAMAGED = (
     LookupError,
     OverflowError,
 )
-"""What the libraries raise on files that were cut off or written over."""
-UNREADABLE = "is damaged or breaks off before its end; record or copy it again, or mend it with `mcap recover`"
+"""Raised by the libraries for truncated or overwritten files."""
+UNREADABLE = "is damaged or truncated; record or copy it again, or repair it with `mcap recover`"
 
 
 def read(content: bytes, filename: str) -> Contents:

@@ -10,8 +10,8 @@ from service.ingest.logs.table import LogTable, Stream, log_table
 from service.kit.limits import refusal
 
 Read = Callable[[bytes, str], "Contents"]
-ROOMS = {ULOG: "ulog", MCAP: "mcap_file", SQLITE: "sqlite_bag"}
-"""Modules beside this one that read them; each needs a library."""
+MODULES = {ULOG: "ulog", MCAP: "mcap_file", SQLITE: "sqlite_bag"}
+"""Modules beside this one; each needs a library."""
 
 
 @dataclass(frozen=True)
@@ -20,21 +20,21 @@ class Contents:
 
     streams: Sequence[Stream]
     facts: dict[str, object]
-    """What it says of the session besides."""
+    """What it states of the session."""
 
 
 def log_of(content: bytes, filename: str) -> LogTable | None:
-    """The table of a log; None of any other file."""
-    room = next((room for magic, room in ROOMS.items() if content.startswith(magic)), None)
-    if room is None:
+    """The table of a log; None for any other file."""
+    module = next((module for magic, module in MODULES.items() if content.startswith(magic)), None)
+    if module is None:
         return None
-    found = _reader(room, filename)(content, filename)
-    return log_table(found.streams, filename, found.facts)
+    log = _reader(module, filename)(content, filename)
+    return log_table(log.streams, filename, log.facts)
 
 
-def _reader(room: str, filename: str) -> Read:
+def _reader(module: str, filename: str) -> Read:
     try:
-        read: Read = import_module(f"service.ingest.logs.{room}").read
+        read: Read = import_module(f"service.ingest.logs.{module}").read
     except ModuleNotFoundError as fault:
         text = say(
             "is a log, for which the library {name} is missing here: run pip install 'imu-health[logs]'",

@@ -25,15 +25,15 @@ CDR = "cdr"
 """How ROS 2 writes messages, as bags name it."""
 NANOSECOND = 1e-9
 EARLIEST, LATEST = 946_684_800.0, 4_102_444_800.0
-"""2000 and 2100, s since 1970: a clock that is outside counts from something else."""
+"""2000 and 2100, s since 1970: a clock outside counts from something else."""
 COLUMNS = 9
-"""Of an instance: two times, three rates, three accelerations, and which of both there are."""
+"""Of an instance: two times, three rates, three accelerations, and which of the two are present."""
 Message = tuple[str, int, bytes]
 """Topic, time of the log in ns, content."""
 DAMAGED = (SerdeError, ValueError, IndexError, TypeError, OverflowError)
-"""What the library raises on content that is no such message."""
-WRONG = "holds a message of {topic} that is no {kind}; record it again"
-NONE = "holds no topic of {kind}; record the raw IMUs"
+"""Raised by the library for malformed content."""
+WRONG = "contains a message of {topic} that is not {kind}; record it again"
+NONE = "contains no topic of {kind}; record the raw IMU data"
 
 
 def contents(messages: Iterable[Message], filename: str) -> Contents:
@@ -46,8 +46,8 @@ def contents(messages: Iterable[Message], filename: str) -> Contents:
             raise refusal(filename, say(WRONG, topic=topic, kind=IMU), "table") from fault
     if not rows:
         raise refusal(filename, say(NONE, kind=IMU), "table")
-    found = {topic: np.frombuffer(cells).reshape(-1, COLUMNS) for topic, cells in sorted(rows.items())}
-    streams = [stream for topic, table in found.items() for stream in _streams(topic, table)]
+    tables = {topic: np.frombuffer(cells).reshape(-1, COLUMNS) for topic, cells in sorted(rows.items())}
+    streams = [stream for topic, table in tables.items() for stream in _streams(topic, table)]
     return Contents(streams, _facts(streams))
 
 
@@ -61,8 +61,8 @@ def _row(logged: int, content: bytes) -> tuple[float, ...]:
     rate, force = message.angular_velocity, message.linear_acceleration
     missing = 2 * (message.angular_velocity_covariance[0] == -1) + (message.linear_acceleration_covariance[0] == -1)
     stamp = message.header.stamp
-    taken = stamp.sec + NANOSECOND * stamp.nanosec
-    return taken, NANOSECOND * logged, rate.x, rate.y, rate.z, force.x, force.y, force.z, float(missing)
+    stamped_at = stamp.sec + NANOSECOND * stamp.nanosec
+    return stamped_at, NANOSECOND * logged, rate.x, rate.y, rate.z, force.x, force.y, force.z, float(missing)
 
 
 def _streams(topic: str, table: Array) -> Iterator[Stream]:
@@ -75,6 +75,6 @@ def _streams(topic: str, table: Array) -> Iterator[Stream]:
 
 
 def _facts(streams: Iterable[Stream]) -> dict[str, object]:
-    """When it was measured, where the clock says that."""
+    """When it was measured, where the clock is plausible."""
     first = max((float(stream.time[0]) for stream in streams if len(stream.time)), default=0.0)
     return {"started_at": datetime.fromtimestamp(first, UTC).isoformat()} if EARLIEST < first < LATEST else {}

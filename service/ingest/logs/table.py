@@ -1,8 +1,8 @@
-"""Streams of several IMUs, each with its own times → rows that all of them share: means over equal spans of time.
+"""Streams of several IMUs, each with its own times → common rows: means over equal spans of time.
 
-A row is the mean of what came within its span. Where a stream has nothing in it, because the log dropped samples, the
-row is left out for all. Means of white noise are as good as its samples for what is done next, which is averaging over
-rests; a log of an hour becomes a table that can be held.
+A row is the mean of the samples within its span. Where a stream has none, because the log dropped samples, the row is
+left out for all. For white noise, averages of means are as good as averages of samples, and averaging over rests is
+what follows; a log of an hour becomes a table of moderate size.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,7 +24,7 @@ class Stream:
     """One instance of an accelerometer or a gyro with three axes, in the order measured."""
 
     label: str
-    """What the log calls it, with its instance."""
+    """Name in the log, with its instance."""
     kind: str
     """`accelerometer` or `gyroscope`."""
     time: Array
@@ -36,12 +36,12 @@ class Stream:
 
     @property
     def unit(self) -> str:
-        """Of its values."""
+        """Unit of its values."""
         return "m/s²" if self.kind == ACCELEROMETER else "rad/s"
 
 
 def in_order(stream: Stream) -> Stream:
-    """Without samples that are no numbers, by time: of two clocks in one log one may lag behind."""
+    """Finite samples, by time: of two clocks in one log one may lag behind."""
     sound = np.isfinite(stream.time) & np.isfinite(stream.values).all(axis=1)
     order = np.flatnonzero(sound)[np.argsort(stream.time[sound], kind="stable")]
     temperature = None if stream.temperature is None else stream.temperature[order]
@@ -54,32 +54,32 @@ usual limits."""
 SAMPLES = 2.0
 """Of the slowest stream in a row, so that its jitter leaves no row empty."""
 SLOWEST = 4.0
-"""Samples a second of any stream at least: with fewer nobody sees when the block rests."""
+"""Samples a second of any stream at least: with fewer a rest cannot be recognised."""
 FEWEST = 100
-"""Samples below which a stream is not one that is logged all along."""
+"""Samples below which a stream counts as not logged throughout."""
 AXES = "xyz"
 
 
 @dataclass(frozen=True)
 class LogTable:
-    """A log as a table that says itself what its columns are."""
+    """A log as a table with the meaning of its columns."""
 
     columns: dict[str, Array]
     """By heading."""
     meanings: tuple[str, ...]
-    """What each column is read as."""
+    """Meaning of each column."""
     facts: dict[str, object]
-    """What it says of the session: imu-session/1 without its table."""
+    """What it states of the session: imu-session/1 without its table."""
 
 
 def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]) -> LogTable:
-    """All streams on one clock; FormatError where they have none in common, or there is no accelerometer."""
-    sound = [in_order(stream) for stream in streams]
-    ordered = [stream for stream in sound if len(stream.time) >= FEWEST]
+    """All streams on one clock; FormatError where their times do not overlap, or there is no accelerometer."""
+    cleaned = [in_order(stream) for stream in streams]
+    ordered = [stream for stream in cleaned if len(stream.time) >= FEWEST]
     if not any(stream.kind == ACCELEROMETER for stream in ordered):
         raise refusal(
             filename,
-            say("holds no accelerometer with {fewest} samples or more; log the raw IMUs", fewest=FEWEST),
+            say("contains no accelerometer with at least {fewest} samples; log the raw IMU data", fewest=FEWEST),
             "table",
         )
     start = max(float(stream.time[0]) for stream in ordered)
@@ -89,9 +89,9 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
         raise refusal(
             filename,
             say(
-                "has an IMU with {slowest} samples a second; at least {slowest2} are needed",
-                slowest=f"{slowest:.3g}",
-                slowest2=f"{SLOWEST:g}",
+                "has an IMU with {rate} samples a second; at least {lowest_rate} are needed",
+                rate=f"{slowest:.3g}",
+                lowest_rate=f"{SLOWEST:g}",
             ),
             "table",
         )
@@ -101,38 +101,42 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
         raise refusal(filename, "has IMUs that were not logged at the same time; their times do not overlap", "table")
     check_table(filename, int(rows), 3 * len(ordered) + 2)
     table = _table(ordered, _Clock(start, round(rate, 3), int(rows)))
-    notes = [str(facts.get("notes", "")), *_left_out(streams, sound), *_torn(len(table.columns["time [s]"]), int(rows))]
-    said = joined(" ", filter(None, notes))
-    return replace(table, facts={**facts, **table.facts, **({"notes": said} if said else {})})
+    notes = [
+        str(facts.get("notes", "")),
+        *_left_out(streams, cleaned),
+        *_torn(len(table.columns["time [s]"]), int(rows)),
+    ]
+    text = joined(" ", filter(None, notes))
+    return replace(table, facts={**facts, **table.facts, **({"notes": text} if text else {})})
 
 
-def _left_out(streams: Sequence[Stream], sound: Sequence[Stream]) -> Iterator[str]:
-    """What of a log is not in its table."""
-    for stream, kept in zip(streams, sound, strict=True):
-        if len(kept.time) < len(stream.time):
-            gone = len(stream.time) - len(kept.time)
+def _left_out(streams: Sequence[Stream], cleaned: Sequence[Stream]) -> Iterator[str]:
+    """Samples and streams that are not in the table."""
+    for stream, clean in zip(streams, cleaned, strict=True):
+        if len(clean.time) < len(stream.time):
+            lost = len(stream.time) - len(clean.time)
             yield say_count(
-                "{label}: {n} sample left out for want of a number.",
-                "{label}: {n} samples left out for want of a number.",
-                gone,
+                "{label}: {n} sample without a number left out.",
+                "{label}: {n} samples without a number left out.",
+                lost,
                 label=stream.label,
             )
-        if len(kept.time) < FEWEST:
+        if len(clean.time) < FEWEST:
             yield say(
-                "{label} has {time} only and was left out.", label=stream.label, time=counted(len(kept.time), "sample")
+                "{label} has {time} only and was left out.", label=stream.label, time=counted(len(clean.time), "sample")
             )
 
 
-def _torn(kept: int, rows: int) -> Iterator[str]:
-    if kept < rows:
-        yield say("{rows} of {rows2} rows left out: some IMU says nothing there.", rows=rows - kept, rows2=rows)
+def _torn(row_count: int, rows: int) -> Iterator[str]:
+    if row_count < rows:
+        yield say("{number} of {rows} rows left out: an IMU has no data there.", number=rows - row_count, rows=rows)
 
 
 def _rate(stream: Stream) -> float:
-    """Samples a second; of two at one time each counts."""
+    """Samples a second; two samples at one time both count."""
     steps = np.diff(stream.time)
-    usual = float(np.median(steps[steps > 0])) if np.any(steps > 0) else 1.0
-    return 1.0 / usual
+    interval = float(np.median(steps[steps > 0])) if np.any(steps > 0) else 1.0
+    return 1.0 / interval
 
 
 @dataclass(frozen=True)
@@ -164,30 +168,32 @@ class _Clock:
 def _table(streams: Sequence[Stream], clock: _Clock) -> LogTable:
     columns, meanings, sensors = {"time [s]": clock.times}, ["time_s"], []
     for kind, letter in ((ACCELEROMETER, "A"), (GYROSCOPE, "G")):
-        own = [stream for stream in streams if stream.kind == kind]
-        for place, stream in enumerate(own):
+        streams_of_kind = [stream for stream in streams if stream.kind == kind]
+        for place, stream in enumerate(streams_of_kind):
             means = clock.means(stream, stream.values)
             for axis, name in enumerate(AXES):
                 columns[f"{stream.label} {name} [{stream.unit}]"] = means[:, axis]
                 meanings.append(f"{letter}{3 * place + axis + 1}")
                 sensors.append(_sensor(meanings[-1], stream, axis))
-    warm = next((stream for stream in streams if _is_warm(stream)), None)
-    if warm is not None and warm.temperature is not None:
-        columns[f"{warm.label} temperature [°C]"] = clock.means(warm, warm.temperature[:, None])[:, 0]
+    warm_stream = next((stream for stream in streams if _is_warm(stream)), None)
+    if warm_stream is not None and warm_stream.temperature is not None:
+        columns[f"{warm_stream.label} temperature [°C]"] = clock.means(warm_stream, warm_stream.temperature[:, None])[
+            :, 0
+        ]
         meanings.append("temperature_c")
-    whole = np.isfinite(np.column_stack(list(columns.values()))).all(axis=1)
-    said = {"block": ACCELEROMETER, "programme": "arbitrary-orientations", "sample_rate_hz": clock.rate}
-    kept = {heading: column[whole] for heading, column in columns.items()}
-    return LogTable(kept, tuple(meanings), {**said, "sensors": sensors})
+    is_complete = np.isfinite(np.column_stack(list(columns.values()))).all(axis=1)
+    facts = {"block": ACCELEROMETER, "programme": "arbitrary-orientations", "sample_rate_hz": clock.rate}
+    complete = {heading: column[is_complete] for heading, column in columns.items()}
+    return LogTable(complete, tuple(meanings), {**facts, "sensors": sensors})
 
 
 def _is_warm(stream: Stream) -> bool:
-    """Whether it says its temperature, and not for ever nothing."""
+    """Whether it has a temperature throughout."""
     return stream.temperature is not None and bool(np.isfinite(stream.temperature).all())
 
 
 def _sensor(name: str, stream: Stream, axis: int) -> dict[str, object]:
-    """In SI and along the axes of the log: how it is calibrated is what the session will tell."""
+    """In SI and along the axes of the log: its calibration is what the session determines."""
     entry: dict[str, object] = {
         "name": name,
         "nominal_axis": [float(k == axis) for k in range(len(AXES))],

@@ -24,18 +24,18 @@ MICROSECOND = 1e-6
 HEADER = 16
 """Bytes before the first message."""
 KNOWN = frozenset(b"BFIMPQARDLCSO")
-"""Types of message; others are skipped, unless their header is that of no message."""
+"""Types of message; others are skipped, unless their header is invalid."""
 LONGEST = 10_000
-"""Bytes of an unknown message that is still taken for one, as the library does."""
+"""Bytes of an unknown message that is still accepted, as by the library."""
 DAMAGED = (ULogException, struct.error, ValueError, LookupError, TypeError, AttributeError, OverflowError)
-"""What the library raises on files that were cut off or written over."""
-BROKEN = "is damaged within: some of its messages cannot be read; copy it from the card again"
-CUT = "The log breaks off within a message, as where the power went: what came before it is read."
+"""Raised by the library for truncated or overwritten files."""
+BROKEN = "is damaged: some of its messages cannot be read; copy it from the card again"
+CUT = "The log ends within a message, as after a loss of power; everything before that was read."
 UNREADABLE = "is damaged or not a readable ULog file; copy it from the card again"
 
 
 def read(content: bytes, filename: str) -> Contents:
-    """The IMUs of a log; FormatError where it is damaged. One that breaks off at its end is read up to there."""
+    """The IMUs of a log; FormatError where it is damaged. A truncated one is read up to its end."""
     end = _end_of_messages(content, filename)
     try:
         with redirect_stdout(io.StringIO()):  # the library prints what it thinks of a file
@@ -65,14 +65,14 @@ def _combined(log: ULog) -> Iterator[Stream]:
 
 
 def _time(data: dict[str, Array]) -> Array:
-    """When a sample was taken, where that is logged besides when it was published."""
+    """Time of sampling where it is logged, else of publishing."""
     sampled = data.get("timestamp_sample")
-    chosen = sampled if sampled is not None and np.all(sampled > 0) else data["timestamp"]
-    return MICROSECOND * chosen.astype(float)
+    stamps = sampled if sampled is not None and np.all(sampled > 0) else data["timestamp"]
+    return MICROSECOND * stamps.astype(float)
 
 
 def _facts(log: ULog, *, is_whole: bool) -> dict[str, object]:
-    """Serial number of the flight controller, and what was lost."""
+    """Serial number of the flight controller, and lost samples."""
     lost = sum(dropout.duration for dropout in log.dropouts)
     notes: list[str] = (
         [say("The logger dropped {lost} ms of samples in {dropouts} gaps.", lost=lost, dropouts=len(log.dropouts))]
@@ -81,21 +81,21 @@ def _facts(log: ULog, *, is_whole: bool) -> dict[str, object]:
     )
     notes += [] if is_whole else [CUT]
     serial = log.msg_info_dict.get("sys_uuid")
-    said = {"unit": serial if isinstance(serial, str) else "", "notes": " ".join(notes)}
-    return {key: text for key, text in said.items() if text}
+    facts = {"unit": serial if isinstance(serial, str) else "", "notes": " ".join(notes)}
+    return {key: text for key, text in facts.items() if text}
 
 
 def _end_of_messages(content: bytes, filename: str) -> int:
-    """Where the last whole message ends: each has its length before it. FormatError where there are no messages.
+    """End of the last complete message: each begins with its length. FormatError where there are no messages.
 
-    The library goes back by the length that a header states, and for ever where the file has fewer bytes.
+    The library seeks back by the length that a header states, and loops for ever where the file has fewer bytes.
     """
-    at = HEADER
-    while at + 3 <= len(content):
-        size, kind = int.from_bytes(content[at : at + 2], "little"), content[at + 2]
+    offset = HEADER
+    while offset + 3 <= len(content):
+        size, kind = int.from_bytes(content[offset : offset + 2], "little"), content[offset + 2]
         if kind not in KNOWN and (kind == 0 or not 0 < size <= LONGEST):
             raise refusal(filename, BROKEN)
-        if at + 3 + size > len(content):
+        if offset + 3 + size > len(content):
             break
-        at += 3 + size
-    return at
+        offset += 3 + size
+    return offset

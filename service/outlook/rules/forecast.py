@@ -7,11 +7,12 @@ from datetime import datetime, timedelta
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.health.detection import Change, Warmth
+from estimator.health.detection import Change
 from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
 from estimator.health.pooled import Prior
 from estimator.health.prognosis import Outlook, Prognosis, prognosis
 from estimator.health.shapes import Kind
+from estimator.health.warmth import Warmth
 from service.kit.measures import YEAR
 from service.outlook.records import (
     Action,
@@ -126,9 +127,9 @@ def _change(change: Change, tolerance: float, dates: tuple[datetime, ...]) -> Fo
 
 
 def _coefficient(warmth: Warmth, tolerance: float) -> TemperatureCoefficient:
-    value, sigma = warmth.coefficient, warmth.sigma
-    length = float(value[0]) if len(value) == 1 else float(np.hypot(*value))
-    return TemperatureCoefficient(length * tolerance, float(sigma.max()) * tolerance, warmth.p_value, warmth.is_found)
+    value, *curved = (float(size[0]) if len(size) == 1 else float(np.hypot(*size)) for size in warmth.size * tolerance)
+    sigma = float(warmth.sigma.max()) * tolerance
+    return TemperatureCoefficient(value, sigma, warmth.p_value, warmth.is_found, curved[0] if curved else None)
 
 
 def _after(start: datetime, years: float) -> datetime | None:

@@ -1,16 +1,18 @@
 """Step: judged changes since the last break → a history of each parameter, and what it tells of the unit's type."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
+from math import hypot
 
 import numpy as np
 
 from estimator.health.pooled import Evidence
 from estimator.health.prognosis import Track, evidence
+from estimator.health.warmth import shows_temperature
 from estimator.session import comparable
 from service.kit.measures import YEAR
-from service.outlook.store import ChangeRow, ReferenceRow
+from service.outlook.store import FOLLOW, ChangeRow, ReferenceRow
 from service.sessions.records import HistoryPoint
 from service.units.records import Service
 
@@ -97,6 +99,27 @@ class TrackKey:
     parameter: str
 
 
+Place = tuple[str, str, str]
+"""A session, a sensor and a parameter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What is left of a change without what a diagnosis explains of it."""
+
+    change: list[float]
+    own: list[float]
+    """Its standard uncertainty that the session brings."""
+    dof: float | None
+    part: list[float]
+    """That was taken off; all SI or relative."""
+
+
+NOTHING_EXPLAINED: dict[Place, Left] = {}
+WORTH_TELLING = 0.1
+"""Part of the tolerance from which on it is said that a diagnosis explains it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Histories:
     """Every parameter of a unit since its last break."""
@@ -105,18 +128,34 @@ class Histories:
     tracks: tuple[Track, ...]
     dates: tuple[tuple[datetime, ...], ...]
     """Of every track's sessions, the reference included."""
+    left: Mapping[Place, Left] = field(default_factory=dict)
+    """Of changes that a diagnosis explains in part."""
+
+    def explained_in(self, session: str) -> tuple[tuple[TrackKey, float], ...]:
+        """What a diagnosis explains of a session's changes, the lengths SI or relative, where it is worth telling."""
+        each = ((key, track, self.left.get((session, key.sensor, key.parameter))) for key, track in self._tracks())
+        sizes = ((key, track, hypot(*left.part)) for key, track, left in each if left is not None)
+        return tuple((key, size) for key, track, size in sizes if size >= WORTH_TELLING * track.tolerance)
+
+    def _tracks(self) -> Iterable[tuple[TrackKey, Track]]:
+        return zip(self.keys, self.tracks, strict=True)
+
+
+def histories(
+    changes: Sequence[ChangeRow], references: Sequence[ReferenceRow], left: Mapping[Place, Left] = NOTHING_EXPLAINED
+) -> Histories:
+    """In the order in which sensors and parameters were first judged; of changes that a diagnosis explains in part,
+    what is left."""
+    groups = _groups(changes, references)
+    dated = [_track(key, rows, reference, left) for key, (rows, reference) in groups.items()]
+    return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated), left)
 
 
 Group = tuple[list[ChangeRow], ReferenceRow]
+Measured = tuple[list[float], list[float]]
+"""Change, and its uncertainty."""
 Point = tuple[datetime, list[float], list[float], float | None, float | None]
 """Date, change, its uncertainty with its degrees of freedom, temperature."""
-
-
-def histories(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) -> Histories:
-    """In the order in which sensors and parameters were first judged."""
-    groups = _groups(changes, references)
-    dated = [_track(rows, reference) for rows, reference in groups.values()]
-    return Histories(tuple(groups), tuple(track for track, _ in dated), tuple(at for _, at in dated))
 
 
 def told_of_type(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
@@ -142,14 +181,20 @@ def _groups(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) ->
     return groups
 
 
-def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, tuple[datetime, ...]]:
+def _track(
+    key: TrackKey, rows: Sequence[ChangeRow], reference: ReferenceRow, left: Mapping[Place, Left]
+) -> tuple[Track, tuple[datetime, ...]]:
     """The sessions of a parameter with its reference among them, in order of time.
 
     A change's degrees of freedom are those of both its sessions; the reference counts with the fewest.
     """
     fewest = min((row.dof for row in rows if row.dof is not None), default=None)
-    origin: Point = (reference.at, [0.0] * len(rows[-1].change), rows[-1].origin, fewest, reference.temperature)
-    points = sorted([origin, *((row.at, row.change, row.own, row.dof, row.temperature) for row in rows)], key=_date)
+    still = ([0.0] * len(rows[-1].change), rows[-1].origin)
+    judged: tuple[Measured, ...] = (still, *((row.change, row.own) for row in rows))
+    sessions = ((reference, fewest), *((row, row.dof) for row in rows))
+    explained = (left.get((of.session, key.sensor, key.parameter)) for of, _ in sessions)
+    changes = zip(sessions, _as_measured(rows, reference) or judged, explained, strict=True)
+    points = sorted((_point(of, change, dof, part) for (of, dof), change, part in changes), key=_date)
     start = points[0][0]
     track = Track(
         time=np.array([(at - start) / YEAR for at, *_ in points]),
@@ -160,6 +205,34 @@ def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, t
         temperature=np.array([np.nan if warm is None else warm for *_, warm in points]),
     )
     return track, tuple(at for at, *_ in points)
+
+
+def _point(of: ChangeRow | ReferenceRow, measured: Measured, dof: float | None, left: Left | None) -> Point:
+    """One session's change, without what a diagnosis explains of it."""
+    change, own = measured
+    if left is None:
+        return of.at, change, own, dof, of.temperature
+    return of.at, np.subtract(change, left.part).tolist(), left.own, left.dof, of.temperature
+
+
+def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Measured, ...] | None:
+    """The reference's change and those of the rows, nothing taken off, where the sessions span temperature; None of a
+    parameter that does not follow it.
+
+    What all sensors have in common is what a majority agrees on: of sensors that each follow the temperature by a law
+    of their own it is another one at each temperature, and what is left of them follows none.
+    """
+    warm = np.array([reference.temperature, *(row.temperature for row in rows)], dtype=float)
+    first = reference.u.get((rows[-1].sensor, rows[-1].parameter))
+    if rows[-1].parameter not in FOLLOW or first is None or not shows_temperature(warm):
+        return None
+    points = [(row.value, row.reference, row.u) for row in rows]
+    if any(None in point for point in points):
+        return None
+    values = np.array(points, dtype=float)
+    one = values[:, 1] if rows[-1].parameter == "scale" else np.ones(len(rows))
+    change, u = (values[:, 0] - values[:, 1]) / one, values[:, 2] / np.abs(one)
+    return (([0.0], [first / abs(one[-1])]), *(([float(d)], [float(s)]) for d, s in zip(change, u, strict=True)))
 
 
 def _date(point: Point) -> datetime:

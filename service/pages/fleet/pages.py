@@ -5,19 +5,20 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.message import joined, say_count
-from service.fleet.condition import FleetCondition, UnitSummary
+from service.fleet.condition import ConditionCount, FleetCondition, ToleranceUsed, UnitSummary
 from service.fleet.records import FleetChoices
 from service.groups.sections import FoundLine
+from service.judging.records import Usable
+from service.judging.use import Use, in_words
 from service.outlook.rules.populations import Standout
-from service.outlook.words import needed_now
-from service.pages.fleet.view import DUE, FIRST, ORDERS, PAGE_SIZE, FleetView
+from service.pages.fleet.view import DUE, FleetView
 from service.pages.saved import Saved
 from service.people.views import ListPage
-from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
 from service.sessions.states import Questioned
-from service.sessions.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
+from service.sessions.words.conditions import Condition, condition_of
 from service.stands.records import StandCondition
+from service.web.list_view import Shown
 
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
@@ -32,8 +33,11 @@ class Margin:
     """How much of its tolerance a parameter uses up, uncertainty included: as words and as a bar."""
 
     words: str
+    """``83 ± 71 %``."""
     used: float
-    """Length of the bar: 100 is the tolerance."""
+    """Length of the bar of the deviation: 100 is the tolerance."""
+    reach: float
+    """Where U ends."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +58,12 @@ class FleetRow:
     flags: str
     """``2 flags``; empty where none is open."""
     due: datetime | None
-    """Of the next calibration."""
+    """Of the next calibration; None where something else must be done first."""
+    use: Use
+    said: str
+    """What it may be used for, and what to do."""
     next: str
-    """What is needed where no date is set: ``act now``."""
+    """What is needed where no date counts: ``repeat the session``."""
     overdue: bool
 
 
@@ -68,8 +75,6 @@ class Tile:
     count: int
     reserved: int
     """Of how many of them the verdict is said with a reservation."""
-    references: int
-    """Of how many of them the latest session is a reference."""
     chosen: bool
     url: str
 
@@ -82,10 +87,7 @@ class FleetPage:
     tiles: tuple[Tile, ...]
     rows: tuple[FleetRow, ...]
     total: int
-    earlier: str
-    """Address of the page before this one; empty where it is the first."""
-    later: str
-    """Address of the next page; empty where it is the last."""
+    shown: Shown[UnitSummary]
     simulated: int
     flags: str
     """How many are open on all units together, in words; empty where none is."""
@@ -103,15 +105,15 @@ class FleetPage:
     """What the list can be narrowed to."""
     dates: Mapping[str, str]
     """Choices of the next calibration's date, in words."""
-    orders: Mapping[str, str]
-    """Of the list, in words."""
+    pending: str
+    """What is still being worked out; empty where nothing is."""
     saved: Saved
     """Views of the list that were kept."""
 
     @property
     def first(self) -> int:
         """Number of the first unit on this page, counted from 1."""
-        return (self.view.page - 1) * PAGE_SIZE + 1
+        return (self.view.page - 1) * self.view.PAGE_SIZE + 1
 
     @property
     def last(self) -> int:
@@ -122,8 +124,8 @@ class FleetPage:
 def fleet_page(
     condition: FleetCondition,
     units: Sequence[UnitSummary],
+    uses: Mapping[str, Usable],
     view: FleetView,
-    now: datetime,
     *,
     overdue: int = 0,
     together: FoundLine | None = None,
@@ -131,18 +133,17 @@ def fleet_page(
     stands: Sequence[StandCondition] = (),
     questioned: Sequence[Questioned] = (),
     choices: FleetChoices = NO_CHOICES,
+    pending: str = "",
     kept: Saved = NONE_SAVED,
 ) -> FleetPage:
-    """One page of units; one more than fit on it says that there are others in the direction of reading."""
-    backwards, others = bool(view.before), len(units) > PAGE_SIZE
-    shown = units[-PAGE_SIZE:] if backwards else units[:PAGE_SIZE]
+    """One page of units."""
+    shown = Shown.of(view, units, lambda unit: unit.serial)
     return FleetPage(
         view=view,
-        tiles=tuple(_tile(v, condition, view) for v in reversed(condition.verdicts)),
-        rows=tuple(fleet_row(unit, now) for unit in shown),
+        tiles=tuple(_tile(one, view) for one in condition.counts),
+        rows=tuple(fleet_row(unit, uses[unit.serial]) for unit in shown.entries),
         total=condition.units,
-        earlier=_earlier(view, shown),
-        later=_later(view, shown) if backwards or others else "",
+        shown=shown,
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
         stands=tuple(stands),
@@ -154,35 +155,15 @@ def fleet_page(
         else "",
         choices=choices,
         dates=DUE,
-        orders=ORDERS,
+        pending=pending,
         saved=kept,
     )
 
 
-def _earlier(view: FleetView, shown: Sequence[UnitSummary]) -> str:
-    """The first page is read from its beginning, so that nothing new is missed before it."""
-    if view.page == 1:
-        return ""
-    if view.page == 2 or not shown:
-        return view.url(**FIRST)
-    return view.url(page=view.page - 1, before=shown[0].serial, after="")
-
-
-def _later(view: FleetView, shown: Sequence[UnitSummary]) -> str:
-    return view.url(page=view.page + 1, after=shown[-1].serial, before="") if shown else ""
-
-
-def _tile(verdict: Verdict, fleet: FleetCondition, view: FleetView) -> Tile:
-    condition = condition_of(verdict)
-    chosen = view.condition == condition.key
-    return Tile(
-        condition=condition,
-        count=fleet.verdicts[verdict],
-        reserved=fleet.reserved.get(verdict, 0),
-        references=fleet.references if verdict is Verdict.UNDECIDABLE else 0,
-        chosen=chosen,
-        url=view.url(condition="" if chosen else condition.key, **FIRST),
-    )
+def _tile(one: ConditionCount, view: FleetView) -> Tile:
+    chosen = view.condition == one.condition.key
+    url = view.first(condition="" if chosen else one.condition.key)
+    return Tile(one.condition, one.count, one.reserved, chosen, url)
 
 
 def flags_in_words(count: int) -> str:
@@ -195,7 +176,7 @@ def worst_in_words(unit: UnitSummary) -> str:
     return joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter)))
 
 
-def fleet_row(unit: UnitSummary, now: datetime) -> FleetRow:
+def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
     """One unit of a list."""
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     return FleetRow(
@@ -205,21 +186,21 @@ def fleet_row(unit: UnitSummary, now: datetime) -> FleetRow:
         reservations=unit.reservations,
         reason=unit.reason,
         worst=worst_in_words(unit),
-        margin=None if condition in (UNDECIDED, REFERENCE) else margin_of(unit.margin),
+        margin=None if unit.used is None else margin_of(unit.used),
         last_at=unit.last_at,
         last_session=unit.last_session,
         sessions=unit.sessions,
         simulated=unit.simulated,
         flags=flags_in_words(unit.flags),
-        due=unit.due,
-        next=needed_now(unit.verdict, known=unit.last_session is not None),
-        overdue=unit.due is not None and unit.due < now,
+        due=usable.due,
+        use=usable.use,
+        said=in_words(usable.use, usable.action),
+        next=usable.action,
+        overdue=usable.is_overdue,
     )
 
 
-def margin_of(margin: float | None) -> Margin | None:
-    """1 − (|d| + U)/T as what is used of T; None when nothing was judged."""
-    if margin is None:
-        return None
-    used = 100 * (1 - margin)
-    return Margin(f"{used:.0f} %", min(max(used, 0.0), BAR_LIMIT))
+def margin_of(used: ToleranceUsed) -> Margin:
+    """In per cent of the tolerance."""
+    deviation, expanded = 100 * used.deviation, 100 * used.expanded
+    return Margin(used.words, min(deviation, BAR_LIMIT), min(deviation + expanded, BAR_LIMIT))

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
+from pydantic import BaseModel, ConfigDict, Field
 
 from estimator.message import say
 from service.errors import NotFoundError
@@ -12,9 +13,10 @@ from service.judging.records import said
 from service.papers.certified import traceability_of
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
-from service.records.changes import set_stage
+from service.records.changes import set_mark, set_stage
 from service.records.dependencies import ReceptionOf
 from service.records.event_schemas import NewStage
+from service.records.reception import Reception
 from service.sessions.calibrations_store import Calibrations, Noises
 from service.sessions.decision import Verdict
 from service.sessions.records import NoiseDocument, SessionOrder, SessionQuery
@@ -29,13 +31,13 @@ from service.sessions.schemas import (
     SessionReportAnswer,
     said_session,
 )
-from service.sessions.states import RecordState
+from service.sessions.states import RecordState, Step
 from service.sessions.store import Sessions
 from service.uploads.api import LaterOf
-from service.uploads.receive import receive, receive_mapped
+from service.uploads.receive import deriving, receive, receive_mapped
 from service.uploads.received import REQUEST_BODY, FileOf
 from service.web.dependencies import Now, Reading
-from service.web.fields import Bound, Revision, SessionId, Text, WindowOf
+from service.web.fields import Bound, Name, Reason, Revision, SessionId, Text, WindowOf
 from service.web.problem_document import errors
 from service.work.api import JobAnswer
 
@@ -134,7 +136,7 @@ def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
     found = Noises(store).get(id)
     if found is None:
         raise NotFoundError(
-            say("Session {id} tells nothing of noise: it holds no rests, or was not looked at yet.", id=id)
+            say("Session {id} has no noise results: it contains no rest periods, or is not evaluated yet.", id=id)
         )
     return NoiseDocument.model_validate(found.to_dict())
 
@@ -143,6 +145,30 @@ def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
 def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, person: PersonOf) -> SaidSession:
     """Say whether the session shows the unit as found or as left; the file's own word gives way to this."""
     return said_session(set_stage(storage, id, new.stage, person.signs(new.by), now))
+
+
+class NewCheck(BaseModel):
+    """Whether a session is only a check."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"is_check": True, "by": "K. Ito", "why": "after transport"}}
+    )
+
+    is_check: bool = Field(description="A check is judged and kept, and moves no due date.")
+    by: Name = Field(description="Who says so.")
+    why: Reason = Field(description="Why.")
+
+
+@router.put("/{id}/check", responses=errors(400, 404, 422))
+def mark_check(id: SessionId, new: NewCheck, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
+    """Say that a session is only a check, or a calibration after all; its unit's dates are worked out again."""
+    return _marked(reception, id, Step(person.signs(new.by), now, new.why), "check", is_so=new.is_check)
+
+
+def _marked(reception: Reception, id: str, step: Step, word: str, *, is_so: bool) -> SaidSession:
+    session = set_mark(reception.storage, deriving(reception, step.at), id, step, word, is_so=is_so)
+    reception.ring()
+    return said_session(session)
 
 
 @router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422, 500)}, response_class=Response)

@@ -15,6 +15,7 @@ from estimator.message import joined, say
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 from service.errors import ConflictError
+from service.fleet.condition import ToleranceUsed
 from service.judging.judge import judge
 from service.kit.measures import PARAMETER_NAMES, day_of, measured
 from service.pages.fleet.pages import Margin, margin_of
@@ -44,7 +45,7 @@ OF_TWO = "Session {first} is of unit {one} and session {second} of unit {other}:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class ComparisonView:
     """The earlier session and the later one."""
 
     first: StoredSession
@@ -65,7 +66,7 @@ class Comparison:
         return self.first.stand if self.first.stand == self.second.stand else None
 
 
-def compare(store: Store, a: str, b: str, coverage_factor: float) -> Comparison:
+def compare(store: Store, a: str, b: str, coverage_factor: float) -> ComparisonView:
     """Two sessions of one unit by their date, whichever is named first; NotFoundError, ConflictError."""
     if a == b:
         raise ConflictError(SAME)
@@ -75,7 +76,7 @@ def compare(store: Store, a: str, b: str, coverage_factor: float) -> Comparison:
         raise ConflictError(say(OF_TWO, **named))
     known = Calibrations(store).in_force((first.id, second.id))
     before, after = known[first.id], known[second.id]
-    return Comparison(
+    return ComparisonView(
         first=first,
         second=second,
         before=before,
@@ -134,19 +135,19 @@ def _axis_repeatability(calibration: Calibration, sensor: SensorCalibration) -> 
 
 DIRECT = "They are compared directly, so the reference that both are judged against plays no part in the difference."
 ONE_STAND = (
-    "Both were measured on stand {stand}: unless it was set anew between them, its constant errors act on both alike "
-    "and cancel in the difference. “On one stand” leaves them out; ± U counts them in full for each, as the decision "
-    "rule does, and is the larger of the two."
+    "Both were measured on stand {stand}: unless it was realigned between them, its constant errors cancel in the "
+    "difference. “On one stand” excludes them; ± U includes them in full for each, as the decision rule does, and is "
+    "the larger of the two."
 )
 TWO_STANDS = (
     "They were measured on different stands, {first} and {second}: the constant errors of each count in full, and what "
     "differs between the stands is part of the difference."
 )
-NO_STAND = "They were not both measured on a stand: the errors of each count in full."
-SERVICED = "Between them the unit was serviced ({days}): a change may be what was done to it."
+NO_STAND = "Not both were measured on a stand: the errors of each count in full."
+SERVICED = "The unit was serviced between them ({days}): a change may come from the service."
 OTHER_MODEL = (
-    "They were calibrated with different causes in the model, revisions {first} and {second}: a part of the difference "
-    "may be the model's."
+    "They were calibrated with different causes in the model, revisions {first} and {second}: part of the difference "
+    "may come from the model."
 )
 OTHER_METHOD = "They were measured in different ways, {first} and {second}."
 
@@ -170,11 +171,11 @@ def _stand(first: str | None, second: str | None) -> str:
     return say(ONE_STAND, stand=first) if first == second else say(TWO_STANDS, first=first, second=second)
 
 
-NOT_COMPARED = "not told by both"
+NOT_COMPARED = "not determined by both"
 
 
 @dataclass(frozen=True)
-class ChangeRow:
+class ParameterChangeRow:
     """One parameter of one sensor."""
 
     sensor: str
@@ -202,14 +203,14 @@ class ComparisonPage:
     reason: str
     in_common: tuple[str, ...]
     motions: tuple[MotionLine, ...]
-    rows: tuple[ChangeRow, ...]
+    rows: tuple[ParameterChangeRow, ...]
     """By sensor, as they stand in the file."""
     has_own: bool
     """Whether both were measured on one stand."""
     coverage: str
 
 
-def comparison_page(found: Comparison) -> ComparisonPage:
+def comparison_page(found: ComparisonView) -> ComparisonPage:
     """The page of a comparison."""
     judged = {(d.sensor, d.parameter): d for d in found.judged.decisions}
     k = nominal_factor_of(found.judged.decisions)
@@ -242,13 +243,13 @@ def _row(
     now: SensorCalibration,
     parameter: str,
     decision: Decision | None,
-    way: tuple[Comparison, float],
-) -> ChangeRow:
+    way: tuple[ComparisonView, float],
+) -> ParameterChangeRow:
     found, k = way
     units = reading_units(found.after)
     own = found.own.get((now.name, parameter))
     known = decision if decision is not None and decision.deviation is not None else None
-    return ChangeRow(
+    return ParameterChangeRow(
         sensor=now.name,
         parameter=PARAMETER_NAMES[parameter],
         before="–" if then is None else value_in_words(then, parameter, k, units.get(now.name, "")),
@@ -256,9 +257,16 @@ def _row(
         change=NOT_COMPARED if known is None else deviation_in_words(known),
         on_one_stand="" if known is None or own is None else _own(known, own),
         tolerance=tolerance_in_words(decision),
-        used=None if known is None else margin_of(known.margin),
+        used=None if known is None else _used(known),
         condition=None if known is None else condition_of(known.verdict),
     )
+
+
+def _used(decision: Decision) -> Margin | None:
+    if decision.deviation is None or decision.expanded is None:
+        return None
+    used = ToleranceUsed(abs(decision.deviation) / decision.tolerance, decision.expanded / decision.tolerance)
+    return margin_of(used)
 
 
 def _own(decision: Decision, spread: float) -> str:

@@ -40,14 +40,14 @@ from service.sessions.records import ALL_PARAMETERS, DiagnosisSummary, StoredSes
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import MEANINGS, STATES, Condition, condition_of, state_in_words
 from service.sessions.words.motion import MotionLine, motions_in_words
-from service.sessions.words.readings import FitWords, bands_in_words, combination_in_words, fit_in_words
+from service.sessions.words.readings import FitWords, bands_in_words, combination_in_words, fit_in_words, switched_on
 
 NOTHING_KNOWN = Remedies()
 """Of a session that counts."""
 
 
 @dataclass(frozen=True)
-class Cell:
+class ParameterCell:
     """One parameter of one sensor."""
 
     parameter: str
@@ -66,13 +66,13 @@ class SensorRow:
 
     name: str
     kind: str
-    cells: tuple[Cell, ...]
+    cells: tuple[ParameterCell, ...]
     known: tuple[str, ...]
     """What is known of parameters that the session cannot tell apart."""
 
 
 @dataclass(frozen=True)
-class SessionPage:
+class SessionView:
     """Everything a session's page shows."""
 
     session: StoredSession
@@ -92,6 +92,8 @@ class SessionPage:
     rule: str
     coverage: str
     size: str
+    switched_on: str
+    """How long before the first reading; empty where the file does not say."""
     diagnosis: DiagnosisLine
     gives_correction: bool
     """Whether its programme calibrates every sensor of the block."""
@@ -126,7 +128,7 @@ def session_page(
     model: Sequence[ModelRevision] = (),
     computed: Sequence[int] = (),
     said: Remarks | None = None,
-) -> SessionPage:
+) -> SessionView:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
     units = reading_units(calibration)
@@ -135,7 +137,7 @@ def session_page(
     coverage = nominal_factor_of(decisions)
     noise = noise_of(calibration.residuals, calibration)
     parity = None if calibration.parity is None else ParityResult.from_dict(calibration.parity)
-    return SessionPage(
+    return SessionView(
         session=report.session,
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
         reservations=report.session.reservations,
@@ -150,6 +152,7 @@ def session_page(
         rule=decisions[0].rule if decisions else "",
         coverage=coverage_in_words(calibration, coverage),
         size=size_in_words(report.session.size),
+        switched_on=switched_on(report.session),
         diagnosis=diagnosis_line(diagnosis, failed),
         gives_correction=report.session.programme in CALIBRATIONS,
         motions=motions_in_words(report.motions, coverage),
@@ -170,7 +173,7 @@ def _state(report: SessionReport) -> str:
     if state is RecordState.ACCEPTED:
         return ""
     said = state_in_words(report.states[-1]) if report.states else STATES[state]
-    return say("{said}. {meaning}", said=without_stop(said), meaning=MEANINGS[state])
+    return say("{verdict}. {meaning}", verdict=without_stop(said), meaning=MEANINGS[state])
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:
@@ -193,8 +196,10 @@ def _sensor(
     )
 
 
-def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, way: tuple[float, str]) -> Cell:
-    return Cell(
+def _cell(
+    sensor: SensorCalibration, parameter: str, decision: Decision | None, way: tuple[float, str]
+) -> ParameterCell:
+    return ParameterCell(
         parameter=parameter,
         observable=sensor.observable.get(parameter, False),
         value=value_in_words(sensor, parameter, *way),
@@ -279,4 +284,4 @@ def _probability(decision: Decision | None) -> str:
         return ""
     percent = 100 * decision.probability_out
     words = "more than 99" if percent > 99 else "less than 1" if percent < 1 else f"{percent:.0f}"
-    return say("{words} % chance to be out", words=words)
+    return say("{probability} % chance to be out", probability=words)

@@ -10,7 +10,7 @@ from service.stands.conditions import stand_conditions
 from service.stands.records import StandCertificate, StandCondition
 from service.stands.store import StandCertificates
 from service.web.dependencies import Now, Reading
-from service.web.fields import Day, Said, StandName
+from service.web.fields import Day, NonBlankName, StandName
 from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
 
@@ -26,11 +26,11 @@ class NewStandCertificate(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    number: Said = Field(description="As printed on it; one of a number that is there takes its place.")
-    issued_by: Said = Field(description="The laboratory that calibrated the stand.")
+    number: NonBlankName = Field(description="As printed on it; one of a number that is there takes its place.")
+    issued_by: NonBlankName = Field(description="The laboratory that calibrated the stand.")
     issued_on: Day = Field(description="From this day on it speaks for the stand.", examples=["2026-01-10"])
     valid_until: Day = Field(description="The last day on which it holds.", examples=["2027-01-10"])
-    by: Said = Field(description="Your name.")
+    by: NonBlankName = Field(description="Your name.")
 
 
 class StandCertificateList(BaseModel):

@@ -1,6 +1,6 @@
 """The pages of stands: may each be used today, and what its units show of it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime
 from typing import Annotated
@@ -18,13 +18,17 @@ from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.groups.records import Level
 from service.groups.sections import GroupSection, group_section
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
 from service.kit.measures import day_of
 from service.models.records import ModelRevision, Scope
 from service.models.rules import in_force
 from service.models.sections import AcceptedCause, accepted_causes
 from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, flags_in_words, fleet_row
-from service.people.dependencies import SAYS_SOMETHING, SEE_OTHER, By, Key, StorageOf
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, StorageOf
+from service.queue.records import WorkKind
+from service.queue.store import WorkQueue
 from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.store import Sessions
@@ -62,6 +66,8 @@ class StandLine:
     """Oldest issue first."""
     flags: int
     """How many are open that find it at fault."""
+    is_pending: bool
+    """Whether what stands do is being worked out with the latest records."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,8 @@ class StandReport:
     flags: tuple[Flag, ...]
     units: tuple[UnitSummary, ...]
     """Whose latest session was measured on it, the latest first."""
+    uses: Mapping[str, Usable]
+    """What they may be used for."""
     sessions: tuple[StoredSession, ...]
     """Newest first."""
     models: tuple[ModelRevision, ...]
@@ -79,28 +87,38 @@ class StandReport:
 
 
 def every_stand(store: Store) -> tuple[StandLine, ...]:
-    """All stands, by name, in three queries."""
+    """All stands, by name, in four queries."""
     certificates, flags = StandCertificates(store).every(), Flags(store).open_about(*AT_FAULT)
+    is_pending = WorkQueue(store, WorkKind.SUMMARY).count() > 0
     return tuple(
         StandLine(
             use=known.use,
             condition=known.condition,
             certificates=certificates.get(known.use.stand, ()),
             flags=sum(flag.place == known.use.stand for flag in flags),
+            is_pending=is_pending,
         )
         for known in Stands(store).every()
     )
 
 
-def stand_report(store: Store, name: str) -> StandReport:
+def stand_report(store: Store, name: str, now: datetime) -> StandReport:
     """One stand; NotFoundError where there is none of that name."""
     known = Stands(store).one(name)
     flags = Flags(store).page(FlagQuery(unresolved=True, stand=name, limit=MOST + 1))
+    units = Fleet(store).units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1))
     at_fault = sum(flag.matter in AT_FAULT for flag in flags)
     return StandReport(
-        line=StandLine(known.use, known.condition, StandCertificates(store).of_stand(name), at_fault),
+        line=StandLine(
+            known.use,
+            known.condition,
+            StandCertificates(store).of_stand(name),
+            at_fault,
+            WorkQueue(store, WorkKind.SUMMARY).count() > 0,
+        ),
         flags=flags,
-        units=Fleet(store).units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1)),
+        units=units,
+        uses=usable_of(store, units, now),
         sessions=Sessions(store).wanted(SessionQuery(stand=name, limit=MOST + 1)),
         models=in_force(Models(store).of_subject(Scope.STAND, name)),
     )
@@ -145,6 +163,8 @@ class StandPage:
     use: StandUse
     word: StandWord
     reasons: tuple[str, ...]
+    is_pending: bool
+    """Whether what its units show is being worked out."""
     certificates: tuple[tuple[str, str, str, str], ...]
     """Number, issued by, issued on, valid until; the latest first."""
     flags: tuple[FlagCard, ...]
@@ -175,13 +195,14 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
     return StandPage(
         use=line.use,
         word=_word(line, now),
-        reasons=(certificate, condition_in_words(condition)),
+        reasons=(certificate, condition_in_words(condition, is_pending=line.is_pending)),
+        is_pending=condition is None and line.is_pending,
         certificates=tuple(map(_certificate, reversed(line.certificates))),
         flags=flag_cards(report.flags[:MOST]),
         shifts=() if condition is None else _shifts(condition),
         seating=() if condition is None else _seating(condition),
         unreadable=() if condition is None else condition.unreadable,
-        units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
+        units=tuple(fleet_row(unit, report.uses[unit.serial]) for unit in report.units[:MOST]),
         sessions=session_lines(report.sessions[:MOST]),
         causes=accepted_causes(report.models),
         group=group,
@@ -191,8 +212,14 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
 
 def _row(line: StandLine, now: datetime) -> StandRow:
     latest = held(line.certificates, now.date())
-    until = "none on record" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
-    return StandRow(line.use, _word(line, now), condition_in_words(line.condition), until, flags_in_words(line.flags))
+    until = "none recorded" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
+    return StandRow(
+        line.use,
+        _word(line, now),
+        condition_in_words(line.condition, is_pending=line.is_pending),
+        until,
+        flags_in_words(line.flags),
+    )
 
 
 def _word(line: StandLine, now: datetime) -> StandWord:
@@ -213,22 +240,22 @@ def _shifts(condition: StandCondition) -> tuple[ShiftRow, ...]:
 def _shift(one: StandEvidence) -> ShiftRow:
     lasts = one.until is None
     when = (
-        say("since {since}", since=day_of(one.since))
+        say("since {date}", date=day_of(one.since))
         if one.until is None
-        else say("{since} to before {until}", since=day_of(one.since), until=day_of(one.until))
+        else say("{start} to before {end}", start=day_of(one.since), end=day_of(one.until))
     )
-    word, tone = ("shifted", "conditional-fail") if lasts else ("back where it was", "conditional-pass")
+    word, tone = ("shifted", "conditional-fail") if lasts else ("shift has ended", "conditional-pass")
     return _shift_row(one, when, word, tone)
 
 
 def _steady(one: StandEvidence) -> ShiftRow:
     return _shift_row(
-        one, say("most evident since {since}", since=day_of(one.since)), "steady: no more than chance", "pass"
+        one, say("most evident since {since}", since=day_of(one.since)), "stable: no significant change", "pass"
     )
 
 
 def _shift_row(one: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
-    units = say("{agreeing} of {units}", agreeing=one.agreeing, units=one.units)
+    units = say("{number} of {units}", number=one.agreeing, units=one.units)
     return ShiftRow(kind_of_shift(one.kind, one.quantity), size_of_shift(one), when, units, word, tone)
 
 
@@ -237,7 +264,7 @@ def _seating(condition: StandCondition) -> tuple[tuple[str, str], ...]:
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
-Said = Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)]
+Said = Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]
 Day = Annotated[date, Form()]
 
 
@@ -251,7 +278,7 @@ def show_stands(request: Request, store: ReadingFleet, now: Now) -> HTMLResponse
 def show_stand(request: Request, store: ReadingFleet, now: Now, name: Key) -> HTMLResponse:
     """One stand: may it be used today, and what was measured on it."""
     return render(
-        request, "stand.html", stand_page(stand_report(store, name), now, group_section(store, Level.STAND, name))
+        request, "stand.html", stand_page(stand_report(store, name, now), now, group_section(store, Level.STAND, name))
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import fields
 
 from fastapi import APIRouter
 
-from service.pages.type.tolerances import preview_tolerances, set_tolerances
+from service.pages.type.tolerances import Watch, preview_tolerances, set_tolerances
 from service.pages.unit.schemas import NewTolerances, TolerancesSchema, UnitTypePage
 from service.people.admission import PersonOf
 from service.people.dependencies import CREW, StorageOf
@@ -32,11 +32,12 @@ def read_unit_type(name: TypeName, store: Reading) -> UnitType:
 
 @router.put("/{name:path}", responses=errors(400, 404, 422))
 def change_tolerances(name: TypeName, new: NewTolerances, storage: StorageOf, now: Now, person: PersonOf) -> UnitType:
-    """Other tolerances, from the next session on, and another longest interval. Past decisions keep theirs."""
+    """Other tolerances, from the next session on; another longest interval or share of the tolerance that has a flag,
+    at once. Past decisions keep theirs."""
     gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
-    days, who = new.maximum_interval_days, person.signs(CREW)
-    changed = set_tolerances(storage, name, _record(new.tolerances), gyro, now, interval_days=days, who=who)
-    return changed
+    watch = Watch(new.maximum_interval_days, new.flag_share)
+    limits, who = (_record(new.tolerances), gyro), person.signs(CREW)
+    return set_tolerances(storage, name, *limits, now, watch=watch, who=who)
 
 
 @router.post("/{name:path}/preview", responses=errors(400, 404, 422))

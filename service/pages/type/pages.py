@@ -20,6 +20,8 @@ from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.groups.records import Level
 from service.groups.sections import GroupSection, group_section
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
 from service.kit.measures import deviation_measure, heading, in_measure, limit, number, scale_measure
 from service.models.records import ModelRevision, Scope
 from service.models.rules import in_force
@@ -33,6 +35,7 @@ from service.pages.type.tolerances import (
     preview_page,
     preview_tolerances,
     set_tolerances,
+    share,
     tolerance_fields,
     wanted,
 )
@@ -76,6 +79,8 @@ class TypeReport:
     """Open ones on what its sessions show together."""
     units: tuple[UnitSummary, ...]
     """Worst first."""
+    uses: Mapping[str, Usable]
+    """What they may be used for."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
 
@@ -86,17 +91,18 @@ def every_type(store: Store) -> tuple[TypeLine, ...]:
     return tuple(TypeLine(known, uses[known.name]) for known in UnitTypes(store).page(0, MOST_TYPES))
 
 
-def type_report(store: Store, name: str) -> TypeReport:
+def type_report(store: Store, name: str, now: datetime) -> TypeReport:
     """One type; NotFoundError where there is none of that name."""
     unit_type = UnitTypes(store).get(name)
-    revisions = UnitTypes(store).revisions(name)
+    revisions, units = UnitTypes(store).revisions(name), Fleet(store).units(FleetQuery(unit_type=name, limit=MOST + 1))
     return TypeReport(
         line=TypeLine(unit_type, UnitTypes(store).uses(name)[name]),
         kinds=UnitTypes(store).kinds(name),
         revisions=revisions,
         setters=Audit(store).who_did("tolerances", name, [revision.since for revision in revisions]),
         flags=Flags(store).page(FlagQuery(unresolved=True, unit_type=name)),
-        units=Fleet(store).units(FleetQuery(unit_type=name, limit=MOST + 1)),
+        units=units,
+        uses=usable_of(store, units, now),
         models=in_force(Models(store).of_subject(Scope.UNIT_TYPE, name)),
     )
 
@@ -176,6 +182,8 @@ class TypePage:
     """Of the form that sets other tolerances."""
     days: str
     """The longest interval, in the form."""
+    share: str
+    """Of the tolerance, %, from which on a change has a flag, in the form."""
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:
@@ -183,7 +191,7 @@ def types_page(types: Sequence[TypeLine]) -> TypesPage:
     return TypesPage(tuple(map(_row, types)))
 
 
-def type_page(report: TypeReport, now: datetime, group: GroupSection | None = None) -> TypePage:
+def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage:
     """The page of one type."""
     known = report.line.unit_type
     kinds = {name: report.kinds.get(name, known.block) for name in known.sensors}
@@ -195,19 +203,22 @@ def type_page(report: TypeReport, now: datetime, group: GroupSection | None = No
             _sensor(name, kinds[name], axis, scale)
             for name, axis, scale in zip(known.sensors, known.nominal_axes, known.nominal_scales, strict=True)
         ),
-        units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
+        units=tuple(fleet_row(unit, report.uses[unit.serial]) for unit in report.units[:MOST]),
         more=len(report.units) > MOST,
         flags=flag_cards(report.flags),
         causes=accepted_causes(report.models),
         group=group,
         fields=tolerance_fields(known),
         days=days(known),
+        share=share(known),
     )
 
 
 def _row(line: TypeLine) -> TypeRow:
     known = line.unit_type
-    named = [say("{what} {text}", what=what, text=text) for what, text in _limits(known) if text != NOT_JUDGED]
+    named = [
+        say("{quantity} {amount}", quantity=what, amount=text) for what, text in _limits(known) if text != NOT_JUDGED
+    ]
     return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
 
 
@@ -222,7 +233,7 @@ def _block(known: UnitType) -> str:
 
 def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
     return tuple(
-        TypeTile(condition_of(verdict), count, FleetView(condition=verdict.value, unit_type=name).url())
+        TypeTile(condition_of(verdict), count, FleetView(condition=verdict.value, type=name).url())
         for verdict, count in reversed(use.verdicts.items())
         if count
     )
@@ -288,11 +299,11 @@ def set_limits(
     storage: StorageOf,
     now: Now,
 ) -> RedirectResponse:
-    """Other tolerances from the next session on, and another longest interval at once."""
+    """Other tolerances from the next session on, and the interval and the share at once."""
     with storage.database.reading() as store:
         asked = wanted(UnitTypes(store).get(name), form)
-    limits, days = (asked.tolerances, asked.gyro_tolerances), asked.interval_days
-    set_tolerances(storage, name, *limits, now, interval_days=days, who=by, why=why, seen=seen)
+    limits, watch = (asked.tolerances, asked.gyro_tolerances), asked.watch
+    set_tolerances(storage, name, *limits, now, watch=watch, who=by, why=why, seen=seen)
     return RedirectResponse(f"/unit-types/{quote(name)}#tolerances", SEE_OTHER)
 
 
@@ -313,5 +324,5 @@ def preview_limits(
 def show_type(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
     """One unit type: what is allowed and who allowed it, the nominal model, its units."""
     return render(
-        request, "unit_type.html", type_page(type_report(store, name), now, group_section(store, Level.TYPE, name))
+        request, "unit_type.html", type_page(type_report(store, name, now), group_section(store, Level.TYPE, name))
     )

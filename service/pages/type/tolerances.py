@@ -18,7 +18,7 @@ from service.errors import ConflictError, RefusedError
 from service.fleet.records import FleetQuery
 from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
-from service.judging.calibrate import Comparison
+from service.judging.calibrate import ReferenceComparison
 from service.judging.judge import judge, judge_recording
 from service.judging.reference import reference_of
 from service.kit.measures import COVERAGE, Measure, deviation_measure, heading, in_measure
@@ -42,7 +42,7 @@ LEAST, MOST = 1e-15, 1e6
 """SI; as the API has it."""
 SHORTEST, LONGEST = 1, 36_525
 """Days: from one to a hundred years."""
-INTERVAL = "interval"
+INTERVAL, SHARE = "interval", "share"
 
 
 @dataclass(frozen=True)
@@ -57,12 +57,20 @@ class ToleranceField:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Watch:
+    """How a type's units are watched between calibrations; None leaves it as it is."""
+
+    interval_days: float | None = None
+    flag_share: float | None = None
+
+
+@dataclass(frozen=True)
+class ToleranceForm:
     """What the form asks for."""
 
     tolerances: Tolerances
     gyro_tolerances: Tolerances | None
-    interval_days: float
+    watch: Watch
 
 
 def tolerance_fields(known: UnitType) -> tuple[ToleranceField, ...]:
@@ -81,23 +89,32 @@ def days(known: UnitType) -> str:
     return f"{known.maximum_interval_days:.12g}"
 
 
-def wanted(known: UnitType, form: Mapping[str, str]) -> Wanted:
+def share(known: UnitType) -> str:
+    """Of the tolerance, %, from which on a change has a flag, as the form has it."""
+    return f"{100 * known.flag_share:.12g}"
+
+
+def wanted(known: UnitType, form: Mapping[str, str]) -> ToleranceForm:
     """What a form asks for; RefusedError with every number that is none."""
     faults: list[Problem] = []
     read = {kind: Tolerances(**{name: _read(kind, name, given, form, faults) for name in PARAMETERS})
             for kind, given in _kinds(known)}  # fmt: skip
-    interval = _number(INTERVAL, form.get(INTERVAL, days(known)), faults)
-    if interval is None or not SHORTEST <= interval <= LONGEST:
-        faults.append(
-            Problem(
-                INTERVAL,
-                say("must be between {shortest} and {longest} days", shortest=SHORTEST, longest=f"{LONGEST:,}"),
-            )
-        )
-    if faults or interval is None:
+    watch = _watch(known, form, faults)
+    if faults:
         raise RefusedError("The tolerances cannot be set.", tuple(faults))
     own, *others = read.values()
-    return Wanted(own, others[0] if others else None, interval)
+    return ToleranceForm(own, others[0] if others else None, watch)
+
+
+def _watch(known: UnitType, form: Mapping[str, str], faults: list[Problem]) -> Watch:
+    interval = _number(INTERVAL, form.get(INTERVAL, days(known)), faults)
+    percent = _number(SHARE, form.get(SHARE, share(known)), faults)
+    if interval is not None and not SHORTEST <= interval <= LONGEST:
+        must = say("must be between {shortest} and {longest} days", shortest=SHORTEST, longest=f"{LONGEST:,}")
+        faults.append(Problem(INTERVAL, must))
+    if percent is not None and not 0 <= percent <= 100:
+        faults.append(Problem(SHARE, "must be between 0 and 100 %"))
+    return Watch(interval, None if percent is None else percent / 100)
 
 
 def _kinds(known: UnitType) -> tuple[tuple[str, Tolerances], ...]:
@@ -136,7 +153,7 @@ def _read(kind: str, name: str, given: Tolerances, form: Mapping[str, str], faul
     if current is not None and isclose(tolerance, current, rel_tol=SAME):
         return float(current)
     if not LEAST <= tolerance <= MOST:
-        faults.append(Problem(key, "must be larger than nothing, and no larger than can be measured"))
+        faults.append(Problem(key, "must be greater than zero and within the measurable range"))
     return tolerance
 
 
@@ -158,11 +175,19 @@ def headline_of(found: TolerancePreview) -> str:
     if not found.judged:
         return "No unit of this type has a session that tolerances decide"
     if not changed:
-        return "With these, no unit changes"
+        return "With these tolerances, no verdict changes"
     return (
-        say("With these, {changed} of {judged} units changes", changed=changed, judged=found.judged)
+        say(
+            "With these tolerances, the verdict of {changed} of {judged} units changes",
+            changed=changed,
+            judged=found.judged,
+        )
         if changed == 1
-        else say("With these, {changed} of {judged} units change", changed=changed, judged=found.judged)
+        else say(
+            "With these tolerances, the verdicts of {changed} of {judged} units change",
+            changed=changed,
+            judged=found.judged,
+        )
     )
 
 
@@ -170,17 +195,17 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
     """What was not looked at, and why."""
     if found.references:
         yield say(
-            "{references} not counted: the latest session is a reference, judged by nothing.",
+            "{references} not counted: the latest session is a reference, which is not judged.",
             references=counted(found.references, "unit"),
         )
     if found.recordings:
         units = counted(found.recordings, "unit")
         yield say(
-            "{units} not counted: the latest session is a recording in service without a calibration beside it.",
+            "{units} not counted: the latest session is a recording in service without a calibration.",
             units=units,
         )
     if found.beyond:
-        yield say("{beyond} not looked at: only the worst ones are.", beyond=counted(found.beyond, "unit"))
+        yield say("{beyond} not checked: only the worst are.", beyond=counted(found.beyond, "unit"))
 
 
 CARRIED_APART = ("by", "why", "csrf")
@@ -188,7 +213,7 @@ CARRIED_APART = ("by", "why", "csrf")
 
 
 @dataclass(frozen=True)
-class ChangeRow:
+class VerdictChangeRow:
     """One unit with another verdict."""
 
     unit: str
@@ -203,29 +228,38 @@ class PreviewPage:
 
     name: str
     headline: str
-    rows: tuple[ChangeRow, ...]
+    rows: tuple[VerdictChangeRow, ...]
     notes: tuple[str, ...]
     interval: str
     """That the form asks for, where it is another one; empty where it stays."""
+    share: str
+    """The same of the share of the tolerance, %."""
     carried: tuple[tuple[str, str], ...]
     """Numbers as they were written, to be set as they are."""
     why: str
 
 
-def preview_page(known: UnitType, asked: Wanted, form: Mapping[str, str], found: TolerancePreview) -> PreviewPage:
+def preview_page(
+    known: UnitType, asked: ToleranceForm, form: Mapping[str, str], found: TolerancePreview
+) -> PreviewPage:
     """What would change, and the form that sets it."""
-    other = asked.interval_days != known.maximum_interval_days
+    other = _others(known, asked.watch)
     return PreviewPage(
         name=known.name,
         headline=headline_of(found),
         rows=tuple(
-            ChangeRow(one.unit, condition_of(one.before), condition_of(one.after), one.reason) for one in found.changes
+            VerdictChangeRow(one.unit, condition_of(one.before), condition_of(one.after), one.reason)
+            for one in found.changes
         ),
         notes=tuple(notes_of(found)),
-        interval=f"{asked.interval_days:.12g}" if other else "",
+        interval=days(other) if other.maximum_interval_days != known.maximum_interval_days else "",
+        share=share(other) if other.flag_share != known.flag_share else "",
         carried=tuple((key, value) for key, value in form.items() if key not in CARRIED_APART),
         why=form.get("why", ""),
     )
+
+
+AS_IT_IS = Watch()
 
 
 def set_tolerances(
@@ -235,7 +269,7 @@ def set_tolerances(
     gyro_tolerances: Tolerances | None,
     now: datetime,
     *,
-    interval_days: float | None = None,
+    watch: Watch = AS_IT_IS,
     who: str = "crew",
     why: str = "",
     seen: int | None = None,
@@ -244,7 +278,7 @@ def set_tolerances(
 
     ConflictError where ``seen``, the revision that somebody changed, is no longer the one in force.
 
-    Another interval holds for all units of the type at once; None leaves it as it is.
+    How units are watched holds for all units of the type at once.
     """
     undated: tuple[str, ...] = ()
     with storage.database.writing() as store:
@@ -252,26 +286,41 @@ def set_tolerances(
         if seen is not None and seen != current.revision:
             raise ConflictError(
                 say(
-                    "Somebody set other tolerances meanwhile, revision {revision}: look at them, then set yours.",
+                    "Other tolerances were set meanwhile, revision {revision}: check them, then set yours.",
                     revision=current.revision,
                 )
             )
         said = {"why": why} if why else {}
-        if interval_days is not None and interval_days != current.maximum_interval_days:
-            was = current.maximum_interval_days
-            current = UnitTypes(store).set_interval(name, interval_days)
+        wished = _others(current, watch)
+        if wished != current:
+            for action, numbers in _differences(current, wished):
+                Audit(store).write(now, who, action, name, numbers | said)
+            current = UnitTypes(store).set_watch(name, days=wished.maximum_interval_days, share=wished.flag_share)
             undated = tuple(Units(store).of_type(name))
             for serial in undated:
-                WorkQueue(store, WorkKind.OUTLOOK).ask_again(serial, now)
-            Audit(store).write(
-                now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days} | said
-            )
+                WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, now)
         if (current.tolerances, current.gyro_tolerances) != (tolerances, gyro_tolerances):
             before = asdict(current)
             current = UnitTypes(store).revise(name, tolerances, gyro_tolerances, now)
             Audit(store).write(now, who, "tolerances", name, {"before": before, **asdict(current), **said})
     date(storage, Deriving(storage.files, COVERAGE, now), *undated)
     return current
+
+
+def _others(known: UnitType, watch: Watch) -> UnitType:
+    """The type watched otherwise; the same number written again is no other one."""
+    days = known.maximum_interval_days if watch.interval_days is None else watch.interval_days
+    share = known.flag_share if watch.flag_share is None else watch.flag_share
+    same = isclose(share, known.flag_share, rel_tol=SAME)
+    return replace(known, maximum_interval_days=days, flag_share=known.flag_share if same else share)
+
+
+def _differences(was: UnitType, now: UnitType) -> Iterator[tuple[str, dict[str, float]]]:
+    """Lines of the audit trail: what was done, and the numbers."""
+    for action, name in (("interval", "maximum_interval_days"), ("flag share", "flag_share")):
+        before, after = getattr(was, name), getattr(now, name)
+        if before != after:
+            yield action, {"before": before, name: after}
 
 
 MOST_UNITS = 100
@@ -328,7 +377,7 @@ def _change(
     if own.parity is None:
         found = judge(own, reference, other, coverage_factor)
     else:
-        seen = Comparison(reference, ParityResult.from_dict(own.parity))
+        seen = ReferenceComparison(reference, ParityResult.from_dict(own.parity))
         found = judge_recording(own, seen, other, coverage_factor)
     if found.verdict is one.verdict:
         return None

@@ -84,7 +84,7 @@ def list_units(
 ) -> UnitPage:
     """Units, worst first unless another order is asked for."""
     wanted = FleetQuery(
-        verdict, text, window.offset, window.limit, reserved,
+        verdict, text, reserved, offset=window.offset, limit=window.limit,
         due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged,
         order=order, backwards=backwards, after=after,
     )  # fmt: skip

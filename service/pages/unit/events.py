@@ -23,7 +23,7 @@ KINDS = {
 
 
 @dataclass(frozen=True)
-class Event:
+class UnitEvent:
     """A service or a note."""
 
     at: datetime
@@ -68,11 +68,11 @@ class StageTable:
 
 def events_of(
     services: Sequence[Service], notes: Sequence[Note], withdrawals: Sequence[StateChange] = ()
-) -> tuple[Event, ...]:
+) -> tuple[UnitEvent, ...]:
     """Newest first."""
     gone = {line.record: state_in_words(line) for line in withdrawals}
     listed = [
-        Event(
+        UnitEvent(
             s.at,
             say(
                 "{kind}{sensor}",
@@ -87,7 +87,7 @@ def events_of(
         )
         for s in services
     ]
-    listed += [Event(note.at, "Note", note.text, note.who, note) for note in notes]
+    listed += [UnitEvent(note.at, "Note", note.text, note.who, note) for note in notes]
     return tuple(sorted(listed, key=lambda event: event.at, reverse=True))
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from itertools import groupby
 
 from estimator.allan.results import TERMS
@@ -10,12 +9,15 @@ from estimator.message import say
 from service.flags.pages import FlagCard, flag_cards
 from service.flags.records import Flag
 from service.groups.sections import GroupSection
+from service.judging.records import Usable
+from service.judging.usable_words import next_in_words
+from service.judging.use import Use, in_words
 from service.kit.failure import unit_failed
 from service.kit.measures import NOISE, day_of, heading, in_measure
 from service.outlook.charts import Track, TrackPoint, history_charts, tolerance_text, tracks_of
 from service.outlook.records import ParameterTrend, UnitOutlook
 from service.outlook.words import NextCalibration, next_calibration
-from service.pages.unit.events import KINDS, Event, StageTable, events_of, stage_table
+from service.pages.unit.events import KINDS, StageTable, UnitEvent, events_of, stage_table
 from service.pages.unit.remarks import Remarks
 from service.pages.unit.report import UnitReport
 from service.papers.found_and_left import FoundAndLeft
@@ -129,11 +131,11 @@ def _row(points: Sequence[HistoryPoint], sensors: Sequence[str]) -> NoiseRow:
 
 
 PARAMETER_MEANINGS = {
-    "scale": "Change of the scale factor from the reference of its time.",
-    "bias": "Change of the zero offset from the reference of its time.",
-    "quadratic": "Change of the quadratic nonlinearity from the reference of its time.",
-    "axis": "Angle between the input axis and its direction in the reference of its time.",
-    "misalignment": "Change of the input axis' turn toward a turntable's axis from the reference of its time.",
+    "scale": "Change of the scale factor since the reference of its epoch.",
+    "bias": "Change of the bias since the reference of its epoch.",
+    "quadratic": "Change of the quadratic term since the reference of its epoch.",
+    "axis": "Angle between the input axis and its direction in the reference of its epoch.",
+    "misalignment": "Change of the input axis's misalignment to the turn axis since the reference of its epoch.",
 }
 """What the charts of a parameter show."""
 TOGETHER = {"axis": "turn", "scale": "change"}
@@ -168,11 +170,18 @@ class ParameterSection:
 
 
 @dataclass(frozen=True)
-class UnitPage:
+class UnitView:
     """Everything a unit's page shows."""
 
     report: UnitReport
     condition: Condition
+    use: Use
+    said: str
+    """What it may be used for, and what to do."""
+    sentence: str
+    """Why."""
+    reason: str
+    """Why the verdict is what it is; empty where the answer says it already."""
     failed: str
     """That what follows from its latest records could not be worked out, and why; empty else."""
     sections: tuple[ParameterSection, ...]
@@ -183,12 +192,14 @@ class UnitPage:
     """How many sessions, the newest ones, the charts show."""
     flags: tuple[FlagCard, ...]
     """Open ones first."""
-    events: tuple[Event, ...]
+    events: tuple[UnitEvent, ...]
     """Services and notes, newest first."""
     stages: StageTable | None
     """None where the unit was never marked as found."""
     kinds: tuple[tuple[str, str], ...]
     """What can be done to a unit: identifier and name."""
+    headline: str
+    """What the unit needs next."""
     next: NextCalibration | None
     """None before a session was judged."""
     raw: bool
@@ -197,7 +208,7 @@ class UnitPage:
     """None where no session was sent as a raw log with rests."""
     group: GroupSection | None
     """What its sessions show together; None where that is not made of its records of now."""
-    said: Remarks | None
+    remarks: Remarks | None
     """Files that people attached; None where the page is made without a service."""
     follow: int | None
     """Seconds after which the page looks again whether its dates are worked out; None where they are."""
@@ -206,8 +217,8 @@ class UnitPage:
 def unit_page(
     report: UnitReport,
     history: Sequence[HistoryPoint],
+    usable: Usable,
     *,
-    now: datetime,
     raw: bool = False,
     flags: Sequence[Flag] = (),
     notes: Sequence[Note] = (),
@@ -216,17 +227,22 @@ def unit_page(
     group: GroupSection | None = None,
     follow: int | None = None,
     said: Remarks | None = None,
-) -> UnitPage:
+) -> UnitView:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
     valid = tuple(note for note in notes if note.withdrawal is None)
     history, terms = without_noise(history)
     groups = tracks_of(history, report.services)
     kinds = {point.kind for point in history}
-    return UnitPage(
+    condition = condition_of(report.summary.verdict, is_reference=report.summary.is_reference)
+    return UnitView(
         report=report,
+        use=usable.use,
+        said=in_words(usable.use, usable.action),
+        sentence=usable.why,
+        reason=_reason(report.summary.reason or condition.meaning, usable),
         failed=unit_failed(report.summary.failed) if report.summary.failed else "",
-        condition=condition_of(report.summary.verdict, is_reference=report.summary.is_reference),
+        condition=condition,
         sections=tuple(_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
         sessions=session_lines(report.sessions),
         reference=_reference(report),
@@ -235,13 +251,18 @@ def unit_page(
         events=events_of((*report.services, *report.withdrawn_services), notes, report.withdrawals),
         stages=stage_table(pair),
         kinds=tuple(KINDS.items()),
-        next=None if outlook is None else next_calibration(outlook, now),
+        headline=next_in_words(usable),
+        next=None if outlook is None else next_calibration(outlook, usable.as_of),
         raw=raw,
         noise=noise_part(terms, report.services, valid),
         group=group,
-        said=said,
+        remarks=said,
         follow=follow,
     )
+
+
+def _reason(reason: str, usable: Usable) -> str:
+    return "" if reason in usable.why else reason
 
 
 def _reference(report: UnitReport) -> str:

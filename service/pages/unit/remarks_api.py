@@ -1,11 +1,10 @@
 """Notes and files of units and sessions, over HTTP."""
 
-from typing import Any
-
 from fastapi import APIRouter, Response
 from fastapi.responses import FileResponse
 from pydantic import BaseModel, ConfigDict, Field
 
+from estimator.json_object import Json
 from service.flags.api import Handling
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
@@ -51,7 +50,7 @@ attachments_router = APIRouter()
 BYTES = "application/octet-stream"
 """What nobody vouches for is shown by no browser."""
 ANY_BYTES = {BYTES: {"schema": {"type": "string", "format": "binary"}}}
-BODY: dict[str, Any] = {
+BODY: Json = {
     "requestBody": {
         "required": True,
         "description": "A form with the `file`, and with the `unit` or the `session` that it is attached to.",

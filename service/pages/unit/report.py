@@ -8,12 +8,12 @@ from service.errors import NotFoundError
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
 from service.outlook.records import UnitOutlook
-from service.sessions.records import StoredSession
+from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.states import RecordState, StateChange
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 from service.types.records import UnitType
-from service.units.records import NOTHING_SAID, Said, Service
+from service.units.records import NO_EVENTS, Service, UnitEvents
 from service.units.remarks_store import SaidOf
 
 
@@ -36,7 +36,7 @@ class UnitReport:
     """Sessions that are still to be judged again after a change of the records."""
     outlook: UnitOutlook | None = None
     """None before a session was judged."""
-    said: Said = NOTHING_SAID
+    said: UnitEvents = NO_EVENTS
 
 
 LATEST = 50
@@ -53,7 +53,7 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
         summary=known.summary,
         unit_type=known.unit_type,
         reference_session=known.reference_session,
-        sessions=Sessions(store).page(serial, 0, LATEST),
+        sessions=Sessions(store).wanted(SessionQuery(unit=serial, limit=LATEST)),
         services=tuple(s for s in said.services if s.state is RecordState.ACCEPTED),
         withdrawn_services=tuple(s for s in said.services if s.state is RecordState.WITHDRAWN),
         withdrawals=said.withdrawals,

@@ -41,6 +41,12 @@ class NewTolerances(BaseModel):
     maximum_interval_days: float | None = Field(
         default=None, ge=1, le=36_525, description="Longest time from a session to the next calibration; null keeps it."
     )
+    flag_share: float | None = Field(
+        default=None,
+        ge=0,
+        le=1,
+        description="Part of the tolerance from which on a change within it has a flag; null keeps it.",
+    )
 
 
 class NewLot(BaseModel):

@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass
 from hashlib import sha256
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 from pydantic import TypeAdapter
 
-from service.fleet.records import Usable
+from estimator.json_object import Json
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_unit
 from service.kit.answer import answer
-from service.pages.unit.usable import usable
 from service.web.dependencies import Now, Reading
 from service.web.fields import Serial
 from service.web.problem_document import errors
@@ -28,7 +29,7 @@ class UsableAnswer(Usable):
 router = APIRouter(prefix="/units", tags=["units"])
 NOT_MODIFIED = 304
 JSON = TypeAdapter(UsableAnswer)
-HELD: dict[int | str, dict[str, Any]] = {
+HELD: dict[int | str, Json] = {
     NOT_MODIFIED: {"description": "The answer that the caller holds is still true, but for `as_of`."}
 }
 
@@ -44,7 +45,7 @@ def read_usable(
 ) -> Response:
     """Whether the unit may be used now, why, and until when; 200 for yes and for no. In doubt the answer is no."""
     reader.until_dated(serial)
-    answer = _answer(request, usable(store, serial, now))
+    answer = _answer(request, usable_unit(store, serial, now))
     tag = f'"{sha256(JSON.dump_json(answer, exclude={"as_of"})).hexdigest()[:32]}"'
     headers = {"ETag": tag, "Cache-Control": "no-cache"}
     if if_none_match is not None and tag in if_none_match:

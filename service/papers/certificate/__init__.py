@@ -1,4 +1,4 @@
-"""The certificate of a session, on paper: what a technician signs."""
+"""The certificate of a session, on paper, for signature."""
 
 from dataclasses import dataclass
 
@@ -12,27 +12,27 @@ from service.papers.typeset import typeset
 
 @dataclass(frozen=True)
 class DrawnCertificate:
-    """The words with their charts."""
+    """The contents of a certificate with its charts."""
 
     words: Certificate
     histories: tuple[Drawing, ...]
     residuals: tuple[Drawing, ...]
     signatures: tuple[SignatureLine, ...]
     sealed_by: str
-    """Whose electronic seal the file carries; empty where it has none."""
+    """Owner of the electronic seal of the file; empty where it has none."""
 
 
 def certificate_pdf(
     found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED, language: Language = Language.ENGLISH
 ) -> bytes:
-    """The certificate as PDF; it carries the date of issue, so that one issue gives the same bytes every time."""
+    """The certificate as PDF; its date is the date of issue, so one issue always gives the same bytes."""
     return typeset("certificate.typ", drawn_certificate(found, issue, signed, language), issue.issued_at, language)
 
 
 def drawn_certificate(
     found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED, language: Language = Language.ENGLISH
 ) -> DrawnCertificate:
-    """All that the typesetter is given, its drawings in a language."""
+    """The data for the typesetter, with charts in a language."""
     return DrawnCertificate(
         certificate(found, issue),
         histories_of(found, language),

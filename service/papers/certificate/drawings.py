@@ -14,7 +14,7 @@ from service.sessions.decision import Decision
 MOST_HISTORIES = 6
 """Histories that are drawn, of the parameters closest to their tolerance."""
 MOST_RESIDUALS = 12
-"""Panels of residuals that are drawn, the first of them; the session's page has all."""
+"""Panels of residuals that are drawn, the first ones; the session's page has all."""
 WIDTH = 235
 """Of one drawn panel, pixels."""
 
@@ -29,13 +29,13 @@ class Drawing:
 
 
 def histories_of(found: CertifiedSession, language: Language) -> tuple[Drawing, ...]:
-    """The parameters closest to their tolerance, through time."""
+    """Histories of the parameters closest to their tolerance."""
     closest = sorted(found.report.decisions, key=_rank)[:MOST_HISTORIES]
-    wanted = [(d.parameter, d.sensor) for d in closest if d.margin is not None]
-    drawn: dict[tuple[str, str], Drawing] = {}
+    keys = [(d.parameter, d.sensor) for d in closest if d.margin is not None]
+    drawings: dict[tuple[str, str], Drawing] = {}
     for tracks in tracks_of(found.history, found.services):
         charts = history_charts(tracks, found.services)
-        drawn |= {
+        drawings |= {
             (track.parameter, track.sensor): _drawing(
                 charts,
                 place,
@@ -43,9 +43,9 @@ def histories_of(found: CertifiedSession, language: Language) -> tuple[Drawing, 
                 language,
             )
             for place, track in enumerate(tracks)
-            if (track.parameter, track.sensor) in wanted and len(track.points) > 1
+            if (track.parameter, track.sensor) in keys and len(track.points) > 1
         }
-    return tuple(drawn[key] for key in wanted if key in drawn)
+    return tuple(drawings[key] for key in keys if key in drawings)
 
 
 def _rank(decision: Decision) -> float:
@@ -54,13 +54,18 @@ def _rank(decision: Decision) -> float:
 
 
 def residuals_of(found: CertifiedSession, language: Language) -> tuple[Drawing, ...]:
-    """By the angle of the head where there was a stand, else in the order measured."""
-    sets = residual_charts(found.report.calibration)
-    across = {charts.name.rpartition("-")[2] for charts in sets}
-    wanted = "beta" if "beta" in across else "order"
-    shown = [(charts, place) for charts in sets if charts.name.endswith(wanted) for place in range(len(charts.panels))]
+    """Against the angle of the head on a stand, else in the order measured."""
+    chart_sets = residual_charts(found.report.calibration)
+    abscissas = {charts.name.rpartition("-")[2] for charts in chart_sets}
+    abscissa = "beta" if "beta" in abscissas else "order"
+    selected = [
+        (charts, place)
+        for charts in chart_sets
+        if charts.name.endswith(abscissa)
+        for place in range(len(charts.panels))
+    ]
     return tuple(
-        _drawing(charts, place, charts.panels[place].title, language) for charts, place in shown[:MOST_RESIDUALS]
+        _drawing(charts, place, charts.panels[place].title, language) for charts, place in selected[:MOST_RESIDUALS]
     )
 
 

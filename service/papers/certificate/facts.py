@@ -1,4 +1,4 @@
-"""What was measured, with what, by whom, and what it was worked out from."""
+"""Facts of a measurement: object, equipment, operator, conditions, and input data."""
 
 from dataclasses import dataclass
 from math import degrees
@@ -13,38 +13,39 @@ from service.kit.measures import THIN, day_of, method_name, minute_of, number, s
 from service.papers.certified import CertifiedSession
 from service.papers.words import stated
 from service.sessions.records import StoredSession
+from service.sessions.words.readings import switched_on
 
 
 @dataclass(frozen=True)
 class Fact:
-    """A name and what is stated of it."""
+    """A name and its value."""
 
     name: str
     value: str
     is_written: bool = False
-    """Whether the value is what somebody named or wrote: it is the same in every language."""
+    """Whether the value is a name or text written by people: it is the same in every language."""
 
 
 @dataclass(frozen=True)
-class Cause:
-    """What the simulation gets wrong about the session, named."""
+class CertifiedCause:
+    """A named cause of errors of the simulation."""
 
     sentence: str
     amplitudes: str
     evidence: str
     alternatives: str
-    """Causes that this session cannot tell from it."""
+    """Causes that this session cannot distinguish from it."""
     corrected: str
-    """Whether the calibration takes it into account; empty of one that is no part of a model."""
+    """Whether the calibration takes it into account; empty for a cause that cannot be part of a model."""
 
 
-def causes_of(found: CertifiedSession) -> tuple[Cause, ...]:
-    """The findings of the diagnosis, in their order; none where there is no diagnosis yet."""
+def causes_of(found: CertifiedSession) -> tuple[CertifiedCause, ...]:
+    """The findings of the diagnosis, in order; empty without a diagnosis."""
     diagnosis = found.diagnosis.found
     findings = () if diagnosis is None else diagnosis.findings
     views = (finding_view(finding, found.revisions, findings) for finding in findings)
     return tuple(
-        Cause(
+        CertifiedCause(
             sentence=view.sentence,
             amplitudes=joined("; ", (part for part in (*view.amplitudes, view.shape) if part)),
             evidence=view.evidence,
@@ -61,19 +62,19 @@ def _corrected(view: FindingView) -> str:
     return "Not taken into account by the numbers of this certificate." if view.acceptable else ""
 
 
-STEADY = 0.05
-"""°C: a temperature that moved by less is one number, as it is printed to a tenth."""
+CONSTANT_TEMPERATURE = 0.05
+"""°C: a smaller range is printed as one number."""
 
 
 def title_of(session: StoredSession) -> str:
-    """A recording in service checks a calibration; it is none. What was simulated certifies nothing."""
+    """A recording in service checks a calibration, but is none. A simulation certifies nothing."""
     if session.simulated:
         return "Specimen, not a certificate"
     return "Check in service" if session.programme == IN_SERVICE else "Calibration certificate"
 
 
 def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
-    """What was measured, with what, by whom, under which conditions."""
+    """Object, equipment, operator and conditions of the measurement."""
     session, source = found.report.session, found.source
     return (
         Fact("Unit", session.unit, is_written=True),
@@ -95,6 +96,7 @@ def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
         Fact("Judged against", _judged_against(found)),
         Fact("State of the unit", _state(found)),
         Fact("Temperature", _temperature(source)),
+        *([Fact("Switched on", on)] if (on := switched_on(session)) else ()),
     )
 
 
@@ -123,15 +125,17 @@ def _site(source: CalibrationSession) -> str:
     if site.latitude is not None:
         parts.append(
             say(
-                "latitude {latitude}°, height {height}{thin}m",
+                "latitude {latitude}°, height {height}{thin_space}m",
                 latitude=number(degrees(site.latitude), 4),
                 height=number(site.height),
-                thin=THIN,
+                thin_space=THIN,
             )
         )
     if any(s.kind == ACCELEROMETER for s in source.sensors):
         origin = "measured" if site.gravity is not None else "by formula"
-        parts.append(say("g = {size}{thin}m/s² ({origin})", size=number(gravity(site), 6), thin=THIN, origin=origin))
+        parts.append(
+            say("g = {size}{thin_space}m/s² ({origin})", size=number(gravity(site), 6), thin_space=THIN, origin=origin)
+        )
     return joined(", ", parts) or stated("")
 
 
@@ -140,23 +144,23 @@ def _temperature(source: CalibrationSession) -> str:
         return "not recorded"
     low, high = float(source.temperature.min()), float(source.temperature.max())
     return (
-        say("{low} to {high}{thin}°C", low=number(low, 1), high=number(high, 1), thin=THIN)
-        if high - low > STEADY
+        say("{low} to {high}{thin_space}°C", low=number(low, 1), high=number(high, 1), thin_space=THIN)
+        if high - low > CONSTANT_TEMPERATURE
         else f"{number(low, 1)}{THIN}°C"
     )
 
 
 def _judged_against(found: CertifiedSession) -> str:
     if found.reference is not None:
-        other = found.reference.session
-        return say("session {id} of {started_at}", id=other.id[:12], started_at=day_of(other.started_at))
+        reference = found.reference.session
+        return say("session {id} of {started_at}", id=reference.id[:12], started_at=day_of(reference.started_at))
     return "nothing: it is the reference of later sessions" if found.report.session.is_reference else "no reference"
 
 
 def _state(found: CertifiedSession) -> str:
-    """As found or as left, and what was last done to the unit."""
+    """As found or as left, and the last service of the unit."""
     last = (
-        say("last service: {kind}, {at}", kind=found.services[-1].kind, at=day_of(found.services[-1].at))
+        say("last service: {kind}, {date}", kind=found.services[-1].kind, date=day_of(found.services[-1].at))
         if found.services
         else ""
     )

@@ -1,4 +1,4 @@
-"""What makes a paper a certificate: its number, who issued it for whom, what it hangs on, what it may be used for."""
+"""The formal parts of a certificate: number, parties, traceability, and statements."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,16 @@ from service.kit.measures import day_of
 from service.papers.certificate.facts import Fact
 from service.papers.certified import CertifiedSession
 from service.papers.records import Issue
-from service.papers.words import RECEIVED, RELATES, SAMPLING, WHOLE, draft_in_words, lacks, stated, uncertainty_in_words
+from service.papers.words import (
+    RECEIVED,
+    RELATES,
+    SAMPLING,
+    WHOLE,
+    draft_in_words,
+    missing_facts,
+    stated,
+    uncertainty_in_words,
+)
 from service.sessions.decision import nominal_factor_of
 
 
@@ -19,30 +28,30 @@ class Paper:
     issued: str
     """Date."""
     replaces: str
-    """Number of the certificate that it takes the place of; empty for a session's first."""
+    """Number of the replaced certificate; empty for a session's first."""
     draft: str
-    """Why it is a draft only; empty where nothing is missing."""
+    """Why it is only a draft; empty where nothing is missing."""
     parties: tuple[Fact, ...]
     """Laboratory, customer, place."""
     traceability: str
     interrupted: bool
-    """Whether the chain to the SI was broken at the day of measurement."""
+    """Whether traceability was interrupted at the day of measurement."""
     statements: tuple[Fact, ...]
 
 
 def paper_of(found: CertifiedSession, issue: Issue) -> Paper:
     """The document of one issue."""
-    own, customer = found.laboratory, found.customer
-    missing = lacks(own, customer, dated=found.source.started_at is not None)
+    laboratory, customer = found.laboratory, found.customer
+    missing = missing_facts(laboratory, customer, dated=found.source.started_at is not None)
     return Paper(
         number=issue.number,
         issued=day_of(issue.issued_at),
         replaces=issue.replaces or "",
         draft=draft_in_words(missing),
         parties=(
-            _party("Laboratory", own.name, own.address, own.country),
+            _party("Laboratory", laboratory.name, laboratory.address, laboratory.country),
             _party("Customer", customer.name, customer.address),
-            _party("Place of calibration", own.place or own.address),
+            _party("Place of calibration", laboratory.place or laboratory.address),
             Fact("Date of issue", day_of(issue.issued_at)),
         ),
         traceability=found.traceability.text,
@@ -61,7 +70,7 @@ def _statements(found: CertifiedSession) -> tuple[Fact, ...]:
     k = nominal_factor_of(found.report.decisions)
     return (
         Fact("Uncertainty", uncertainty_in_words(found.report.calibration, k)),
-        Fact("Traceability", _whole_chain(found)),
+        Fact("Traceability", _traceability(found)),
         Fact("Item", RELATES),
         Fact("Reproduction", WHOLE),
         Fact("Departures from the method", _departures(found)),
@@ -71,14 +80,14 @@ def _statements(found: CertifiedSession) -> tuple[Fact, ...]:
     )
 
 
-def _whole_chain(found: CertifiedSession) -> str:
-    """With that of the reference, which every deviation hangs on too."""
+def _traceability(found: CertifiedSession) -> str:
+    """With that of the reference, since every deviation depends on it."""
     if found.reference is None:
         return found.traceability.text
     return say(
-        "{text} Of the reference session: {text2}",
-        text=found.traceability.text,
-        text2=found.reference.traceability.text,
+        "{traceability} Of the reference session: {reference_traceability}",
+        traceability=found.traceability.text,
+        reference_traceability=found.reference.traceability.text,
     )
 
 

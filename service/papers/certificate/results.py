@@ -1,4 +1,4 @@
-"""The judged parameters of a session as tables of a document: one a parameter and kind of sensor, in people's units."""
+"""The judged parameters of a session as tables: one a parameter and kind of sensor, in practical units."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,8 +23,8 @@ from service.sessions.decision import Decision
 from service.sessions.records import ALL_PARAMETERS
 from service.sessions.words.conditions import condition_of
 
-UNSEEN = "not observable"
-"""Stands for a value that the session cannot tell."""
+NOT_OBSERVABLE = "not observable"
+"""In place of a value that the session cannot determine."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class ResultRow:
 
 @dataclass(frozen=True)
 class ResultColumn:
-    """What all rows of a table share."""
+    """Common to all rows of a table."""
 
     parameter: str
     k: float
@@ -59,7 +59,7 @@ class ResultColumn:
 def result_row(
     sensor: SensorCalibration, before: SensorCalibration | None, decision: Decision | None, column: ResultColumn
 ) -> ResultRow:
-    """The values of a sensor in the units of its table; without a reference, nothing before."""
+    """The values of a sensor in the units of its table; no reference values without a reference."""
     value, expanded = _value(sensor, column)
     condition = None if decision is None else condition_of(decision.verdict)
     return ResultRow(
@@ -79,14 +79,14 @@ def _value(sensor: SensorCalibration, column: ResultColumn) -> tuple[str, str]:
     """The value and its U; a scale factor's is relative."""
     if column.parameter == "axis":
         if sensor.axis is None:
-            return UNSEEN, UNKNOWN
+            return NOT_OBSERVABLE, UNKNOWN
         vector = "\u2002".join(number(float(x), 6) for x in sensor.axis)
         if sensor.axis_sigma is None:
             return vector, UNKNOWN
         return vector, _spread(sensor.factor("axis", column.k) * sensor.axis_sigma, column.deviation)
     estimate: Estimate | None = getattr(sensor, column.parameter)
     if estimate is None or estimate.value is None:
-        return UNSEEN, UNKNOWN
+        return NOT_OBSERVABLE, UNKNOWN
     if estimate.sigma is None:
         return number(in_measure(estimate.value, column.value)), UNKNOWN
     expanded = estimate.factor(column.k) * estimate.sigma
@@ -132,7 +132,7 @@ class ResultTable:
 
 @dataclass(frozen=True)
 class _Results:
-    """What all tables are made of."""
+    """Input of all tables."""
 
     before: Mapping[str, SensorCalibration]
     """The sensors of the reference by name; empty where there is none."""
@@ -160,11 +160,11 @@ def result_tables(found: CertifiedSession, k: float) -> tuple[ResultTable, ...]:
             if len(kinds) > 1
             else heading_of(parameter),
             parameter,
-            own,
+            group,
             results,
         )
-        for parameter, kind, own in groups
-        if own
+        for parameter, kind, group in groups
+        if group
     )
 
 
@@ -195,7 +195,7 @@ def _table(heading: str, parameter: str, sensors: list[SensorCalibration], resul
 
 
 def _with_reading_unit(label: str, sensors: list[SensorCalibration], results: _Results) -> str:
-    """``V per g`` where all sensors are read in one unit."""
+    """``V per g`` where all sensors have the same reading unit."""
     units = {results.reading_units[s.name] for s in sensors if s.name in results.reading_units}
     if not label.startswith("per ") or len(units) != 1:
         return label
@@ -206,10 +206,12 @@ def _with_reading_unit(label: str, sensors: list[SensorCalibration], results: _R
 def _column(parameter: str, sensors: list[SensorCalibration], decisions: list[Decision], k: float) -> ResultColumn:
     """Units that suit the largest number of the table."""
     kind = sensors[0].kind
-    moved = [abs(x) for d in decisions for x in (d.deviation, d.expanded, d.tolerance) if x is not None]
+    deviations = [abs(x) for d in decisions for x in (d.deviation, d.expanded, d.tolerance) if x is not None]
     if parameter == "axis":
         spreads = [s.factor("axis", k) * s.axis_sigma for s in sensors if s.axis_sigma is not None]
-        return ResultColumn(parameter, k, *(deviation_measure(kind, "axis", max([*moved, *spreads], default=0.0)),) * 2)
-    own = [abs(e.value) for s in sensors if (e := getattr(s, parameter)) is not None and e.value is not None]
-    value = value_measure(kind, parameter, max(own, default=0.0))
-    return ResultColumn(parameter, k, value, deviation_measure(kind, parameter, max(moved, default=0.0)))
+        return ResultColumn(
+            parameter, k, *(deviation_measure(kind, "axis", max([*deviations, *spreads], default=0.0)),) * 2
+        )
+    values = [abs(e.value) for s in sensors if (e := getattr(s, parameter)) is not None and e.value is not None]
+    value = value_measure(kind, parameter, max(values, default=0.0))
+    return ResultColumn(parameter, k, value, deviation_measure(kind, parameter, max(deviations, default=0.0)))

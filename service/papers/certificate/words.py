@@ -1,15 +1,15 @@
-"""The certificate of a session in words: all that the paper says, before its charts are drawn."""
+"""The contents of a certificate in words, before its charts are drawn."""
 
 from dataclasses import dataclass
 
 from estimator.health.rule import WITH_SESSION_LEVEL
 from estimator.message import say
 from service.kit.measures import coverage_in_words, day_of, spaced
-from service.papers.certificate.facts import Cause, Fact, causes_of, facts_of, record_of, title_of
+from service.papers.certificate.facts import CertifiedCause, Fact, causes_of, facts_of, record_of, title_of
 from service.papers.certificate.paper import Paper, paper_of
 from service.papers.certificate.results import ResultTable, result_tables
 from service.papers.certified import CertifiedSession
-from service.papers.found_and_left import FoundAndLeft, Moved, moved
+from service.papers.found_and_left import FoundAndLeft, JudgedChange, moved
 from service.papers.records import Issue, Meaning, Signature
 from service.papers.words import BOUND, STATES, done_by, moment_of
 from service.sessions.decision import nominal_factor_of
@@ -18,36 +18,36 @@ from service.sessions.words.motion import motions_in_words
 from service.sessions.words.readings import FitWords, combination_in_words, fit_in_words
 
 MEASURED = "Measured by"
-"""Signed by hand: whoever measured need not have an account."""
+"""Signed by hand: the operator need not have an account."""
 
 
 @dataclass(frozen=True)
 class Signed:
-    """Who signed an issue, and whose seal its file will carry."""
+    """Signatures of an issue, and the owner of its seal."""
 
     signatures: tuple[Signature, ...] = ()
     sealed_by: str = ""
-    """Empty where it has none."""
+    """Empty without a seal."""
 
 
 UNSIGNED = Signed()
-"""An issue that nobody has signed."""
+"""An issue without signatures."""
 
 
 @dataclass(frozen=True)
 class SignatureLine:
-    """One place for a name."""
+    """One line for a signature."""
 
     by: str
     who: str
-    """Empty where it is left for a pen."""
+    """Empty where it is signed by hand."""
     at: str
     states: str
     bound: str
 
 
 def lines_of(signed: Signed) -> tuple[SignatureLine, ...]:
-    """Who measured, reviewed, approved."""
+    """Operator, reviewer, approver."""
     given = {signature.meaning: _line(signature) for signature in signed.signatures}
     empty = (SignatureLine(done_by(meaning), "", "", "", "") for meaning in Meaning)
     places = tuple(given.get(meaning, place) for meaning, place in zip(Meaning, empty, strict=True))
@@ -68,13 +68,13 @@ def _line(signature: Signature) -> SignatureLine:
 class PairRow:
     """One parameter as found and as left."""
 
-    found: Moved
-    left: Moved | None
+    found: JudgedChange
+    left: JudgedChange | None
 
 
 @dataclass(frozen=True)
 class Pair:
-    """The unit before and after it was worked on, against the reference that held before."""
+    """The unit before and after work on it, against the reference in force before."""
 
     found: str
     """Session and date."""
@@ -82,7 +82,7 @@ class Pair:
 
 
 def pair_of(pair: FoundAndLeft) -> Pair:
-    """What was judged of both sessions, in people's units."""
+    """Decisions of both sessions, in practical units."""
     rows = (PairRow(moved(before), None if after is None else moved(after)) for before, after in pair.decisions)
     return Pair(
         say("session {id} of {started_at}", id=pair.found.id[:12], started_at=day_of(pair.found.started_at)),
@@ -92,7 +92,7 @@ def pair_of(pair: FoundAndLeft) -> Pair:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Everything that the paper says."""
+    """Contents of the paper."""
 
     title: str
     paper: Paper
@@ -101,7 +101,7 @@ class Certificate:
     simulated: bool
     condition: Condition
     but: str
-    """What the verdict is said with; empty where it is plain."""
+    """Reservations of the verdict; empty without any."""
     reason: str
     facts: tuple[Fact, ...]
     record: tuple[Fact, ...]
@@ -110,7 +110,7 @@ class Certificate:
     notes: str
     coverage: str
     judged: bool
-    """Whether there was a reference to judge it by, and a tolerance."""
+    """Whether it was judged by a reference and a tolerance."""
     rule: str
     whole_level: bool
     """Whether a number counts as out of tolerance only if it is a change at the level of all of them."""
@@ -118,21 +118,21 @@ class Certificate:
     """Of the decision rule, best first, each explained once."""
     tables: tuple[ResultTable, ...]
     together: tuple[str, ...]
-    """What all sensors did together since the reference."""
+    """Common motion of all sensors since the reference."""
     stage: str
     """``as found``, ``as left``, or empty."""
     pair: Pair | None
     known: tuple[Fact, ...]
-    """What is known of parameters that the session cannot tell apart."""
+    """Known combinations of parameters that the session cannot separate."""
     diagnosis: str
-    causes: tuple[Cause, ...]
+    causes: tuple[CertifiedCause, ...]
     fit: FitWords
     stand: bool
     software: str
 
 
 def certificate(found: CertifiedSession, issue: Issue) -> Certificate:
-    """What the paper of an issue says."""
+    """Contents of the paper of an issue."""
     session, calibration, decisions = found.report.session, found.report.calibration, found.report.decisions
     k = nominal_factor_of(decisions)
     known = ((s.name, combination_in_words(c, s.kind)) for s in calibration.sensors for c in s.known)

@@ -9,14 +9,14 @@ from service.papers.dcc.measurement import measurement
 from service.papers.records import Issue
 
 SCHEMA = "3.3.0"
-"""Of the DCC, as PTB published it; with it goes D-SI 2.2.1."""
+"""Release of the DCC by PTB; it uses D-SI 2.2.1."""
 LOCATION = f"{{{NAMESPACES['xsi']}}}schemaLocation"
 LOCATIONS = "{dcc} {dcc}/v{schema}/dcc.xsd {si} {si}/v2.2.1/SI_Format.xsd".format(schema=SCHEMA, **NAMESPACES)
-"""The attribute that names, and the text that holds, where the schema of each namespace is found."""
+"""Attribute and text with the location of the schema of each namespace."""
 
 
 def certificate_dcc(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> bytes:
-    """The certificate as XML; one issue gives the same bytes every time."""
+    """The certificate as XML; one issue always gives the same bytes."""
     root = DCC.digitalCalibrationCertificate(
         {"schemaVersion": SCHEMA, LOCATION: LOCATIONS},
         administrative(found, issue, signed),

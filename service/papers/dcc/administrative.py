@@ -1,4 +1,4 @@
-"""Who calibrated what, for whom, under which number."""
+"""Administrative data: laboratory, customer, item, number."""
 
 from collections.abc import Iterator
 from math import degrees
@@ -14,27 +14,36 @@ from service.papers.certificate.words import Signed
 from service.papers.certified import CertifiedSession
 from service.papers.dcc.elements import DCC, INPUT, bare_quantity, conformity, english, plain, software
 from service.papers.records import NOT_STATED, Issue, Meaning, Signature, Traceability, TraceState
-from service.papers.words import BOUND, RELATES, STATES, WHOLE, draft_in_words, lacks, moment_of, uncertainty_in_words
+from service.papers.words import (
+    BOUND,
+    RELATES,
+    STATES,
+    WHOLE,
+    draft_in_words,
+    missing_facts,
+    moment_of,
+    uncertainty_in_words,
+)
 from service.sessions.decision import nominal_factor_of
 from service.sessions.records import StoredSession
 from service.sessions.words.conditions import condition_of
 
 UNKNOWN_COUNTRY = "ZZ"
-"""User-assigned in ISO 3166-1: nobody set the laboratory's country, or nothing was measured anywhere. PTB's rules
-refuse it, as they should a draft."""
+"""User-assigned in ISO 3166-1: the country of the laboratory is not configured, or the session was simulated. PTB's
+rules refuse it, as they should a draft."""
 
 ROLES = {Meaning.REVIEWED: "reviewer", Meaning.APPROVED: "approver"}
-"""Of whoever signed, by what their signature means."""
+"""Role of a signer by the meaning of the signature."""
 
 
 def administrative(found: CertifiedSession, issue: Issue, signed: Signed) -> Element:
     """Everything but the results."""
-    own, customer = found.laboratory, found.customer
+    laboratory, customer = found.laboratory, found.customer
     return DCC.administrativeData(
         DCC.dccSoftware(software(found.software)),
         _core(found, issue),
         DCC.items(_item(found)),
-        DCC.calibrationLaboratory(_contact("contact", own.name, own.address, own.country)),
+        DCC.calibrationLaboratory(_contact("contact", laboratory.name, laboratory.address, laboratory.country)),
         DCC.respPersons(*_people(found.report.session.operator, signed)),
         _contact("customer", customer.name, customer.address, ""),
         DCC.statements(*statements(found)),
@@ -42,7 +51,7 @@ def administrative(found: CertifiedSession, issue: Issue, signed: Signed) -> Ele
 
 
 def _people(operator: str, signed: Signed) -> Iterator[Element]:
-    """Who measured, and who signed; the main signer is who approved it."""
+    """The operator and the signers; the main signer is the approver."""
     approved = any(signature.meaning is Meaning.APPROVED for signature in signed.signatures)
     yield DCC.respPerson(*_operator(operator, signs=not approved))
     for signature in signed.signatures:
@@ -50,7 +59,7 @@ def _people(operator: str, signed: Signed) -> Iterator[Element]:
 
 
 def _operator(name: str, *, signs: bool) -> Iterator[Element]:
-    """Nobody whose name is not known signs anything."""
+    """An unknown operator is no signer."""
     yield DCC.person(english("name", name))
     yield DCC.role("operator")
     if signs and plain(name) != NOT_STATED:
@@ -58,9 +67,9 @@ def _operator(name: str, *, signs: bool) -> Iterator[Element]:
 
 
 def _signer(signature: Signature, sealed_by: str) -> Iterator[Element]:
-    said = f"{STATES[signature.meaning]} {moment_of(signature.signed_at)}. "
+    statement = f"{STATES[signature.meaning]} {moment_of(signature.signed_at)}. "
     yield DCC.person(english("name", signature.name))
-    yield DCC.description(DCC.content(said + BOUND.format(hash=signature.content_hash), lang="en"))
+    yield DCC.description(DCC.content(statement + BOUND.format(hash=signature.content_hash), lang="en"))
     yield DCC.role(ROLES[signature.meaning])
     if signature.meaning is Meaning.APPROVED:
         yield DCC.mainSigner("true")
@@ -88,7 +97,7 @@ def _core(found: CertifiedSession, issue: Issue) -> Element:
 
 
 def _replaced(issue: Issue) -> Iterator[Element]:
-    """The certificate that this one takes the place of."""
+    """The replaced certificate."""
     if issue.replaces is not None:
         yield DCC.reportAmendedSubstituted(
             DCC.typeOfChange("substituted"), DCC.replacedUniqueIdentifier(issue.replaces)
@@ -110,22 +119,22 @@ def _identification(issuer: str, value: str, name: str) -> Element:
 
 
 def _contact(element: str, name: str, address: str, country: str) -> Element:
-    """The address as one text: nobody is asked for its parts."""
+    """The address as one text: its parts are not recorded."""
     codes = [DCC.countryCode(country)] if country else []
     return DCC(element, english("name", name), DCC.location(*codes, english("further", address)))
 
 
-CELSIUS, DEGREE, METRE = r"\degreecelsius", r"\degree", r"\metre"
+CELSIUS, DEGREE, METRE, SECOND = r"\degreecelsius", r"\degree", r"\metre", r"\second"
 ELEVATIONS = {
     "alpha": "Elevation α of the head's axis above the horizon",
     "chi": "Elevation χ of the head's axis above the plane orthogonal to the Earth's axis",
 }
-"""How a stand was set, by the attribute that holds it."""
+"""Setting of a stand, by attribute."""
 
 
 def conditions(source: CalibrationSession) -> Element:
-    """Every condition that is known; of the temperature also that it was not recorded."""
-    return DCC.influenceConditions(_temperature(source), *_site(source), *_elevations(source))
+    """Every known condition; also that the temperature was not recorded."""
+    return DCC.influenceConditions(_temperature(source), *_power_on(source), *_site(source), *_elevations(source))
 
 
 def _condition(name: str, *data: Element) -> Element:
@@ -137,6 +146,12 @@ def _temperature(source: CalibrationSession) -> Element:
         return _condition("Temperature", english("text", "not recorded"))
     extremes = (("lowest", np.min(source.temperature)), ("highest", np.max(source.temperature)))
     return _condition("Temperature", *(bare_quantity(name, float(value), CELSIUS) for name, value in extremes))
+
+
+def _power_on(source: CalibrationSession) -> Iterator[Element]:
+    if source.time_since_power_on is not None:
+        since = bare_quantity("from switching on to the first reading", source.time_since_power_on, SECOND)
+        yield _condition("Time since power-on", since)
 
 
 def _site(source: CalibrationSession) -> Iterator[Element]:
@@ -158,13 +173,13 @@ def _elevations(source: CalibrationSession) -> Iterator[Element]:
 
 NOTHING_JUDGED = "none: nothing was there to judge it by"
 TRACEABLE = {TraceState.TRACEABLE: "true", TraceState.INTERRUPTED: "false"}
-"""Of a chain that is not on record nothing is claimed."""
+"""Nothing is claimed for a chain that is not on record."""
 
 
 def statements(found: CertifiedSession) -> Iterator[Element]:
     """In the order of the paper."""
     session, decisions = found.report.session, found.report.decisions
-    draft = draft_in_words(lacks(found.laboratory, found.customer, dated=found.source.started_at is not None))
+    draft = draft_in_words(missing_facts(found.laboratory, found.customer, dated=found.source.started_at is not None))
     if session.simulated:
         yield _statement(
             "Simulated", "SIMULATED: not a measurement of real hardware, and not a calibration certificate."
@@ -182,26 +197,26 @@ def statements(found: CertifiedSession) -> Iterator[Element]:
     yield _statement("Uncertainty", uncertainty_in_words(found.report.calibration, nominal_factor_of(decisions)))
     yield _statement("Item", RELATES)
     yield _statement("Reproduction", WHOLE)
-    yield _statement("What the simulation gets wrong", found.diagnosis.summary)
+    yield _statement("Diagnosis", found.diagnosis.summary)
 
 
 def _reference(found: CertifiedSession) -> str:
     if found.reference is None:
         return "none: this session is a reference itself, or there was none"
-    other = found.reference.session
-    return f"session {other.id} of {day_of(other.started_at)}, model revision {other.revision}"
+    reference = found.reference.session
+    return f"session {reference.id} of {day_of(reference.started_at)}, model revision {reference.revision}"
 
 
 def _verdict(session: StoredSession) -> Element:
-    said = verdict_in_words(condition_of(session.verdict, is_reference=session.is_reference), session.reservations)
+    words = verdict_in_words(condition_of(session.verdict, is_reference=session.is_reference), session.reservations)
     verdict = None if session.is_reference else session.verdict
-    told = english("declaration", f"{said}. {session.reason}")
-    return DCC.statement(english("name", "Verdict"), told, *conformity(verdict))
+    declaration = english("declaration", f"{words}. {session.reason}")
+    return DCC.statement(english("name", "Verdict"), declaration, *conformity(verdict))
 
 
 def _chain(name: str, chain: Traceability) -> Element:
-    claimed = [DCC.traceable(TRACEABLE[chain.state])] if chain.state in TRACEABLE else []
-    return DCC.statement(english("name", name), *claimed, english("declaration", chain.text))
+    claim = [DCC.traceable(TRACEABLE[chain.state])] if chain.state in TRACEABLE else []
+    return DCC.statement(english("name", name), *claim, english("declaration", chain.text))
 
 
 def _statement(name: str, declaration: str) -> Element:

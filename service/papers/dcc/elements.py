@@ -17,20 +17,20 @@ NAMESPACES = {
     "si": "https://ptb.de/si",
     "xsi": "http://www.w3.org/2001/XMLSchema-instance",
 }
-"""Under the prefixes that PTB writes them with."""
+"""With PTB's prefixes."""
 NUMBERED = re.compile(r"\d{1,3}(\.\d{1,3}){0,3}")
-"""What of a version PTB's rules let stand behind its letter."""
+"""Part of a version that PTB's rules allow after the letter."""
 CONFORMITY = {
     Verdict.PASS: "pass",
     Verdict.CONDITIONAL_PASS: "conditionalPass",
     Verdict.CONDITIONAL_FAIL: "conditionalFail",
     Verdict.FAIL: "fail",
 }
-"""What could not be decided has no conformity."""
+"""An undecidable verdict has no conformity."""
 
 
 def plain(text: str) -> str:
-    """The text as the schema's strings must be: no space at the ends, something in it, every character legal."""
+    """The text as required by the schema's strings: trimmed, not empty, with legal characters only."""
     return " ".join(ILLEGAL.sub(lambda found: f"‹U+{ord(found[0]):04X}›", text).split()) or NOT_STATED
 
 
@@ -39,24 +39,24 @@ def _write(element: Element, text: str) -> None:
 
 
 DCC, SI = (ElementMaker({str: _write}, NAMESPACES[prefix], NAMESPACES) for prefix in ("dcc", "si"))
-"""``DCC.name(...)`` makes the element ``dcc:name`` of its children, or of its text as `plain` writes it."""
+"""``DCC.name(...)`` makes the element ``dcc:name`` of its children, or of its text by `plain`."""
 
 
 def english(name: str, text: str) -> Element:
-    """An element that holds a text in English."""
+    """An element with an English text."""
     return DCC(name, DCC.content(text, lang="en"))
 
 
 def software(release: str) -> Element:
-    """This program; a version that is more than numbers stands whole in the name."""
+    """This program; a version that is not just numbers is in the name."""
     numbers = NUMBERED.match(release)
-    shown = numbers[0] if numbers else "0"
-    name = "imu-health" if shown == release else f"imu-health {release}"
-    return DCC.software(english("name", name), DCC.release(f"v{shown}"), DCC.type("application"))
+    release_number = numbers[0] if numbers else "0"
+    name = "imu-health" if release_number == release else f"imu-health {release}"
+    return DCC.software(english("name", name), DCC.release(f"v{release_number}"), DCC.type("application"))
 
 
 def conformity(verdict: Verdict | None) -> Iterator[Element]:
-    """The schema's word for a verdict, where it has one."""
+    """The schema's conformity of a verdict, if any."""
     if verdict in CONFORMITY:
         yield DCC.conformity(CONFORMITY[verdict])
 
@@ -64,9 +64,9 @@ def conformity(verdict: Verdict | None) -> Iterator[Element]:
 ONE, RADIAN = r"\one", r"\radian"
 INPUT = {True: r"\metre\second\tothe{-2}", False: r"\radian\second\tothe{-1}"}
 PER_INPUT = {True: r"\metre\tothe{-1}\second\tothe{2}", False: r"\radian\tothe{-1}\second"}
-"""D-SI of what a sensor measures, and of its inverse: of an accelerometer (True) and of a gyro."""
+"""D-SI of the input of a sensor, and of its inverse: of an accelerometer (True) and of a gyro."""
 READINGS = {"V": r"\volt", "mV": r"\milli\volt", "A": r"\ampere", "mA": r"\milli\ampere", "Hz": r"\hertz"}
-"""D-SI of the units that readings come in; counts and pulses have the unit one."""
+"""D-SI of reading units; counts and pulses have the unit one."""
 
 
 def value_measure(kind: str, parameter: str, reading_unit: str, *, counted: bool) -> str:
@@ -84,8 +84,8 @@ def deviation_measure(kind: str, parameter: str) -> str:
 
 
 @dataclass(frozen=True)
-class Factor:
-    """A coverage factor and what it covers."""
+class CoverageFactor:
+    """A coverage factor and its distribution."""
 
     k: float
     dof: float | None
@@ -98,17 +98,17 @@ class Factor:
 
     @property
     def distribution(self) -> str:
-        """The law that the probability is of."""
+        """The distribution of the probability."""
         return "normal" if self.dof is None else f"t, {self.dof:.3g} effective degrees of freedom"
 
 
 def bare_quantity(name: str, value: float, unit: str) -> Element:
-    """A number without an uncertainty: what was set, or is stated elsewhere."""
+    """A number without uncertainty: a setting, or one stated elsewhere."""
     return DCC.quantity(english("name", name), SI.real(SI.value(repr(float(value))), SI.unit(unit)))
 
 
-def quantity(name: str, value: float, unit: str, sigma: float | None, factor: Factor) -> Element:
-    """``dcc:quantity`` with ``si:real``; k and its coverage stand with U."""
+def quantity(name: str, value: float, unit: str, sigma: float | None, factor: CoverageFactor) -> Element:
+    """``dcc:quantity`` with ``si:real``; U with its k and coverage."""
     real = SI.real(SI.value(repr(float(value))), SI.unit(unit))
     if sigma is not None:
         real.append(

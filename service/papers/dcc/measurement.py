@@ -1,4 +1,4 @@
-"""What was measured: method, equipment and, a sensor a result, every value with U and the decision on it."""
+"""Method, equipment and results: a sensor a result, every value with U and its decision."""
 
 import re
 from collections import Counter
@@ -18,7 +18,7 @@ from service.papers.dcc.elements import (
     DCC,
     ONE,
     SI,
-    Factor,
+    CoverageFactor,
     bare_quantity,
     conformity,
     deviation_measure,
@@ -37,25 +37,28 @@ TRIANGLE = "Each entry with itself and those after it: the matrix is symmetric. 
 
 
 def covariance(found: CertifiedSession) -> Element | None:
-    """The observed parameters' total covariance; None where the session tells no noise."""
+    """Total covariance of the observed parameters; None where the noise is unknown."""
     calibration, units = found.report.calibration, _units(found)
     matrix = np.asarray(calibration.covariance, dtype=float)
-    seen = [k for k, unit in enumerate(units) if unit and np.isfinite(matrix[k, k])]
-    if not seen:
+    observed = [k for k, unit in enumerate(units) if unit and np.isfinite(matrix[k, k])]
+    if not observed:
         return None
     rows = (
         _row(
             calibration.names[k],
-            [Entry(_word(calibration.names[j]), matrix[k, j], product(units[k], units[j])) for j in seen[place:]],
+            [
+                CovarianceEntry(_word(calibration.names[j]), matrix[k, j], product(units[k], units[j]))
+                for j in observed[place:]
+            ],
         )
-        for place, k in enumerate(seen)
+        for place, k in enumerate(observed)
     )
     data = DCC.data(*(part for row in rows for part in row))
     return DCC.result(english("name", TOTAL), english("description", TRIANGLE), data)
 
 
 @dataclass(frozen=True)
-class Entry:
+class CovarianceEntry:
     """One element of the covariance."""
 
     label: str
@@ -64,13 +67,13 @@ class Entry:
     unit: str
 
 
-def _row(name: str, entries: Sequence[Entry]) -> Iterator[Element]:
+def _row(name: str, entries: Sequence[CovarianceEntry]) -> Iterator[Element]:
     """The covariances of one parameter, a list for each unit."""
     for unit in dict.fromkeys(entry.unit for entry in entries):
-        own = [entry for entry in entries if entry.unit == unit]
+        same_unit = [entry for entry in entries if entry.unit == unit]
         numbers = SI.realListXMLList(
-            SI.labelXMLList(" ".join(entry.label for entry in own)),
-            SI.valueXMLList(" ".join(repr(float(entry.value)) for entry in own)),
+            SI.labelXMLList(" ".join(entry.label for entry in same_unit)),
+            SI.valueXMLList(" ".join(repr(float(entry.value)) for entry in same_unit)),
             SI.unitXMLList(unit),
         )
         yield DCC.quantity(english("name", f"covariance of {name}"), numbers)
@@ -95,8 +98,8 @@ def product(first: str, second: str) -> str:
     powers: Counter[str] = Counter()
     for unit, power in FACTOR.findall(first) + FACTOR.findall(second):
         powers[unit] += int(power or 1)
-    written = (unit if power == 1 else f"{unit}\\tothe{{{power}}}" for unit, power in powers.items() if power)
-    return "".join(written) or ONE
+    factors = (unit if power == 1 else f"{unit}\\tothe{{{power}}}" for unit, power in powers.items() if power)
+    return "".join(factors) or ONE
 
 
 def _word(name: str) -> str:
@@ -107,7 +110,7 @@ def _word(name: str) -> str:
 def measurement(found: CertifiedSession) -> Element:
     """The one measurement result of a session."""
     session, calibration = found.report.session, found.report.calibration
-    together = covariance(found)
+    covariances = covariance(found)
     decisions = {(d.sensor, d.parameter): d for d in found.report.decisions if not session.is_reference}
     return DCC.measurementResult(
         english("name", f"{title_of(session)}: {spaced(session.programme)}"),
@@ -117,13 +120,13 @@ def measurement(found: CertifiedSession) -> Element:
         conditions(found.source),
         DCC.results(
             *(_result(sensor, found, decisions) for sensor in calibration.sensors),
-            *(() if together is None else (together,)),
+            *(() if covariances is None else (covariances,)),
         ),
     )
 
 
 def _methods(found: CertifiedSession) -> Iterator[Element]:
-    """With their versions: how it was measured, how its uncertainty was found, how it was judged."""
+    """With their versions: methods of measurement, uncertainty and decision."""
     session, calibration = found.report.session, found.report.calibration
     model = (
         f"Model revision {session.revision}; block axes held by {calibration.gauge}; "
@@ -158,9 +161,9 @@ def _result(
     sensor: SensorCalibration, found: CertifiedSession, decisions: Mapping[tuple[str, str], Decision]
 ) -> Element:
     data = DCC.data()
-    for parameter, seen in sensor.observable.items():
-        unseen = english("text", f"{parameter}: not observable in this session")
-        data.append(_value(sensor, parameter, found) if seen else unseen)
+    for parameter, is_observable in sensor.observable.items():
+        text = english("text", f"{parameter}: not observable in this session")
+        data.append(_value(sensor, parameter, found) if is_observable else text)
         decision = decisions.get((sensor.name, parameter))
         if decision is not None and decision.deviation is not None:
             data.append(_deviation(decision, decision.deviation))
@@ -177,41 +180,47 @@ def _value(sensor: SensorCalibration, parameter: str, found: CertifiedSession) -
     counted = found.source.count_time is not None and sensor.kind != ACCELEROMETER
     unit = value_measure(sensor.kind, parameter, reading, counted=counted)
     name = f"{parameter}, in {reading or '1'} per input" if parameter == "scale" else parameter
-    return quantity(name, estimate.value, unit, estimate.sigma, Factor(k, estimate.dof))
+    return quantity(name, estimate.value, unit, estimate.sigma, CoverageFactor(k, estimate.dof))
 
 
 def _axis(sensor: SensorCalibration, k: float) -> Element:
-    """Three components; the uncertainty is the turn's along each of them."""
+    """Three components; the uncertainty is that of the direction along each of them."""
     assert sensor.axis is not None
     spread = np.sqrt(np.diag(sensor.axis_tangents @ sensor.axis_covariance @ sensor.axis_tangents.T))
     components = zip("xyz", sensor.axis, spread, strict=True)
     return DCC.list(
         english("name", "input axis, block axes"),
-        *(quantity(name, value, ONE, _known(sigma), Factor(k, sensor.axis_dof)) for name, value, sigma in components),
+        *(
+            quantity(name, value, ONE, _known(sigma), CoverageFactor(k, sensor.axis_dof))
+            for name, value, sigma in components
+        ),
     )
 
 
 def _known(sigma: float) -> float | None:
-    """NaN, of a session that tells no noise, is no uncertainty."""
+    """NaN, of a session with unknown noise, is no uncertainty."""
     return float(sigma) if np.isfinite(sigma) else None
 
 
 def _deviation(decision: Decision, deviation: float) -> Element:
-    """The deviation with what it was decided by."""
-    unit, k = deviation_measure(decision.kind, decision.parameter), Factor(decision.coverage_factor, decision.dof)
+    """The deviation with its decision."""
+    unit, k = (
+        deviation_measure(decision.kind, decision.parameter),
+        CoverageFactor(decision.coverage_factor, decision.dof),
+    )
     name = f"{decision.parameter}, deviation from the reference"
-    found = quantity(name, deviation, unit, decision.uncertainty, k)
-    judged = DCC.metaData(
+    element = quantity(name, deviation, unit, decision.uncertainty, k)
+    metadata = DCC.metaData(
         english("declaration", f"{decision.rule}: {decision.verdict.value}"),
         *conformity(decision.verdict),
         DCC.data(*_limits(decision, unit)),
     )
-    found.append(DCC.measurementMetaData(judged))
-    return found
+    element.append(DCC.measurementMetaData(metadata))
+    return element
 
 
 def _limits(decision: Decision, unit: str) -> Iterator[Element]:
-    """What the decision was made by."""
+    """Limits of the decision."""
     yield bare_quantity("tolerance", decision.tolerance, unit)
     if decision.guard_band is not None:
         yield bare_quantity("guard band", decision.guard_band, unit)

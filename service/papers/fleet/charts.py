@@ -2,19 +2,20 @@
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any
 
 import altair as alt
 
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.wording import counted
 from service.fleet.records import LAST, NOT_JUDGED, STEP, Tally
 from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
+from service.sessions.decision import Verdict
 from service.sessions.words.conditions import CONDITIONS, Condition, condition_of
 
 HEIGHT = 120
 """Pixels: the whole fleet in one low strip above its table."""
-TITLE = say("tolerance used by the worst parameter, U included, %; the last bar holds all from {last} on", last=LAST)
+TITLE = say("tolerance used by the worst parameter, U included, %; the last bar holds all from {limit} on", limit=LAST)
 TICKS = list(range(0, LAST + 1, 2 * STEP))
 """Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
 
@@ -23,18 +24,22 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
     """Units by the share of the tolerance that their worst parameter uses, uncertainty included."""
     counts: dict[tuple[int, Condition], int] = {}
     for tally in tallies:
-        condition = condition_of(tally.verdict, is_reference=tally.is_reference)
-        if tally.bar != NOT_JUDGED and condition in CONDITIONS:
-            key = (tally.bar * STEP, condition)
+        if is_drawn(tally):
+            key = (tally.bar * STEP, condition_of(tally.verdict))
             counts[key] = counts.get(key, 0) + tally.units
     rows = _stacked(counts)
     text = say("{counts} by tolerance used", counts=counted(sum(counts.values()), "unit"))
     return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, None, {DATA_FORM: rows}),))
 
 
-def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[dict[str, Any]]:
+def is_drawn(tally: Tally) -> bool:
+    """Whether its units were judged against their tolerance: of what is undecided no share of it is claimed."""
+    return tally.bar != NOT_JUDGED and tally.verdict is not Verdict.UNDECIDABLE
+
+
+def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[Json]:
     """Bars with the better conditions below."""
-    rows: list[dict[str, Any]] = []
+    rows: list[Json] = []
     top: dict[int, int] = {}
     for (left, condition), count in sorted(counts.items(), key=lambda item: (item[0][0], -item[0][1].rank)):
         below = top.get(left, 0)
@@ -44,7 +49,7 @@ def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[dict[str, Any]
 
 
 @cache
-def _spec() -> dict[str, Any]:
+def _spec() -> Json:
     names = [condition.formal for condition in CONDITIONS]
     colours = [f"var(--{condition.key})" for condition in CONDITIONS]
     x = alt.X("left:Q", title=TITLE, scale=alt.Scale(domain=[0, LAST + STEP]), axis=alt.Axis(values=TICKS))

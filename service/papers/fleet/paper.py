@@ -1,24 +1,27 @@
 """The fleet on paper: how it stands, then a section for every unit that is not fit."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
 from estimator.message import joined, say
 from estimator.wording import counted
-from service.fleet.condition import FleetCondition, UnitSummary
-from service.fleet.records import NOT_JUDGED, FleetQuery, Tally
+from service.fleet.condition import ConditionCount, UnitSummary
+from service.fleet.records import FleetQuery, Tally
 from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
-from service.kit.measures import COVERAGE, day_of, deviation_measure, measured, number, signed
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
+from service.judging.use import in_words
+from service.kit.measures import COVERAGE, day_of, deviation_measure, measured, signed
 from service.languages.language import Language
 from service.outlook.charts import history_charts, tracks_of
 from service.outlook.populations import Placed, Population
 from service.outlook.records import DueDate
 from service.outlook.store import Outlooks, Populations
-from service.papers.fleet.charts import fleet_chart
+from service.papers.fleet.charts import fleet_chart, is_drawn
 from service.papers.fleet.report import FleetReport
-from service.papers.found_and_left import Moved, moved
+from service.papers.found_and_left import JudgedChange, moved
 from service.papers.typeset import picture, typeset
 from service.sessions.decision import Decision, Verdict
 from service.sessions.records import HistoryPoint
@@ -34,7 +37,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Line:
+class FleetLine:
     """One unit in the ranking."""
 
     unit: str
@@ -42,6 +45,8 @@ class Line:
     condition: Condition
     but: str
     """What the verdict is said with; empty where it is plain."""
+    use: str
+    """What it may be used for, and what to do."""
     worst: str
     used: str
     """Share of the tolerance, uncertainty included."""
@@ -50,13 +55,13 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Section:
+class FleetSection:
     """One unit that is not fit."""
 
-    line: Line
+    line: FleetLine
     reason: str
     diagnosis: str
-    moved: tuple[Moved, ...]
+    moved: tuple[JudgedChange, ...]
     """The parameters that did not pass, worst first."""
     more: int
     """How many others did not."""
@@ -65,28 +70,39 @@ class Section:
     history_of: str
 
 
-def line_of(unit: UnitSummary) -> Line:
+def line_of(unit: UnitSummary, usable: Usable) -> FleetLine:
     """How the unit stands, in people's units."""
-    return Line(
+    condition = condition_of(unit.verdict, is_reference=unit.is_reference)
+    return FleetLine(
         unit=unit.serial,
         unit_type=unit.unit_type,
-        condition=condition_of(unit.verdict, is_reference=unit.is_reference),
+        condition=condition,
         but=but(unit.reservations),
+        use=in_words(usable.use, usable.action),
         worst=joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter))),
-        used="" if unit.margin is None else f"{number(100 * (1 - unit.margin), 0)} %",
+        used="" if unit.used is None else unit.used.words,
         last="" if unit.last_at is None else day_of(unit.last_at),
         simulated=unit.simulated,
     )
 
 
-def sections_of(store: Store, units: Sequence[UnitSummary], language: Language) -> tuple[Section, ...]:
+def sections_of(
+    store: Store, units: Sequence[UnitSummary], uses: Mapping[str, Usable], language: Language
+) -> tuple[FleetSection, ...]:
     """Sections of units, with three queries for all of them."""
     serials = tuple(unit.serial for unit in units)
     decisions = _grouped((serial, decision) for serial, _, decision in FleetRows(store).latest_decisions(serials))
     points = _grouped(FleetRows(store).worst_histories(serials))
     services = FleetRows(store).services(serials)
     return tuple(
-        _section(unit, decisions.get(unit.serial, []), points.get(unit.serial, []), services, language)
+        _section(
+            line_of(unit, uses[unit.serial]),
+            unit,
+            decisions.get(unit.serial, []),
+            points.get(unit.serial, []),
+            services,
+            language,
+        )
         for unit in units
     )
 
@@ -99,15 +115,16 @@ def _grouped(rows: Iterable[tuple[str, T]]) -> dict[str, list[T]]:
 
 
 def _section(
+    line: FleetLine,
     unit: UnitSummary,
     decisions: list[Decision],
     points: list[HistoryPoint],
     services: tuple[Service, ...],
     language: Language,
-) -> Section:
-    line, wrong = line_of(unit), _worst_first(decisions)
+) -> FleetSection:
+    wrong = _worst_first(decisions)
     history = _history(points, tuple(service for service in services if service.unit == unit.serial), language)
-    return Section(
+    return FleetSection(
         line=line,
         reason=unit.reason,
         diagnosis=unit.diagnosis,
@@ -146,17 +163,7 @@ NOT_FIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL, Verdict.UNDECIDABLE)
 
 
 @dataclass(frozen=True)
-class Count:
-    """How many units are in one condition."""
-
-    condition: Condition
-    count: int
-    reserved: int
-    """Of how many of them the verdict is said with a reservation."""
-
-
-@dataclass(frozen=True)
-class Notice:
+class PaperNotice:
     """One unit that is overdue, or that stands out."""
 
     unit: str
@@ -170,14 +177,15 @@ class FleetPaper:
     day: str
     total: int
     simulated: int
-    counts: tuple[Count, ...]
+    counts: tuple[ConditionCount, ...]
+    """Worst first, every unit once."""
     chart: str
-    overdue: tuple[Notice, ...]
+    overdue: tuple[PaperNotice, ...]
     more_overdue: int
-    standing_out: tuple[Notice, ...]
+    standing_out: tuple[PaperNotice, ...]
     """Parameters that drift otherwise than those of the type's other units."""
-    ranked: tuple[Line, ...]
-    sections: tuple[Section, ...]
+    ranked: tuple[FleetLine, ...]
+    sections: tuple[FleetSection, ...]
     not_fit: int
     software: str
 
@@ -189,43 +197,40 @@ def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.E
 
 def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetPaper:
     """What the paper says."""
-    judged = [t for t in report.tallies if t.bar != NOT_JUDGED and _condition(t) is not REFERENCE]
+    judged = any(is_drawn(tally) for tally in report.tallies)
     overdue = [one for one in Outlooks(store).due(MOST_NOTICES) if one.at < report.at]
     chart = fleet_chart(report.tallies)
+    ranked = Fleet(store).units(FleetQuery(limit=MOST_RANKED))
+    unfit = Fleet(store).units(FleetQuery(unfit=True, limit=MOST_SECTIONS))
+    uses = usable_of(store, (*ranked, *unfit), report.at)
     return FleetPaper(
         day=day_of(report.at),
         total=report.condition.units,
         simulated=report.condition.simulated,
-        counts=_counts(report.condition),
+        counts=report.condition.counts,
         chart=picture(chart, chart.panels[0], WIDTH, language) if judged else "",
-        overdue=tuple(Notice(one.unit, _since(one, report)) for one in overdue),
+        overdue=tuple(PaperNotice(one.unit, _since(one, report)) for one in overdue),
         more_overdue=report.overdue - len(overdue),
         standing_out=_standing_out(store),
-        ranked=tuple(line_of(unit) for unit in Fleet(store).units(FleetQuery(limit=MOST_RANKED))),
-        sections=sections_of(store, Fleet(store).units(FleetQuery(unfit=True, limit=MOST_SECTIONS)), language),
+        ranked=tuple(line_of(unit, uses[unit.serial]) for unit in ranked),
+        sections=sections_of(store, unfit, uses, language),
         not_fit=sum(tally.units for tally in report.tallies if _is_not_fit(tally)),
         software=report.software,
     )
 
 
-def _counts(fleet: FleetCondition) -> tuple[Count, ...]:
-    """Worst first."""
-    found = reversed(fleet.verdicts.items())
-    return tuple(Count(condition_of(verdict), count, fleet.reserved.get(verdict, 0)) for verdict, count in found)
-
-
 def _since(one: DueDate, report: FleetReport) -> str:
     """``since 3 Mar 2026 (263 days)``."""
     due = one.at
-    return say("since {due} ({days})", due=day_of(due), days=counted((report.at - due).days, "day"))
+    return say("since {date} ({days})", date=day_of(due), days=counted((report.at - due).days, "day"))
 
 
-def _standing_out(store: Store) -> tuple[Notice, ...]:
+def _standing_out(store: Store) -> tuple[PaperNotice, ...]:
     """The furthest out of their types, of those whose drift chance does not explain."""
     populations = Populations(store).most_evident(MOST_NOTICES)
     found = [(one, own) for own in populations for one in own.evident if abs(one.z) > STANDS_OUT]
     furthest = sorted(found, key=lambda pair: (-abs(pair[0].z), pair[0].serial, pair[0].sensor, pair[1].parameter))
-    return tuple(Notice(one.serial, _drift(one, own)) for one, own in furthest[:MOST_NOTICES])
+    return tuple(PaperNotice(one.serial, _drift(one, own)) for one, own in furthest[:MOST_NOTICES])
 
 
 def _drift(one: Placed, own: Population) -> str:

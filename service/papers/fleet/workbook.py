@@ -2,18 +2,20 @@
 
 import io
 from collections.abc import Iterator
-from datetime import datetime
 
 from estimator.message import say
 from service.fleet.condition import UnitSummary
 from service.fleet.records import FleetQuery
 from service.fleet.rows_store import FleetRows
 from service.fleet.store import Fleet
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
+from service.judging.use import in_words
 from service.judging.words import unit_in_words
 from service.kit.measures import MEASURES, Measure, in_measure, value_measure
 from service.languages.language import Language
 from service.papers.fleet.report import MOST_UNITS, FleetReport
-from service.papers.sheets import Cell, Column, Kind, Workbook
+from service.papers.sheets import Cell, CellKind, Column, Workbook
 from service.sessions.decision import Decision
 from service.sessions.records import HistoryPoint
 from service.sessions.words.conditions import condition_of, said_with
@@ -28,29 +30,30 @@ fleet is made in seconds. The tables of the API have all."""
 UNIT, SESSION = Column("Unit", width=16, is_named=True), Column("Session", width=23, is_named=True)
 SENSOR = Column("Sensor", width=9, is_named=True)
 FLEET = (
-    UNIT, Column("Type", width=22, is_named=True), Column("Condition", Kind.VERDICT, 24),
+    UNIT, Column("Type", width=22, is_named=True), Column("Condition", CellKind.VERDICT, 24),
     Column("Worst sensor", is_named=True), Column("Worst parameter"),
-    Column("Tolerance used, with U", Kind.SHARE, 12), Column("Margin to tolerance", Kind.SHARE, 12),
-    Column("Last session, UTC", Kind.TIME, 17), Column("Next calibration due", Kind.DATE, 13),
+    Column("Tolerance used, with U", CellKind.SHARE, 12), Column("Margin to tolerance", CellKind.SHARE, 12),
+    Column("Last session, UTC", CellKind.TIME, 17), Column("Next calibration due", CellKind.DATE, 13),
     Column("Overdue", width=9),
-    Column("Sessions", Kind.NUMBER, 9), Column("Open flags", Kind.NUMBER, 9), Column("Simulated", width=10),
-    Column("Why", width=60), Column("Why due then", width=50), Column("What the simulation gets wrong", width=60),
-    SESSION, Column("Verdict in words", width=60),
+    Column("Sessions", CellKind.NUMBER, 9), Column("Open flags", CellKind.NUMBER, 9), Column("Simulated", width=10),
+    Column("Why", width=60), Column("Why due then", width=50), Column("Diagnosis", width=60),
+    SESSION, Column("Verdict in words", width=60), Column("May it be used", width=40),
 )  # fmt: skip
 PARAMETERS = (
     UNIT, SESSION, SENSOR, Column("Kind"),
-    Column("Parameter", width=13), Column("Value", Kind.NUMBER), Column("Reference", Kind.NUMBER),
-    Column("Unit of value", width=12), Column("Deviation", Kind.CHANGE), Column("U of deviation", Kind.CHANGE),
-    Column("k", Kind.NUMBER, 5), Column("Tolerance", Kind.CHANGE), Column("Unit of deviation", width=12),
-    Column("Probability out of tolerance", Kind.CHANCE), Column("Margin to tolerance", Kind.SHARE, 12),
-    Column("Verdict", Kind.VERDICT, 15), Column("Rule", width=34),
+    Column("Parameter", width=13), Column("Value", CellKind.NUMBER), Column("Reference", CellKind.NUMBER),
+    Column("Unit of value", width=12), Column("Deviation", CellKind.CHANGE), Column("U of deviation", CellKind.CHANGE),
+    Column("k", CellKind.NUMBER, 5), Column("Tolerance", CellKind.CHANGE), Column("Unit of deviation", width=12),
+    Column("Probability out of tolerance", CellKind.CHANCE), Column("Margin to tolerance", CellKind.SHARE, 12),
+    Column("Verdict", CellKind.VERDICT, 15), Column("Rule", width=34),
 )  # fmt: skip
 HISTORIES = (
-    UNIT, Column("Measured, UTC", Kind.TIME, 17), SENSOR, Column("Kind"),
-    Column("Parameter", width=13), Column("Value", Kind.NUMBER), Column("Lower, −U", Kind.NUMBER),
-    Column("Upper, +U", Kind.NUMBER), Column("Unit of value", width=12), Column("Deviation", Kind.CHANGE),
-    Column("U of deviation", Kind.CHANGE), Column("Unit of deviation", width=12), Column("Verdict", Kind.VERDICT, 15),
-    Column("Model revision", Kind.NUMBER, 9), SESSION,
+    UNIT, Column("Measured, UTC", CellKind.TIME, 17), SENSOR, Column("Kind"),
+    Column("Parameter", width=13), Column("Value", CellKind.NUMBER), Column("Lower, −U", CellKind.NUMBER),
+    Column("Upper, +U", CellKind.NUMBER), Column("Unit of value", width=12), Column("Deviation", CellKind.CHANGE),
+    Column("U of deviation", CellKind.CHANGE), Column("Unit of deviation", width=12),
+    Column("Verdict", CellKind.VERDICT, 15),
+    Column("Model revision", CellKind.NUMBER, 9), SESSION,
 )  # fmt: skip
 ABOUT = (Column("What", width=26), Column("Value", width=110))
 """The columns of the four sheets; widths in characters, for the longest usual text."""
@@ -63,7 +66,8 @@ def fleet_xlsx(store: Store, report: FleetReport, language: Language = Language.
     serials = tuple(unit.serial for unit in units[:MOST_DETAILED])
     sessions = _sessions_shown(store, serials)
     book = Workbook(target, report.at, "Fleet report", language)
-    book.table("Fleet", FLEET, (_fleet_row(unit, report.at) for unit in units))
+    uses = usable_of(store, units, report.at)
+    book.table("Fleet", FLEET, (_fleet_row(unit, uses[unit.serial]) for unit in units))
     book.table("Parameters", PARAMETERS, (_parameter_row(*row) for row in FleetRows(store).latest_decisions(serials)))
     book.table("Histories", HISTORIES, (_history_row(*row) for row in FleetRows(store).histories(serials, sessions)))
     book.table("About", ABOUT, _about(report, sessions, len(serials) if len(units) > len(serials) else None))
@@ -76,16 +80,16 @@ def _sessions_shown(store: Store, serials: tuple[str, ...]) -> int:
     return max(1, MOST_HISTORY_ROWS // max(1, FleetRows(store).points_of_latest(serials)))
 
 
-def _fleet_row(unit: UnitSummary, now: datetime) -> tuple[Cell, ...]:
+def _fleet_row(unit: UnitSummary, usable: Usable) -> tuple[Cell, ...]:
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
-    word = said_with(condition, unit.reservations).word
+    word, used = said_with(condition, unit.reservations).word, unit.used
     return (
         unit.serial, unit.unit_type, word, unit.worst_sensor, unit.worst_parameter,
-        None if unit.margin is None else 1 - unit.margin, unit.margin, unit.last_at,
-        unit.due, unit.due is not None and unit.due < now,
+        None if used is None else used.deviation + used.expanded, None if used is None else unit.margin, unit.last_at,
+        usable.due, usable.is_overdue,
         unit.sessions, unit.flags, unit.simulated,
         unit.reason, unit.due_reason or None, unit.diagnosis, unit.last_session,
-        unit_in_words(unit),
+        unit_in_words(unit), in_words(usable.use, usable.action),
     )  # fmt: skip
 
 
@@ -116,7 +120,10 @@ def _units(kind: str, parameter: str) -> tuple[Measure, Measure]:
 
 
 def _about(report: FleetReport, sessions: int, only: int | None) -> Iterator[tuple[Cell, ...]]:
-    yield "Made", say("{at} UTC by imu-health {software}", at=f"{report.at:%Y-%m-%d %H:%M}", software=report.software)
+    yield (
+        "Made",
+        say("{time} UTC by imu-health {software}", time=f"{report.at:%Y-%m-%d %H:%M}", software=report.software),
+    )
     yield (
         "Units",
         say(
@@ -132,11 +139,15 @@ def _about(report: FleetReport, sessions: int, only: int | None) -> Iterator[tup
     else:
         yield (
             "Sheet Parameters",
-            say("The latest session of each of the {only} units at the top of the sheet Fleet.", only=only),
+            say("The latest session of each of the {number} units at the top of the sheet Fleet.", number=only),
         )
         yield (
             "Sheet Histories",
-            say("The newest sessions of these {only} units, at most {sessions} of each.", only=only, sessions=sessions),
+            say(
+                "The newest sessions of these {number} units, at most {sessions} of each.",
+                number=only,
+                sessions=sessions,
+            ),
         )
     yield "U", "Expanded uncertainty, k times the standard one."
     yield "Deviation", "From the unit's reference session, without what all sensors did together."

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from service.papers.onboard import ardupilot, kalibr, px4, ros2
-from service.papers.onboard.given import Given
+from service.papers.onboard.given import ExportInput
 
 __all__ = ["FORMS", "Form", "System"]
 
@@ -20,19 +20,19 @@ class System(StrEnum):
 
 
 @dataclass(frozen=True)
-class Form:
+class ExportForm:
     """How a system's parameters are written."""
 
     name: str
     """As people call the system."""
     ending: str
     """Of the file's name."""
-    written: Callable[[Given], str]
+    written: Callable[[ExportInput], str]
 
 
 FORMS = {
-    System.PX4: Form("PX4", "params", px4.written),
-    System.ARDUPILOT: Form("ArduPilot", "parm", ardupilot.written),
-    System.KALIBR: Form("Kalibr", "yaml", kalibr.written),
-    System.ROS2: Form("ROS 2", "yaml", ros2.written),
+    System.PX4: ExportForm("PX4", "params", px4.written),
+    System.ARDUPILOT: ExportForm("ArduPilot", "parm", ardupilot.written),
+    System.KALIBR: ExportForm("Kalibr", "yaml", kalibr.written),
+    System.ROS2: ExportForm("ROS 2", "yaml", ros2.written),
 }

@@ -7,9 +7,13 @@ from datetime import datetime
 import numpy as np
 
 from estimator.allan import BlockNoise
+from estimator.message import say
 from estimator.nominal_vector import NominalVector
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from service.errors import ConflictError
+from service.judging.records import Usable
+from service.judging.use import Use, in_words
+from service.sessions.states import RecordState
 
 STANDARD_GRAVITY = 9.80665
 """m/s², at which what is left of an accelerometer's error is stated."""
@@ -18,17 +22,23 @@ FRAME = (
     "The driver's sensor axes must be the block's.",
 )
 DIGITS = 9
+FORCE = "Where you need its parameters all the same, force it: `force=true`, `--force`."
+REFUSED = "{unit} must not be used: {why} {force}"
+NOT_COUNTED = "This session is {state}: its parameters are not handed on. {force}"
 
 
 @dataclass(frozen=True)
-class Given:
+class ExportInput:
     """The correction of one session."""
 
     unit: str
     session: str
     measured_at: datetime
+    state: RecordState
     verdict: str
-    """In the words of every page."""
+    """With its reservations, in the words of every page."""
+    use: Usable
+    """What the unit may be used for now."""
     simulated: bool
     software: str
     vectors: dict[str, NominalVector]
@@ -47,7 +57,7 @@ class Given:
         return self.vectors.get(GYROSCOPE)
 
 
-def noisiest(given: Given, kind: str, term: str) -> float | None:
+def noisiest(given: ExportInput, kind: str, term: str) -> float | None:
     """The largest size of a term of noise, SI; None where the session does not decide it of every sensor of a kind."""
     sensors = () if given.noise is None else given.noise.sensors
     sizes = [sensor.term(term).value for sensor in sensors if sensor.kind == kind]
@@ -55,18 +65,37 @@ def noisiest(given: Given, kind: str, term: str) -> float | None:
     return max(decided) if decided and len(decided) == len(sizes) else None
 
 
-def heading(given: Given, system: str) -> Iterator[str]:
+def heading(given: ExportInput, system: str) -> Iterator[str]:
     """The first comments of a file."""
     yield f"{system} parameters of unit {given.unit}, by {given.software}"
     yield f"session {given.session}, measured {given.measured_at:%Y-%m-%dT%H:%M:%SZ}: {given.verdict}"
+    yield from _uses(given)
     if given.simulated:
         yield "SIMULATED: this unit does not exist"
     yield from FRAME
 
 
+def _uses(given: ExportInput) -> Iterator[str]:
+    """What must be known before the numbers are used."""
+    if given.state is not RecordState.ACCEPTED:
+        yield f"THIS SESSION IS {given.state.value.upper()}"
+    if given.use.use is not Use.YES:
+        said = in_words(given.use.use, given.use.action)
+        yield f"{given.use.as_of:%Y-%m-%d}: {said if given.use.usable else said.upper()}"
+        yield from (*given.use.reasons, *given.use.reservations)
+
+
+def check(given: ExportInput) -> None:
+    """ConflictError where the unit must not be used, or the session does not count."""
+    if given.state is not RecordState.ACCEPTED:
+        raise ConflictError(say(NOT_COUNTED, state=given.state.value, force=FORCE))
+    if not given.use.usable:
+        raise ConflictError(say(REFUSED, unit=given.unit, why=given.use.why, force=FORCE))
+
+
 def commented(lines: Iterator[str]) -> list[str]:
     """As comments of all four systems."""
-    return [f"# {line}" for line in lines]
+    return [f"# {' '.join(line.split())}" for line in lines]
 
 
 def unmixed(vector: NominalVector) -> tuple[Array, Array]:
@@ -101,7 +130,7 @@ class Names:
     gyro_offset: str
 
 
-def parameters(given: Given, names: Names) -> Iterator[tuple[str, float]]:
+def parameters(given: ExportInput, names: Names) -> Iterator[tuple[str, float]]:
     """Name and value, m/s², none and rad/s, of ``(raw − offset)·scale`` and of gyros ``raw − offset``.
 
     ConflictError where the axes lie so far from the nominal ones that no scale an axis puts them right."""
@@ -124,7 +153,7 @@ def _named(name: str, values: Array) -> Iterator[tuple[str, float]]:
         yield name.format(axis), float(value)
 
 
-def left_of(given: Given) -> Iterator[str]:
+def left_of(given: ExportInput) -> Iterator[str]:
     """One sentence a kind of sensor."""
     if given.accelerometers is not None:
         angle = misalignment(given.accelerometers)

@@ -11,7 +11,7 @@ import numpy as np
 import yaml
 
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
-from service.papers.onboard.given import Given, commented, heading, noisiest, number
+from service.papers.onboard.given import ExportInput, commented, heading, noisiest, number
 
 NOISE = "noise densities and random walks that are not here are not decided by this session: add them from a long rest"
 OF_REST = "noise densities and random walks are those of the noisiest sensor at rest, m/s^2 and rad/s per sqrt(Hz)"
@@ -25,7 +25,7 @@ DENSITIES = (
 TURNED = "C_imu_block turns block axes into Kalibr's, in which the accelerometers' M is lower triangular"
 
 
-def written(given: Given) -> str:
+def written(given: ExportInput) -> str:
     """The file."""
     turned, found = np.eye(3), dict[str, object](model="scale-misalignment")
     if given.accelerometers is not None:
@@ -40,7 +40,7 @@ def written(given: Given) -> str:
     return "\n".join([*commented(_notes(given)), yaml.safe_dump({"imu0": found}, sort_keys=False, width=10_000)])
 
 
-def _notes(given: Given) -> Iterator[str]:
+def _notes(given: ExportInput) -> Iterator[str]:
     yield from heading(given, "Kalibr")
     yield TURNED
     if _densities(given):
@@ -49,7 +49,7 @@ def _notes(given: Given) -> Iterator[str]:
         yield NOISE
 
 
-def _densities(given: Given) -> dict[str, float]:
+def _densities(given: ExportInput) -> dict[str, float]:
     sizes = ((name, noisiest(given, kind, term)) for name, kind, term in DENSITIES if kind in given.vectors)
     return {name: float(number(size)) for name, size in sizes if size is not None}
 

@@ -10,13 +10,13 @@ import yaml
 
 from estimator.codec import json_numbers
 from estimator.nominal_vector import NominalVector
-from service.papers.onboard.given import Given, commented, heading
+from service.papers.onboard.given import ExportInput, commented, heading
 
 NODE = "imu_calibration"
 RULE = "corrected = SM * raw - bias; covariance: of SM row by row and bias, 12 by 12, row by row"
 
 
-def written(given: Given) -> str:
+def written(given: ExportInput) -> str:
     """The file."""
     kinds = {"linear_acceleration": given.accelerometers, "angular_velocity": given.gyros}
     found = {name: _numbers(vector) for name, vector in kinds.items() if vector is not None}
@@ -24,7 +24,7 @@ def written(given: Given) -> str:
     return "\n".join([*commented(_notes(given)), text])
 
 
-def _notes(given: Given) -> Iterator[str]:
+def _notes(given: ExportInput) -> Iterator[str]:
     yield from heading(given, "ROS 2")
     yield RULE
 

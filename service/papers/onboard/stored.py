@@ -1,16 +1,20 @@
 """The correction of a stored session, as the parameter files of other systems are written from."""
 
+from datetime import datetime
+
 from estimator.nominal_vector import nominal_vector
 from service.errors import ConflictError
+from service.judging.usable_reading import usable_unit
+from service.judging.words import verdict_in_words
 from service.papers.correction import corrected
-from service.papers.onboard.given import Given
+from service.papers.onboard.given import ExportInput
 from service.sessions.calibrations_store import Noises
 from service.sessions.words.conditions import condition_of
 from service.settings import VERSION
 from service.storage import Storage
 
 
-def given_of(storage: Storage, id: str) -> Given:
+def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
     """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
     vector that a driver makes holds it too."""
     one = corrected(storage, id)
@@ -18,12 +22,16 @@ def given_of(storage: Storage, id: str) -> Given:
         why = "; ".join(f"{name}: {reason}" for name, reason in one.found.left_out)
         raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
     with storage.database.reading() as store:
-        noise = Noises(store).get(id)
-    return Given(
+        noise, use = Noises(store).get(id), usable_unit(store, one.stored.unit, now)
+    return ExportInput(
         unit=one.stored.unit,
         session=one.stored.id,
         measured_at=one.stored.started_at,
-        verdict=condition_of(one.stored.verdict, is_reference=one.stored.is_reference).word,
+        state=one.stored.state,
+        verdict=verdict_in_words(
+            condition_of(one.stored.verdict, is_reference=one.stored.is_reference), one.stored.reservations
+        ),
+        use=use,
         simulated=one.stored.simulated,
         software=f"imu-health {VERSION}",
         vectors={block.kind: nominal_vector(one.session, block) for block in one.found.blocks},

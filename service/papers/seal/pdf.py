@@ -14,15 +14,15 @@ from pyhanko_certvalidator.registry import SimpleCertificateStore
 from service.papers.seal.keys import KeyPair
 
 FIELD = "Seal"
-"""Of the document's form; it holds the signature and is not drawn."""
-WHY = "Approved calibration certificate"
+"""Form field of the signature, which is not drawn."""
+REASON = "Approved calibration certificate"
 
 
 def sealed_pdf(pair: KeyPair, content: bytes) -> bytes:
-    """The same document with a signature appended; not a byte before it is changed."""
+    """The same document with a signature appended; no byte before it is changed."""
     meta = PdfSignatureMetadata(
         field_name=FIELD,
-        reason=WHY,
+        reason=REASON,
         md_algorithm="sha256",
         subfilter=SigSeedSubFilter.PADES,
         certify=True,
@@ -37,8 +37,8 @@ def sealed_pdf(pair: KeyPair, content: bytes) -> bytes:
 def _signer(pair: KeyPair) -> SimpleSigner:
     """As pyhanko's own types."""
     key = pair.key.private_bytes(Encoding.DER, PrivateFormat.PKCS8, NoEncryption())
-    certificates = (Certificate.load(one.public_bytes(Encoding.DER)) for one in (pair.certificate, *pair.chain))
-    own, *chain = certificates
+    certificates = (Certificate.load(item.public_bytes(Encoding.DER)) for item in (pair.certificate, *pair.chain))
+    certificate, *chain = certificates
     store = SimpleCertificateStore()  # type: ignore[no-untyped-call]
     store.register_multiple(chain)
-    return SimpleSigner(own, PrivateKeyInfo.load(key), store)
+    return SimpleSigner(certificate, PrivateKeyInfo.load(key), store)

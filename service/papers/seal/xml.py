@@ -8,8 +8,8 @@ from signxml.xades.xades import XAdESDataObjectFormat, XAdESSigner
 from service.kit.printable import sealed_document
 from service.papers.seal.keys import KeyPair
 
-WHAT = "Digital Calibration Certificate"
-"""As the signature describes what it signs."""
+DESCRIPTION = "Digital Calibration Certificate"
+"""Description of the signed data in the signature."""
 
 
 def sealed_xml(pair: KeyPair, content: bytes) -> bytes:
@@ -19,7 +19,7 @@ def sealed_xml(pair: KeyPair, content: bytes) -> bytes:
         method=SignatureConstructionMethod.enveloped,
         signature_algorithm=SignatureMethod.RSA_SHA256 if is_rsa else SignatureMethod.ECDSA_SHA256,
         digest_algorithm=DigestAlgorithm.SHA256,
-        data_object_format=XAdESDataObjectFormat(Description=WHAT, MimeType="text/xml"),
+        data_object_format=XAdESDataObjectFormat(Description=DESCRIPTION, MimeType="text/xml"),
     )
     signed = signer.sign(etree.fromstring(content), key=pair.key, cert=[pair.certificate, *pair.chain])
     return sealed_document(signed)

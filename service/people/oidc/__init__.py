@@ -1,1 +1,1 @@
-"""Signing in at an OpenID provider: the protocol, and the way there and back. Optional; this folder can be deleted."""
+"""Signing in at an OpenID provider: the protocol and its routes. Optional; this folder can be deleted."""

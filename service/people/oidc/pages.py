@@ -1,4 +1,4 @@
-"""The way to the provider that people may sign in at, and back; closed where the operator has set no provider."""
+"""Redirects to the sign-in provider and back; closed where none is configured."""
 
 from typing import Annotated
 from urllib.parse import quote, unquote
@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import RedirectResponse
 
 from service.errors import NotFoundError, ServiceError, SignInError
-from service.people.account_pages import SignInPage, inside, is_secure, signed_in
+from service.people.account_pages import SignInPage, is_secure, local_address, signed_in
 from service.people.admission import Gate
 from service.people.dependencies import SEE_OTHER, StorageOf
 from service.people.provider import Answer, Journey, Provider, joining_of
@@ -21,13 +21,13 @@ from service.web.render import render
 
 router = APIRouter(include_in_schema=False)
 COOKIE, PATH = "imu-health-oidc", "/oidc"
-"""Holds the secret of a journey and where it leads; sent nowhere else."""
-LASTS = 600
-"""Seconds of a journey: somebody may have to find their second factor."""
+"""Holds the secret of a sign-in and its target; sent nowhere else."""
+LIFETIME_SECONDS = 600
+"""Seconds for a sign-in: a second factor may be needed."""
 NOT_SET = "Nobody signs in elsewhere here: no provider is set."
 NOT_BEGUN = "This sign-in was not begun in this browser, or more than ten minutes ago. Try again."
 DECLINED = "The provider did not sign you in. Try again, or ask an administrator."
-Brought = Annotated[str, Query(max_length=4000, pattern=NO_NUL)]
+CallbackText = Annotated[str, Query(max_length=4000, pattern=NO_NUL)]
 
 
 @router.get("/oidc/start")
@@ -37,9 +37,9 @@ def start(
     """Sends the browser to the provider."""
     journey = Journey(new_secret())
     answer = RedirectResponse(_provider(request).address(journey, _back(request, settings)), SEE_OTHER)
-    held = f"{journey.secret}.{quote(inside(next), safe='')}"
+    cookie = f"{journey.secret}.{quote(local_address(next), safe='')}"
     secure = is_secure(request, settings)
-    answer.set_cookie(COOKIE, held, max_age=LASTS, path=PATH, httponly=True, samesite="lax", secure=secure)
+    answer.set_cookie(COOKIE, cookie, max_age=LIFETIME_SECONDS, path=PATH, httponly=True, samesite="lax", secure=secure)
     return answer
 
 
@@ -50,28 +50,28 @@ def come_back(
     settings: SettingsOf,
     now: Now,
     *,
-    code: Brought = "",
-    state: Brought = "",
+    code: CallbackText = "",
+    state: CallbackText = "",
     iss: Annotated[str | None, Query(max_length=4000, pattern=NO_NUL)] = None,
 ) -> Response:
-    """Signs in whom the provider names, or says why not."""
+    """Signs the person in, or shows the error."""
     provider = _provider(request)
     secret, _, next = request.cookies.get(COOKIE, "").partition(".")
-    to = inside(unquote(next))
+    to = local_address(unquote(next))
     try:
-        found = _found(Answer(code, state, iss), secret)
-        claims = provider.claims(found, Journey(secret), _back(request, settings), now)
+        callback = _valid(Answer(code, state, iss), secret)
+        claims = provider.claims(callback, Journey(secret), _back(request, settings), now)
         answer: Response = signed_in(
             request, settings, sign_in_elsewhere(storage, claims, joining_of(settings), now), to
         )
-    except ServiceError as wrong:
-        answer = render(request, "sign_in.html", SignInPage(to, wrong.detail, provider.name), wrong.status)
+    except ServiceError as fault:
+        answer = render(request, "sign_in.html", SignInPage(to, fault.detail, provider.name), fault.status)
     answer.delete_cookie(COOKIE, path=PATH)
     return answer
 
 
-def _found(answer: Answer, secret: str) -> Answer:
-    """What came back, as far as it can be an answer at all."""
+def _valid(answer: Answer, secret: str) -> Answer:
+    """The answer, if it can be valid at all."""
     if not secret:
         raise SignInError(NOT_BEGUN)
     if not answer.code:
@@ -87,6 +87,6 @@ def _provider(request: Request) -> Provider:
 
 
 def _back(request: Request, settings: Settings) -> str:
-    """Where the provider sends the browser: its operator has written this address down."""
-    own = settings.public_url.rstrip("/") or str(request.base_url).rstrip("/")
-    return f"{own}/oidc/callback"
+    """Redirect address, as registered at the provider."""
+    base = settings.public_url.rstrip("/") or str(request.base_url).rstrip("/")
+    return f"{base}/oidc/callback"

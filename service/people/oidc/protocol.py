@@ -1,7 +1,7 @@
 """OpenID Connect Core 1.0, the authorization code flow with PKCE (RFC 7636) and RFC 9207.
 
-The provider is asked for its description and its keys at every sign-in: they are few, and a key that it took back opens
-nothing. Its addresses must be at hosts that the operator knows; no redirect is followed, no proxy used.
+The provider's metadata and keys are fetched at every sign-in: sign-ins are few, and a revoked key opens nothing. Its
+addresses must be at allowed hosts; no redirect is followed, no proxy used.
 """
 
 from collections.abc import Mapping
@@ -14,19 +14,20 @@ from joserfc import jwt
 from joserfc.errors import JoseError
 from joserfc.jwk import KeySet
 
+from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
-from service.people.provider import Answer, Claims, Journey, ProviderSet
+from service.people.provider import Answer, Claims, Journey, ProviderSettings
 from service.people.secret import is_same
 
 ALGORITHMS = ("RS256", "PS256", "ES256", "RS384", "RS512", "ES384", "EdDSA")
-"""Signatures with a public key; never `none`, never a key that both sides share."""
+"""Signatures with a public key; never `none`, never a shared key."""
 SCOPE = "openid profile email"
 TIMEOUT = httpx.Timeout(5.0)
-"""Seconds: somebody is waiting in front of a browser."""
+"""Seconds: a person is waiting."""
 MOST_BYTES = 256 * 1024
-"""Of an answer: a description, a set of keys, a token."""
+"""Of an answer: metadata, a set of keys, a token."""
 LEEWAY = 60
 """Seconds by which clocks may differ."""
 LONGEST_SUBJECT = 255
@@ -37,16 +38,16 @@ WELL_KNOWN = "/.well-known/openid-configuration"
 
 
 class OpenIdProvider:
-    """Where somebody signs in."""
+    """A sign-in provider."""
 
-    def __init__(self, own: ProviderSet, name: str) -> None:
-        self._own, self.name = own, name
+    def __init__(self, settings: ProviderSettings, name: str) -> None:
+        self._own, self.name = settings, name
 
     def address(self, journey: Journey, back: str) -> str:
-        """To which the browser is sent."""
+        """Address of the sign-in page."""
         with _http() as http:
-            described = self._described(http)
-        asked = {
+            metadata = self._metadata(http)
+        parameters = {
             "response_type": "code",
             "client_id": self._own.client,
             "redirect_uri": back,
@@ -56,33 +57,35 @@ class OpenIdProvider:
             "code_challenge": journey.challenge,
             "code_challenge_method": "S256",
         }
-        at = self._allowed(described, "authorization_endpoint")
-        return f"{at}{'&' if urlsplit(at).query else '?'}{urlencode(asked)}"
+        endpoint = self._allowed(metadata, "authorization_endpoint")
+        return f"{endpoint}{'&' if urlsplit(endpoint).query else '?'}{urlencode(parameters)}"
 
     def claims(self, answer: Answer, journey: Journey, back: str, now: datetime) -> Claims:
-        """Who it was; SignInError where what came back cannot be believed."""
+        """The person's claims; SignInError for an invalid answer."""
         if not is_same(answer.state, journey.state):
             raise _refused("it was not asked for by this browser")
         with _http() as http:
-            described = self._described(http)
-            self._require_issuer(answer, described)
-            token = self._exchanged(http, self._allowed(described, "token_endpoint"), answer.code, journey, back)
-            keys = _json(http, "GET", self._allowed(described, "jwks_uri"))
+            metadata = self._metadata(http)
+            self._require_issuer(answer, metadata)
+            token = self._exchanged(http, self._allowed(metadata, "token_endpoint"), answer.code, journey, back)
+            keys = _json(http, "GET", self._allowed(metadata, "jwks_uri"))
         return self._checked(token, keys, journey, now)
 
-    def _described(self, http: httpx.Client) -> dict[str, Any]:
-        """The provider's own description; it must be of the issuer that was asked."""
-        described = _json(http, "GET", self._own.issuer.rstrip("/") + WELL_KNOWN)
-        if described.get("issuer") != self._own.issuer:
-            raise _away(say("its description names the issuer {described}", described=repr(described.get("issuer"))))
-        return described
+    def _metadata(self, http: httpx.Client) -> Json:
+        """The provider's metadata; it must be of the configured issuer."""
+        metadata = _json(http, "GET", self._own.issuer.rstrip("/") + WELL_KNOWN)
+        if metadata.get("issuer") != self._own.issuer:
+            raise _unavailable(
+                say("its description names the issuer {described}", described=repr(metadata.get("issuer")))
+            )
+        return metadata
 
-    def _allowed(self, described: Mapping[str, Any], name: str) -> str:
-        """An address of the description, at a host that the operator knows, as well encrypted as the issuer."""
-        address = str(described.get(name, ""))
+    def _allowed(self, metadata: Mapping[str, Any], name: str) -> str:
+        """An address in the metadata, at an allowed host, as well encrypted as the issuer."""
+        address = str(metadata.get(name, ""))
         parts = urlsplit(address)
         if parts.scheme != urlsplit(self._own.issuer).scheme or parts.netloc not in self._own.hosts:
-            raise _away(
+            raise _unavailable(
                 say(
                     "its {name} {address} is at a host that is not allowed, or not by https",
                     name=name,
@@ -91,45 +94,45 @@ class OpenIdProvider:
             )
         return address
 
-    def _require_issuer(self, answer: Answer, described: Mapping[str, Any]) -> None:
-        """That no other provider's answer is taken for this one's."""
-        needed = described.get("authorization_response_iss_parameter_supported") is True
-        if answer.issuer != self._own.issuer and (needed or answer.issuer is not None):
+    def _require_issuer(self, answer: Answer, metadata: Mapping[str, Any]) -> None:
+        """Checks that the answer is not of another provider."""
+        is_required = metadata.get("authorization_response_iss_parameter_supported") is True
+        if answer.issuer != self._own.issuer and (is_required or answer.issuer is not None):
             raise _refused("it came from another provider")
 
-    def _exchanged(self, http: httpx.Client, at: str, code: str, journey: Journey, back: str) -> str:
+    def _exchanged(self, http: httpx.Client, endpoint: str, code: str, journey: Journey, back: str) -> str:
         """The token for a code, which works once."""
-        own = self._own
-        sent = {
+        settings = self._own
+        form = {
             "grant_type": "authorization_code",
             "code": code,
             "redirect_uri": back,
             "code_verifier": journey.verifier,
         }
-        shown = (quote(own.client, safe=""), quote(own.secret, safe="")) if own.secret else None
-        if shown is None:
-            sent["client_id"] = own.client
-        token = _json(http, "POST", at, data=sent, auth=shown).get("id_token")
+        credentials = (quote(settings.client, safe=""), quote(settings.secret, safe="")) if settings.secret else None
+        if credentials is None:
+            form["client_id"] = settings.client
+        token = _json(http, "POST", endpoint, data=form, auth=credentials).get("id_token")
         if not isinstance(token, str):
             raise _refused("the provider gave no token")
         return token
 
     def _checked(self, token: str, keys: Any, journey: Journey, now: datetime) -> Claims:
-        """The claims of a token that this provider signed, for us, for this question, and that holds now."""
+        """The claims of a token that is signed by this provider, for this service and sign-in, and valid now."""
         try:
-            found = jwt.decode(token, KeySet.import_key_set(keys), algorithms=list(ALGORITHMS)).claims
-            self._registry(now).validate(found)
+            claims = jwt.decode(token, KeySet.import_key_set(keys), algorithms=list(ALGORITHMS)).claims
+            self._registry(now).validate(claims)
         except (JoseError, ValueError, TypeError, KeyError) as fault:
             log.warning("sign-in elsewhere refused", fault=f"{type(fault).__name__}: {fault}")
             raise _refused("its token is not valid") from fault
-        self._require_ours(found, journey)
-        groups = found.get(self._own.role_claim, ()) if self._own.role_claim else ()
+        self._require_ours(claims, journey)
+        groups = claims.get(self._own.role_claim, ()) if self._own.role_claim else ()
         groups = (groups,) if isinstance(groups, str) else groups
         return Claims(
             issuer=self._own.issuer,
-            subject=found["sub"],
-            login=_text(found, "preferred_username") or _text(found, "email") or found["sub"],
-            name=_text(found, "name"),
+            subject=claims["sub"],
+            login=_text(claims, "preferred_username") or _text(claims, "email") or claims["sub"],
+            name=_text(claims, "name"),
             groups=tuple(g for g in groups if isinstance(g, str)) if isinstance(groups, list | tuple) else (),
         )
 
@@ -145,14 +148,14 @@ class OpenIdProvider:
             nonce={"essential": True},
         )
 
-    def _require_ours(self, found: Mapping[str, Any], journey: Journey) -> None:
-        """What the registry does not look at."""
-        others = isinstance(found["aud"], list) and len(found["aud"]) > 1
-        if found.get("azp", None if others else self._own.client) != self._own.client:
+    def _require_ours(self, claims: Mapping[str, Any], journey: Journey) -> None:
+        """Checks beyond the registry."""
+        has_other_audiences = isinstance(claims["aud"], list) and len(claims["aud"]) > 1
+        if claims.get("azp", None if has_other_audiences else self._own.client) != self._own.client:
             raise _refused("its token was made for another program")
-        if not is_same(str(found["nonce"]), journey.nonce):
+        if not is_same(str(claims["nonce"]), journey.nonce):
             raise _refused("its token was made for another sign-in")
-        if not 0 < len(found["sub"]) <= LONGEST_SUBJECT or "\x00" in found["sub"]:
+        if not 0 < len(claims["sub"]) <= LONGEST_SUBJECT or "\x00" in claims["sub"]:
             raise _refused("its token names nobody")
 
 
@@ -160,8 +163,8 @@ def _http() -> httpx.Client:
     return httpx.Client(timeout=TIMEOUT, follow_redirects=False, trust_env=False)
 
 
-def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> dict[str, Any]:
-    """An object that the provider answered; AwayError where it did not."""
+def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> Json:
+    """A JSON object of the provider; AwayError for any other answer."""
     try:
         with http.stream(method, address, headers={"Accept": "application/json"}, **sent) as answer:
             body = _bounded(answer)
@@ -169,13 +172,15 @@ def _json(http: httpx.Client, method: str, address: str, **sent: Any) -> dict[st
                 log.warning("sign-in elsewhere refused", fault=body[:500].decode("utf-8", "replace"))
                 raise _refused("the provider takes the code for used or foreign")
             if answer.status_code != httpx.codes.OK:
-                raise _away(say("{address} answered {status_code}", address=address, status_code=answer.status_code))
-            found = httpx.Response(200, content=body).json()
+                raise _unavailable(
+                    say("{address} answered {status_code}", address=address, status_code=answer.status_code)
+                )
+            document = httpx.Response(200, content=body).json()
     except (httpx.HTTPError, ValueError) as fault:
-        raise _away(f"{address}: {type(fault).__name__}: {fault}") from fault
-    if not isinstance(found, dict):
-        raise _away(say("{address} answered no object", address=address))
-    return found
+        raise _unavailable(f"{address}: {type(fault).__name__}: {fault}") from fault
+    if not isinstance(document, dict):
+        raise _unavailable(say("{address} answered no object", address=address))
+    return document
 
 
 def _bounded(answer: httpx.Response) -> bytes:
@@ -183,13 +188,13 @@ def _bounded(answer: httpx.Response) -> bytes:
     for part in answer.iter_bytes():
         body += part
         if len(body) > MOST_BYTES:
-            raise _away(say("{url} answers without end", url=answer.url))
+            raise _unavailable(say("{url} answers without end", url=answer.url))
     return bytes(body)
 
 
-def _text(found: Mapping[str, Any], name: str) -> str:
-    """A claim as text; anything else is none."""
-    value = found.get(name)
+def _text(claims: Mapping[str, Any], name: str) -> str:
+    """A claim as text; empty for anything else."""
+    value = claims.get(name)
     return " ".join(value.replace("\x00", "").split())[:200] if isinstance(value, str) else ""
 
 
@@ -197,7 +202,7 @@ def _refused(why: str) -> SignInError:
     return SignInError(say(REFUSED, why=why))
 
 
-def _away(fault: str) -> AwayError:
-    """What is wrong stands in the log: it is the operator's to mend."""
+def _unavailable(fault: str) -> AwayError:
+    """The fault is in the log, for the operator."""
     log.warning("provider to sign in at", fault=fault)
     return AwayError(SILENT)

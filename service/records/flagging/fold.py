@@ -1,8 +1,9 @@
 """Step: the open flags of a unit as its accepted sessions tell them, one after another in the order of time.
 
-A session raises a matter, a later one shows it again or finds it in order; only a person resolves it. What a person
-resolved stays resolved until a session measured later than those that the person had seen shows it again. So the open
-flags are a function of the accepted sessions and of what people resolved, in whatever order the files came in.
+A session raises a matter, a later one shows it again or finds it in order. What a diagnosis no longer finds is closed
+with its reason; that a sensor was out of tolerance only a person settles. What a person resolved stays resolved until a
+session measured later than those that the person had seen shows it again. So the open flags are a function of the
+accepted sessions and of what people resolved, in whatever order the files came in.
 """
 
 from collections.abc import Iterable, Iterator
@@ -16,16 +17,18 @@ from estimator.session import CALIBRATIONS
 from service.diagnosis.records import Diagnosed, StoredDiagnosis
 from service.diagnosis.words.causes import UNKNOWN_CAUSE, what_is_wrong
 from service.diagnosis.words.findings import summed_up
-from service.flags.records import Concern, Flag, FlagState, Matter, NoticeKind
+from service.flags.records import Concern, Flag, Matter, NoticeKind
 from service.flags.store import Flags, Notices
 from service.fleet.store import Fleet, Refreshed
-from service.judging.records import Told
-from service.judging.store import Derivations, Key, Moment
+from service.judging.records import Key, Moment, Told, ToldSession
+from service.judging.store import Derivations
 from service.judging.words import reason, verdict_in_words
 from service.kit.measures import day_of
 from service.models.records import ModelRevision
 from service.models.rules import in_force, places_of
 from service.models.store import Models
+from service.records.flagging.acts import SERVICE, Occasion, resolve_as_done, see_again, tell
+from service.records.flagging.stands import NOT_SHOWN, OF_STAND, settle_stand
 from service.sessions.decision import Decision, Judged, Verdict, worst_of
 from service.sessions.records import StoredSession
 from service.sessions.store import Sessions
@@ -33,67 +36,12 @@ from service.sessions.words.conditions import condition_of
 from service.storage.queries import Store
 from service.units.store import Units
 
-SERVICE = "imu-health"
-"""Who raises flags."""
-
-
-@dataclass(frozen=True)
-class Occasion:
-    """On which unit, by what and when flags are settled."""
-
-    unit: int
-    session: str | None
-    """That was looked at; None where the clock or the other units tell."""
-    at: datetime
-
-
-def raise_flag(store: Store, occasion: Occasion, concern: Concern) -> None:
-    """Opens a flag on a matter that the clock or the other units tell of, and that has none open."""
-    number = Flags(store).add(occasion.unit, concern, occasion.session, occasion.at)
-    tell(store, occasion, NoticeKind.RAISED, concern.summary, number)
-    Fleet(store).count_flags(occasion.unit)
-
-
-def see_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -> None:
-    """The open flag speaks of the latest session; one that was acknowledged is raised again where it got worse."""
-    worse = concern.severity > known.severity and known.state is FlagState.ACKNOWLEDGED
-    Flags(store).put(
-        known.id,
-        occasion.at,
-        summary=concern.summary,
-        severity=concern.severity,
-        session_id=occasion.session,
-        proposal="",
-        state=FlagState.RAISED if worse else known.state,
-    )
-    kind = NoticeKind.RAISED if worse else NoticeKind.SEEN
-    tell(store, occasion, kind, concern.summary, known.id)
-
-
-def propose(store: Store, occasion: Occasion, flag: Flag, why: str) -> None:
-    """Says that a flag could be resolved, and leaves it to a person."""
-    Flags(store).put(flag.id, occasion.at, proposal=why)
-    tell(store, occasion, NoticeKind.CLEAR, why, flag.id)
-
-
-def resolve_as_done(store: Store, occasion: Occasion, flag: Flag, why: str) -> None:
-    """Resolves a flag by the service itself."""
-    Flags(store).put(flag.id, occasion.at, state=FlagState.RESOLVED, proposal="")
-    tell(store, occasion, NoticeKind.RESOLVED, why, flag.id)
-    Fleet(store).count_flags(occasion.unit)
-
-
-def tell(store: Store, occasion: Occasion, kind: NoticeKind, text: str, flag: int) -> None:
-    """Keeps what happened to a flag, for people and for programs that are told."""
-    Notices(store).add(occasion.unit, kind, occasion.at, SERVICE, text, flag=flag, session=occasion.session)
-
-
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 """Verdicts that raise a flag."""
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
-NEW_REFERENCE = "The session of {day} is the reference that {sensor} is judged against now."
+NEW_REFERENCE = "{sensor} is now judged against the session of {day}."
 
 
 def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: Refreshed) -> None:
@@ -102,7 +50,7 @@ def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: R
         return
     before = condition_of(was.before, is_reference=was.was_reference).word
     now = verdict_in_words(condition_of(latest.verdict, is_reference=latest.is_reference), latest.reservations)
-    text = say("{before} → {now}. {reason}", before=before, now=now, reason=latest.reason)
+    text = say("{before} → {after}. {reason}", before=before, after=now, reason=latest.reason)
     Notices(store).add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=latest.id)
 
 
@@ -133,7 +81,7 @@ def _verdict_concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
     """The worst parameter in a sentence, the others by name."""
     severity = max(d.verdict.severity for d in failed)
     others = [d.parameter for d in failed if d is not worst_of(failed)]
-    more = say(" Also out of tolerance: {others}.", others=joined(", ", others)) if others else ""
+    more = say(" Also out of tolerance: {parameters}.", parameters=joined(", ", others)) if others else ""
     return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
 
 
@@ -165,15 +113,16 @@ def _clear(session: StoredSession) -> Iterator[tuple[str, str, str]]:
 
 
 def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRevision, ...]) -> Iterator[Concern]:
-    """At most one a matter and place; what an engineer accepted into the model is known and raises nothing."""
+    """One a matter and place; what an engineer accepted into the model is known and raises nothing."""
     sensors = found.calibration.sensors
     known = {(revision.cause, place) for revision in accepted for place in places_of(revision, sensors)}
-    done: set[tuple[str, str]] = set()
+    told: dict[tuple[str, str], list[Concern]] = {}
     for finding in found.findings:
         for concern in _of_finding(finding, found.findings, session, known):
-            if concern.key not in done:
-                done.add(concern.key)
-                yield concern
+            told.setdefault(concern.key, []).append(concern)
+    for first, *others in told.values():
+        said = dict.fromkeys((first.summary, *(concern.summary for concern in others)))
+        yield replace(first, summary=joined(" ", said))
     if found.structures:
         yield Concern(Matter.UNEXPLAINED, "", 1, summed_up(found.structures))
 
@@ -184,25 +133,24 @@ def _of_finding(
     """Where several causes are equally possible, all that are known must act on the sensor, or all on the stand.
 
     A mere change since earlier sessions is left to the tolerances: they say whether it matters. What only several
-    sessions show together has a flag of theirs.
+    sessions show together has a flag of theirs. A course that sensors share is one matter, of the unit.
     """
     if finding.over_sessions is not None:
         return
     name, what = finding.cause, what_is_wrong(finding, findings)
     possible = [cause(identifier) for identifier in (name, *finding.alternatives) if identifier != UNKNOWN_CAUSE]
     if all(one.is_of_sensor for one in possible):
-        for sensor in finding.sensors:
-            if (name, sensor) not in known:
-                yield Concern(Matter.CAUSE, sensor, 1, what)
+        new = [sensor for sensor in finding.sensors if (name, sensor) not in known]
+        for place in new if finding.shared is None else [""] * bool(new):
+            yield Concern(Matter.CAUSE, place, 1, what)
     elif all(one.scope == "stand" for one in possible) and session.stand is not None and (name, "") not in known:
         yield Concern(Matter.STAND, session.stand, 1, what)
 
 
-MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED, Matter.STAND)
-"""That sessions tell of; the clock and the other units tell of the rest."""
+MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED)
+"""That a unit's sessions tell of; of a stand all sessions on it tell, the clock and the other units of the rest."""
 ANY = "*"
 """Every place."""
-NOT_SHOWN = "No accepted session shows it any more."
 
 
 @dataclass(frozen=True)
@@ -217,44 +165,66 @@ class Opened:
     proposal: str = ""
 
 
-def settle_sessions(store: Store, occasion: Occasion) -> tuple[Flag, ...]:
-    """Brings the flags that sessions tell of in line with the unit's accepted sessions; those that were open."""
-    every = Flags(store).open_of(occasion.unit)
-    opened = tuple(flag for flag in every if flag.matter in MATTERS)
-    wanted = _open_now(store, occasion.unit, opened)
-    by_key = {flag.key: flag for flag in opened}
+@dataclass(frozen=True)
+class Lives:
+    """What sessions that told one after another have left."""
+
+    opened: dict[Key, Opened]
+    closed: dict[Key, str]
+    """Matters that were shown and are no longer, and why."""
+
+
+def settle_sessions(store: Store, occasion: Occasion) -> None:
+    """Brings the flags that sessions tell of in line with the unit's accepted sessions."""
+    own = Derivations(store).told(occasion.unit)
+    opened = {f.key: f for f in Flags(store).open_of(occasion.unit) if f.matter in (*MATTERS, Matter.STAND)}
+    lives = _lives(own, tuple(opened.values()))
+    settled = Derivations(store).settled(occasion.unit, SERVICE) if lives.opened else {}
+    wanted = {key: one for key, one in lives.opened.items() if key not in settled or settled[key] < one.at}
     for key, one in wanted.items():
-        _bring(store, occasion, by_key.get(key), one)
-    for key, flag in by_key.items():
+        _bring(store, occasion, opened.get(key), one)
+    for key, flag in opened.items():
         if key not in wanted:
-            resolve_as_done(store, occasion, flag, NOT_SHOWN)
-    if wanted.keys() - by_key.keys():
+            why = OF_STAND if flag.matter is Matter.STAND else lives.closed.get(key, NOT_SHOWN)
+            resolve_as_done(store, occasion, flag, why)
+    if wanted.keys() - opened.keys():
         Fleet(store).count_flags(occasion.unit)
-    return every
+    for stand in sorted({*_stands_told(own), *Flags(store).open_stands_of(occasion.unit)}):
+        settle_stand(store, occasion, stand)
 
 
-def _open_now(store: Store, unit: int, opened: Iterable[Flag]) -> dict[Key, Opened]:
-    """What is open, as the sessions tell it one after another, without what people settled."""
-    found: dict[Key, Opened] = {}
-    for at, verdict, diagnosis, is_old in Derivations(store).told(unit):
-        kept = tuple(_concern(flag) for flag in opened if flag.session == at[1]) if is_old else ()
-        for told in (verdict, diagnosis, Told(kept, ())):
+def _stands_told(own: Iterable[ToldSession]) -> Iterator[str]:
+    """Stands that a unit's sessions find at fault."""
+    for one in own:
+        for concern in () if one.diagnosis is None else one.diagnosis.concerns:
+            if concern.matter is Matter.STAND:
+                yield concern.place
+
+
+def _lives(own: Iterable[ToldSession], opened: Iterable[Flag]) -> Lives:
+    """What is open and what no longer is, as a unit's sessions tell it one after another."""
+    lives = Lives({}, {})
+    for one in own:
+        kept = tuple(_concern(flag) for flag in opened if flag.session == one.at[1]) if one.is_old else ()
+        for told in (one.verdict, one.diagnosis, Told(kept, ())):
             if told is not None:
-                found = _after(found, told, at)
-    settled = Derivations(store).settled(unit, SERVICE) if found else {}
-    return {key: one for key, one in found.items() if key not in settled or settled[key] < one.at}
+                lives = _after(lives, told, one.at)
+    return lives
 
 
-def _after(found: dict[Key, Opened], told: Told, at: Moment) -> dict[Key, Opened]:
-    """What is open after a session has told of it."""
-    shown = {concern.key: Opened(concern, at[1], at) for concern in told.concerns}
-    proposals = {(matter, place): why for matter, place, why in told.clear}
-
-    def seen(key: Key, one: Opened) -> Opened:
-        why = proposals.get(key) or proposals.get((key[0], ANY))
-        return replace(one, proposal=why) if why and not one.proposal else one
-
-    return {key: seen(key, one) for key, one in found.items()} | shown
+def _after(lives: Lives, told: Told, at: Moment) -> Lives:
+    """A sensor out of tolerance is left to a person, who says why it is back; what a diagnosis found is closed by one
+    that no longer finds it."""
+    shown = {c.key: Opened(c, at[1], at) for c in told.concerns if c.matter in MATTERS}
+    clear = {(matter, place): why for matter, place, why in told.clear}
+    gone = {key: why for key in lives.opened if (why := clear.get(key) or clear.get((key[0], ANY)))}
+    closed = {key: why for key, why in gone.items() if key[0] != Matter.TOLERANCE}
+    left = {
+        key: replace(one, proposal=one.proposal or gone.get(key, ""))
+        for key, one in lives.opened.items()
+        if key not in closed
+    }
+    return Lives(left | shown, {key: why for key, why in (lives.closed | closed).items() if key not in shown})
 
 
 def _concern(flag: Flag) -> Concern:

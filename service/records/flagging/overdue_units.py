@@ -1,12 +1,15 @@
 """Flow: units whose calibration is overdue are flagged; the flag resolves itself once nothing is due any more."""
 
+from dataclasses import replace
 from datetime import datetime
 
 from service.flags.records import Matter
 from service.flags.store import Flags
+from service.fleet.store import Fleet
 from service.kit.guard import Alone, plainly
 from service.outlook.store import Outlooks
-from service.records.flagging.fold import Occasion, raise_flag
+from service.records.flagging.acts import Occasion, raise_flag
+from service.records.flagging.drift import flag_drift
 from service.records.flagging.lasting import no_longer_overdue, overdue_by
 from service.storage import Storage
 from service.units.store import Units
@@ -27,5 +30,9 @@ def _settle_overdue(storage: Storage, serial: str, now: datetime) -> None:
         occasion = Occasion(Units(store).hold(serial), None, now)
         outlook = Outlooks(store).of_unit(serial)
         concern = overdue_by(outlook, now)
-        if not no_longer_overdue(store, occasion, outlook) and concern is not None:
+        if no_longer_overdue(store, occasion, outlook):
+            return
+        if concern is not None:
             raise_flag(store, occasion, concern)
+        unit = Fleet(store).unit(serial)
+        flag_drift(store, replace(occasion, session=None if unit is None else unit.last_session), outlook)

@@ -12,13 +12,13 @@ def what_to_add(calibration: Calibration) -> str:
     if flipped is not None and len(set(flipped)) == 1:
         return "measure the same positions in the other run too"
     if not add:
-        return "more or other positions would tell it"
+        return "more or other positions would show it"
     up = joined(", ", (f"({', '.join(number(x, 2) for x in direction)})" for direction in add))
     return say_count(
-        "add {n} still orientation with up, in block axes, along {up}",
-        "add {n} still orientations with up, in block axes, along {up}",
+        "add {n} still orientation with up, in block axes, along {directions}",
+        "add {n} still orientations with up, in block axes, along {directions}",
         len(add),
-        up=up,
+        directions=up,
     )
 
 
@@ -28,9 +28,8 @@ def too_few(calibration: Calibration) -> str:
     if not add:
         return ""
     return say(
-        "Too few positions to give an uncertainty: add {add}, or state the standard errors of "
-        "the readings. The parameters take all that the readings tell, and nothing is left to "
-        "estimate the noise by.",
+        "Too few positions for an uncertainty: add {add}, or state the standard errors of the readings. There are as "
+        "many parameters as readings, so the noise cannot be estimated.",
         add=add,
     )
 
@@ -45,8 +44,8 @@ def left_open(calibration: Calibration) -> str:
     missing = [name for name in needed if any(not s.observable[name] for s in felt)]
     who = "every accelerometer" if len(blind) == len(felt) else joined(", ", blind)
     return say(
-        "It does not show {missing} of {who}: {calibration}.",
+        "It does not observe {missing} of {sensors}: {calibration}.",
         missing=joined(", ", missing),
-        who=who,
+        sensors=who,
         calibration=what_to_add(calibration),
     )

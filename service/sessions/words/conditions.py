@@ -50,7 +50,7 @@ PROBABLY_FIT = Condition(
 FIT = Condition("pass", "Fit", "pass", "circle", "Within tolerance, by more than the uncertainty of the measurement.")
 REFERENCE = Condition(
     "reference", "Reference set", "reference", "triangle-right",
-    "The session that later ones are judged against; there was nothing to judge it by.",
+    "Later sessions are judged against it; it is not judged itself.",
 )  # fmt: skip
 NOT_MEASURED = Condition("none", "Not measured", "no session", "stroke", "No session has been uploaded yet.")
 QUESTIONED = Condition(
@@ -58,7 +58,7 @@ QUESTIONED = Condition(
     "Questioned",
     "questioned",
     "stroke",
-    "It cannot be as its file says, and counts once an engineer accepts it.",
+    "It cannot be as its file states; it counts once an engineer accepts it.",
 )
 NOT_JUDGED = Condition("none", "Not judged", "not judged", "circle", "No tolerance or no reference is set.")
 
@@ -70,7 +70,7 @@ WITH_RESERVATION = "with reservation"
 """What is added to the word of a verdict that something speaks against."""
 RESERVED = Condition(
     "reserved", "With reservation", WITH_RESERVATION, "stroke",
-    "Something that was found about the session speaks against taking the verdict as it stands; it says what.",
+    "A finding about the session qualifies the verdict; it is stated.",
 )  # fmt: skip
 
 _BY_VERDICT = {
@@ -95,7 +95,7 @@ def said_with(condition: Condition, reservations: Reservations) -> Condition:
         return condition
     return replace(
         condition,
-        word=say("{word}, {with_reservation}", word=condition.word, with_reservation=WITH_RESERVATION),
+        word=say("{verdict}, {with_reservation}", verdict=condition.word, with_reservation=WITH_RESERVATION),
         reserved=True,
     )
 
@@ -108,24 +108,26 @@ STATES = {
 }
 MEANINGS = {
     RecordState.ACCEPTED: "",
-    RecordState.QUESTIONED: "It is stored and drawn, and is no reference and no verdict until an engineer accepts it.",
-    RecordState.WITHDRAWN: "It stays readable, and nothing that is known of the unit rests on it.",
-    RecordState.SUPERSEDED: "Another session stands for it.",
+    RecordState.QUESTIONED: (
+        "It is stored and plotted; until an engineer accepts it, it is no reference and has no verdict."
+    ),
+    RecordState.WITHDRAWN: "It stays readable; nothing about the unit is based on it.",
+    RecordState.SUPERSEDED: "Another session replaces it.",
 }
 
 
 def state_in_words(change: StateChange) -> str:
     """``Withdrawn on 21 Nov 2026 by K. Ito: wrong unit``."""
     return say(
-        "{states} on {at} by {who}: {why}",
+        "{states} on {date} by {who}: {reason}",
         states=STATES[change.state],
-        at=day_of(change.at),
+        date=day_of(change.at),
         who=change.who,
-        why=change.why,
+        reason=change.why,
     )
 
 
-LOOKING = "causes are still being looked for"
+LOOKING = "the search for causes is not finished"
 STILL_LOOKING = say("; {looking}", looking=LOOKING)
 MOST_TOLD = 2
 """Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""
@@ -137,7 +139,7 @@ def but(reservations: Reservations) -> str:
         return STILL_LOOKING
     if not reservations:
         return ""
-    return say(", {but}", but=but_alone(reservations))
+    return say(", {reservations}", reservations=but_alone(reservations))
 
 
 def but_alone(reservations: Reservations) -> str:
@@ -145,16 +147,16 @@ def but_alone(reservations: Reservations) -> str:
     if reservations is None:
         return LOOKING
     told, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
-    rest = say("; and {more} more", more=more) if more > 0 else ""
+    rest = say("; and {number} more", number=more) if more > 0 else ""
     return say(
-        "but {text}{rest}: {told}",
-        text=joined("; and ", (one.text for one in told)),
+        "but {reservations}{rest}: {advice}",
+        reservations=joined("; and ", (one.text for one in told)),
         rest=rest,
-        told=joined(" and ", _advice(told)),
+        advice=joined(" and ", advice_of(told)),
     )
 
 
-def _advice(told: Sequence[Reservation]) -> tuple[str, ...]:
+def advice_of(told: Sequence[Reservation]) -> tuple[str, ...]:
     """What to do, once, and not what other advice says already; a wrong file is put right before anything else."""
     if any(one.kind is Doubt.RECORD for one in told):
         told = [one for one in told if one.kind is Doubt.RECORD]

@@ -10,7 +10,7 @@ from service.kit.measures import COARSE_MEASURES, DEGREE, Measure, deviation_mea
 
 SIGNIFICANT = 0.01
 """Chance of saying so of a block that did not move."""
-JUDGED = "The sensors are judged without it."
+JUDGED = "The sensors are judged without this effect."
 NEARLY = 0.94
 """Cosine of 20°: a turn this near to an axis of the block is named after it."""
 
@@ -50,21 +50,21 @@ def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> 
     if motion.quantity == AXES:
         size = measured(motion.size, coverage * motion.sigma, _turn_measure(motion))
         return say(
-            "The whole block{whose} turned by {size} about {motion} {since}: it sits "
-            "otherwise, or the stand has turned. {judged}",
+            "The whole block{whose} turned by {size} about {motion} {date}: it was mounted differently, or the "
+            "stand has turned. {judged}",
             whose=whose,
             size=size,
             motion=_about(motion),
-            since=since,
+            date=since,
             judged=JUDGED,
         )
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
     return say(
-        "All scale factors{whose} changed together by {size} {since}: that is of {cause}. {judged}",
+        "All scale factors{whose} changed together by {size} {date}; cause: {cause}. {judged}",
         whose=whose,
         size=size,
-        since=since,
+        date=since,
         cause=cause,
         judged=JUDGED,
     )
@@ -93,10 +93,10 @@ def _alone(motion: CommonMotion) -> str:
     what = "input axis" if motion.quantity == AXES else "scale factor"
     *others, last = motion.left_out
     if not others:
-        return say(" Beside that, the {what} of {last} moved on its own.", what=what, last=last)
+        return say(" In addition, the {what} of {last} changed.", what=what, last=last)
     several = "input axes" if motion.quantity == AXES else "scale factors"
     return say(
-        " Beside that, the {several} of {others} and {last} moved on their own.",
+        " In addition, the {several} of {others} and {last} changed.",
         several=several,
         others=joined(", ", others),
         last=last,
@@ -105,22 +105,22 @@ def _alone(motion: CommonMotion) -> str:
 
 def _undivided(motion: CommonMotion, whose: str) -> str:
     turn = (
-        say("a turn of the whole block{whose}", whose=whose)
+        say("a turn of the whole block{kinds}", kinds=whose)
         if motion.quantity == AXES
-        else say("a change of all scale factors{whose}", whose=whose)
+        else say("a change of all scale factors{kinds}", kinds=whose)
     )
     one = "a change of one sensor"
-    judged = "every sensor is judged on its whole change"
+    judged = "every sensor is judged by its whole change"
     if motion.state == UNCLEAR:
         return say(
-            "The sensors do not agree on {turn}, and it cannot be told which of them moved: {judged}.",
+            "The sensors do not agree on {turn}, and which of them changed is not known: {judged}.",
             turn=turn,
             judged=judged,
         )
     return say(
-        "{sensors} to tell {turn} from {one}: {judged}.",
+        "{sensors} to separate {turn} from {scaling}: {judged}.",
         sensors=few(len(motion.sensors), "sensor"),
         turn=turn,
-        one=one,
+        scaling=one,
         judged=judged,
     )

@@ -6,7 +6,7 @@ from math import isfinite
 
 import numpy as np
 
-from estimator.allan.growth import Course, Growth, growth
+from estimator.allan.growth import Growth, GrowthCourse, growth
 from estimator.allan.results import TERMS, interval_of
 from estimator.diagnosis.results import NoiseScale
 from estimator.message import joined, say
@@ -23,12 +23,12 @@ NAMES = {
 }
 """The one that most records decide first."""
 MEANINGS = {
-    "white-noise": "What an average over one second scatters by, at rest: velocity or angle random walk.",
-    "bias-instability": "Flicker of the zero at rest: no average, however long, is better than about two thirds of it.",
-    "random-walk": "How the zero walks away at rest, from an average of one second to the next.",
+    "white-noise": "Scatter of a one-second average at rest: velocity or angle random walk.",
+    "bias-instability": "Flicker noise of the bias at rest: averaging does not get below about two thirds of it.",
+    "random-walk": "Random walk of the bias at rest, from one one-second average to the next.",
     "quantisation": "Rounding of the counted velocity or angle, at rest.",
 }
-NOT_DECIDED = "not decided by a record of this length"
+NOT_DECIDED = "cannot be determined from a record of this length"
 SEVERAL = 3
 """Sensors of a kind, from which on all of them together are told in one sentence."""
 LEVEL = 0.01
@@ -43,9 +43,9 @@ def size_in_words(kind: str, name: str, value: float | None, sigma: float | None
     digits = decimals(sigma * measure.factor)
     low, high = (number(in_measure(end, measure), digits) for end in interval_of(value, sigma))
     return say(
-        "{digits}{thin}{label} ({low} to {high})",
+        "{digits}{thin_space}{label} ({low} to {high})",
         digits=number(in_measure(value, measure), digits),
-        thin=THIN,
+        thin_space=THIN,
         label=measure.label,
         low=low,
         high=high,
@@ -68,8 +68,8 @@ def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
     return tuple(s for own in _by_term(told) for s in _sentences(own, growth(_sizes(own), LEVEL / len(told))))
 
 
-def _sizes(courses: Sequence[Points]) -> list[Course]:
-    return [Course(np.array([p.value for p in own]), np.array([p.u for p in own])) for own in courses]
+def _sizes(courses: Sequence[Points]) -> list[GrowthCourse]:
+    return [GrowthCourse(np.array([p.value for p in own]), np.array([p.u for p in own])) for own in courses]
 
 
 def _by_term(courses: Sequence[Points]) -> list[list[Points]]:
@@ -90,12 +90,12 @@ def _sentences(courses: Sequence[Points], found: Sequence[Growth]) -> tuple[str,
     sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
     return (
         say(
-            "{names} is larger in all {sensors}: {least} to {most} times what it was. Look at the "
-            "bench and at what runs beside it first.",
+            "{names} has grown in all {sensors}, {least} to {greatest} times. Check the bench and nearby "
+            "machinery first.",
             names=NAMES[last.parameter],
             sensors=sensors,
             least=least,
-            most=most,
+            greatest=most,
         ),
     )
 
@@ -107,13 +107,13 @@ def _place(point: HistoryPoint) -> tuple[str, str]:
 def _sentence(last: HistoryPoint, found: Growth) -> str:
     measure = NOISE[last.kind, last.parameter]
     return say(
-        "{names} of {sensor} is {times} times what it was: {last}, before {usual}{thin}{label}.",
+        "{names} of {sensor} has grown {times} times: {value}, previously {usual_value}{thin_space}{label}.",
         names=NAMES[last.parameter],
         sensor=last.sensor,
         times=number(found.times, 2),
-        last=term_in_words(last),
-        usual=number(in_measure(found.usual, measure)),
-        thin=THIN,
+        value=term_in_words(last),
+        usual_value=number(in_measure(found.usual, measure)),
+        thin_space=THIN,
         label=measure.label,
     )
 
@@ -142,7 +142,7 @@ def but_wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> str
 
 def _clauses(noise: Sequence[NoiseScale], kinds: Collection[str]) -> list[str]:
     return [
-        say("stated standard errors{some} are {factor}", some=_whose(n, kinds), factor=_how_far_off(n.factor))
+        say("stated standard errors{subset} are {factor}", subset=_whose(n, kinds), factor=_how_far_off(n.factor))
         for n in noise
     ]
 
@@ -161,9 +161,9 @@ def _whose(scale: NoiseScale, kinds: Collection[str]) -> str:
 def _how_far_off(factor: float) -> str:
     """Of the factor by which they are too small; below one they are too large."""
     if not isfinite(factor) or factor <= 0:
-        return "wrong by more than can be told"
+        return "wrong by an unknown factor"
     side = "small" if factor > 1 else "large"
-    return say("about {factor} times too {side}", factor=_rounded(max(factor, 1 / factor)), side=side)
+    return say("about {factor} times too {size}", factor=_rounded(max(factor, 1 / factor)), size=side)
 
 
 def _rounded(times: float) -> str:

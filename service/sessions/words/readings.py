@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 
 from estimator.message import joined, say, say_count
+from estimator.moments import duration
 from estimator.results import Calibration, Fit, KnownCombination
 from service.kit.measures import (
     COVERAGE,
@@ -14,6 +15,7 @@ from service.kit.measures import (
     scale_measure,
     value_measure,
 )
+from service.sessions.records import StoredSession
 from service.sessions.words.advice import too_few, what_to_add
 
 UNLIKELY = 0.001
@@ -45,18 +47,18 @@ def fit_in_words(calibration: Calibration) -> FitWords:
 def bands_in_words(calibration: Calibration, times: float | None) -> str:
     """What the bands beside residuals are; ``times``: how much wider the noise found is drawn, None where it is not."""
     if calibration.residuals.enlarged_by is None:
-        return "The band is ±2σ of the noise that the calibration reckons with."
+        return "The band is ±2σ of the noise that the calibration uses."
     stated = calibration.fit.noise == "stated"
     band = (
         "The band is ±2σ of the stated noise."
         if stated
-        else "The file does not state all noise: the band is ±2σ of what was estimated from the residuals."
+        else "The file does not state all noise: the band is ±2σ of the noise estimated from the residuals."
     )
     if times is None:
         return band
     return say(
-        "{band} The readings scatter more than that: the dashed lines are ±2σ of the noise that "
-        "the calibration reckons with instead, up to {times} times as much.",
+        "{band} The readings scatter more: the dashed lines are ±2σ of the noise that the calibration uses, up to "
+        "{times} times larger.",
         band=band,
         times=number(times, 1),
     )
@@ -70,7 +72,7 @@ def _headline(fit: Fit) -> str:
     if fit.p_value < DOUBTFUL:
         return "The model agrees with the readings, but the residuals are larger than usual."
     if fit.p_value > TOO_GOOD:
-        return "The model agrees with the readings; the stated noise looks too large."
+        return "The model agrees with the readings; the stated noise is probably too large."
     return "The model explains the readings within the stated noise."
 
 
@@ -93,15 +95,15 @@ def _warnings(fit: Fit) -> list[str]:
     if fit.covariance_factor > 1 and isfinite(fit.covariance_factor):
         found.append(
             say(
-                "All uncertainties were enlarged {covariance_factor} times, because the stated noise "
-                "cannot explain the residuals. Look for structure in them.",
+                "All uncertainties were multiplied by {covariance_factor}: the stated noise does not explain the "
+                "residuals. Look for structure in them.",
                 covariance_factor=number(sqrt(fit.covariance_factor), 2),
             )
         )
     if not fit.converged:
         found.append(
             say(
-                "The estimation did not settle within {iterations} iterations: do not rely on these numbers.",
+                "The estimation did not converge within {iterations} iterations: do not use these numbers.",
                 iterations=fit.iterations,
             )
         )
@@ -115,7 +117,7 @@ def _open(calibration: Calibration) -> list[str]:
         return []
     return [
         say(
-            "The session determines {rank} of {parameters} parameters. The least known is {weakest}; {calibration}.",
+            "The session determines {rank} of {parameters} parameters. Least certain: {weakest}; {calibration}.",
             rank=fit.rank,
             parameters=fit.parameters,
             weakest=fit.weakest[0],
@@ -179,3 +181,9 @@ def _product(share: float, name: str) -> str:
     if share == 1:
         return name
     return say("{share} × {name}", share=f"{share:.6f}".rstrip("0").rstrip("."), name=name)
+
+
+def switched_on(session: StoredSession) -> str:
+    """``40 min before the first reading``; empty where the file does not say."""
+    begun = session.time_since_power_on
+    return "" if begun is None else say("{begun} before the first reading", begun=duration(begun))

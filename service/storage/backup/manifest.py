@@ -1,7 +1,6 @@
-"""What a backup says of itself, and the names within it.
+"""Manifest of a backup, and the names within it.
 
-A backup is a zip file. Its table of contents stands at its end, so one that was cut off cannot be opened; the manifest
-is written last.
+A backup is a zip file. Its directory is at its end, so a truncated one cannot be opened; the manifest is written last.
 
     tables/NAME.jsonl   a line a row: the values in the order of the manifest's columns
     files/SHA256        an uploaded file under its hash
@@ -34,7 +33,7 @@ UNREADABLE = (
     KeyError,  # a member is missing
     RuntimeError,  # a member that claims to be encrypted, or packed in a way that a changed byte made up
 )
-"""What reading a changed backup ends in."""
+"""Raised on reading a damaged backup."""
 
 
 Hash = Annotated[str, StringConstraints(pattern=HASH)]
@@ -60,7 +59,7 @@ class TableContents(_Part):
 
 
 class Manifest(_Part):
-    """What a backup holds."""
+    """Contents of a backup."""
 
     format: Literal["imu-backup/1"] = "imu-backup/1"
     version: str
@@ -69,7 +68,7 @@ class Manifest(_Part):
     """Of the schema."""
     made_at: datetime
     tables: tuple[TableContents, ...]
-    """In an order in which rows can be put in: what is referred to comes first."""
+    """In order of insertion: referenced tables come first."""
     files: tuple[Hash, ...]
     """Hashes of the uploaded files."""
     lost: tuple[str, ...]
@@ -87,7 +86,7 @@ def file_member(digest: str) -> str:
 
 
 def opened(file: Path) -> zipfile.ZipFile:
-    """A backup to read; ServiceError where it is none, or is not whole."""
+    """Opens a backup; ServiceError for any other file, or a truncated one."""
     try:
         return zipfile.ZipFile(file)
     except (FileNotFoundError, PermissionError):
@@ -97,7 +96,7 @@ def opened(file: Path) -> zipfile.ZipFile:
 
 
 def read_manifest(archive: zipfile.ZipFile) -> Manifest:
-    """What the backup says of itself; ServiceError where it says nothing that this version understands."""
+    """The manifest; ServiceError where this version does not support it."""
     try:
         manifest = Manifest.model_validate_json(archive.read(MANIFEST))
     except (*UNREADABLE, ValidationError) as fault:
@@ -106,65 +105,65 @@ def read_manifest(archive: zipfile.ZipFile) -> Manifest:
 
 
 def write_manifest(archive: zipfile.ZipFile, manifest: Manifest) -> None:
-    """Closes the contents of a backup."""
+    """Writes the manifest, as the last member."""
     archive.writestr(MANIFEST, manifest.model_dump_json(indent=1))
 
 
 def member_to_write(archive: zipfile.ZipFile, name: str) -> IO[bytes]:
-    """A member whose size is not known yet."""
+    """A member of unknown size."""
     return archive.open(name, "w", force_zip64=True)
 
 
 HASHES = "sha256"
-"""The column, in any table, of the hash that a stored file is named by; empty where there is none."""
+"""Column, in any table, with the hash of a stored file; empty where there is none."""
 SENT = "sent"
-"""The column of a file that waits, with its ``place``."""
+"""Column of a file that waits, with its ``place``."""
 
 
 def faulty_names(archive: zipfile.ZipFile, table: TableContents) -> Iterator[str]:
-    """Every row of a table with a name that no stored file has; the table itself was found whole."""
-    columns = [at for at, name in enumerate(table.columns) if name in (HASHES, SENT)]
+    """Rows of a table with an invalid file name; the table itself was verified."""
+    columns = [index for index, name in enumerate(table.columns) if name in (HASHES, SENT)]
     if not columns:
         return
     with archive.open(table.member) as lines:
         for number, line in enumerate(lines, start=1):
             values = json.loads(line)
-            for at in columns:
-                name = _name(table.columns[at], values[at])
+            for index in columns:
+                name = _name(table.columns[index], values[index])
                 if name and not is_name(name):
                     yield f"table {table.name}, row {number}: {str(name)[:100]!r} is not the name of a stored file"
 
 
 def _name(column: str, value: Any) -> Any:
-    """Nothing where the row names no file."""
+    """None where the row names no file."""
     if column == HASHES or value is None:
         return value
-    sent = json.loads(value)
-    return None if sent is None else sent.get("place")
+    document = json.loads(value)
+    return None if document is None else document.get("place")
 
 
 @dataclass(frozen=True)
-class Doors:
-    """What was closed, and what stands open."""
+class RevokedAccess:
+    """Access that was revoked, and that remains."""
 
     browsers: int = 0
-    """That were signed in, and must sign in again."""
+    """Browsers that were signed in, and must sign in again."""
     tokens: int = 0
-    """That held when the backup was made and hold by their dates."""
+    """Tokens that were valid when the backup was made and have not expired."""
     revoked: bool = False
-    """Whether those were revoked."""
+    """Whether the tokens were revoked."""
 
 
-def close_doors(connection: Connection, now: datetime, *, revoke: bool) -> Doors:
-    """Ends browsers and links, and revokes tokens where that is wanted, within the transaction that restores."""
-    known = set(inspect(connection).get_table_names())
-    if not {"tokens", "sign_ins", "sign_in_links"} <= known:
-        return Doors()
+def revoke_access(connection: Connection, now: datetime, *, revoke: bool) -> RevokedAccess:
+    """Signs out browsers, ends links, and revokes tokens if wanted, within the transaction that restores."""
+    table_names = set(inspect(connection).get_table_names())
+    if not {"tokens", "sign_ins", "sign_in_links"} <= table_names:
+        return RevokedAccess()
     browsers = connection.scalar(select(func.count()).select_from(SignInRow).where(SignInRow.expires_at > now)) or 0
-    for row in (SignInRow, SignInLinkRow, *((AttemptRow,) if "attempts" in known else ())):
+    for row in (SignInRow, SignInLinkRow, *((AttemptRow,) if "attempts" in table_names else ())):
         connection.execute(delete(row))
-    held = TokenRow.revoked_at.is_(None), TokenRow.expires_at > now
-    tokens = connection.scalar(select(func.count()).select_from(TokenRow).where(*held)) or 0
+    valid = TokenRow.revoked_at.is_(None), TokenRow.expires_at > now
+    tokens = connection.scalar(select(func.count()).select_from(TokenRow).where(*valid)) or 0
     if revoke:
-        connection.execute(update(TokenRow).where(*held).values(revoked_at=now))
-    return Doors(browsers, tokens, revoke)
+        connection.execute(update(TokenRow).where(*valid).values(revoked_at=now))
+    return RevokedAccess(browsers, tokens, revoke)

@@ -1,6 +1,5 @@
-"""Puts a backup into an empty place, of either engine: the rows in one transaction, the files under a name of their own
-until all are there. Whatever interrupts it leaves a database without a schema, and it can be started again.
-"""
+"""Restores a backup into an empty place, on either engine: the rows in one transaction, the files under a temporary
+name until all are there. An interrupted restore leaves a database without a schema, and can be repeated."""
 
 import os
 import shutil
@@ -17,14 +16,14 @@ from sqlalchemy.exc import DataError, IntegrityError
 from service.errors import ConflictError, DamagedError, ServiceError
 from service.storage.backup.manifest import (
     UNREADABLE,
-    Doors,
     Manifest,
+    RevokedAccess,
     TableContents,
-    close_doors,
     faulty_names,
     file_member,
     opened,
     read_manifest,
+    revoke_access,
 )
 from service.storage.backup.rows import continue_numbers, put_lines, tables_of
 from service.storage.faults import disk_faults
@@ -33,15 +32,15 @@ from service.storage.folders import make_folder, sync_folder, written_whole
 from service.storage.schema import alone, is_known, raise_to
 
 STAGING = ".restoring"
-"""Ends the name of the folder of files while they are put there."""
+"""Suffix of the folder of files until all are there."""
 
 
 @dataclass(frozen=True)
 class Restored:
-    """What was put back."""
+    """Result of a restore."""
 
     manifest: Manifest
-    doors: Doors
+    access: RevokedAccess
 
 
 def restore(backup: Path, url: str, folder: Path, now: datetime, *, revoke_tokens: bool = False) -> Restored:
@@ -55,25 +54,25 @@ def restore(backup: Path, url: str, folder: Path, now: datetime, *, revoke_token
         _require_empty(connection, folder, manifest)
         staging = _put_files(archive, manifest, folder)
         _put_rows(archive, manifest, connection)
-        doors = close_doors(connection, now, revoke=revoke_tokens)
+        access = revoke_access(connection, now, revoke=revoke_tokens)
         if folder.exists():
             shutil.rmtree(folder)
         os.replace(staging, folder)
         sync_folder(folder.parent)
-    return Restored(manifest, doors)
+    return Restored(manifest, access)
 
 
 def _require_empty(connection: Connection, folder: Path, manifest: Manifest) -> None:
-    """Files that are in the backup too may be left of a restore that was interrupted at its last step."""
+    """Files that are in the backup too may be left by a restore that was interrupted at its last step."""
     if inspect(connection).get_table_names():
         raise ConflictError("The database is not empty. Restore into a new one; nothing was changed.")
-    found = {path.name for path in folder.rglob("*") if not path.is_dir()}
-    if found - set(manifest.files):
+    names = {path.name for path in folder.rglob("*") if not path.is_dir()}
+    if names - set(manifest.files):
         raise ConflictError(f"{folder} is not empty. Restore into a new folder; nothing was changed.")
 
 
 def _put_files(archive: zipfile.ZipFile, manifest: Manifest, folder: Path) -> Path:
-    """The uploaded files, synced, beside the place where they will stand."""
+    """The uploaded files, synced, next to their final place."""
     staging = folder.with_name(folder.name + STAGING)
     if staging.exists():
         shutil.rmtree(staging)
@@ -83,13 +82,13 @@ def _put_files(archive: zipfile.ZipFile, manifest: Manifest, folder: Path) -> Pa
         files.path(digest).parent.mkdir(exist_ok=True)
         with written_whole(files.path(digest)) as file, archive.open(file_member(digest)) as member:
             shutil.copyfileobj(member, file)
-    for made in (*staging.iterdir(), staging):
-        sync_folder(made)
+    for folder_made in (*staging.iterdir(), staging):
+        sync_folder(folder_made)
     return staging
 
 
 def _put_rows(archive: zipfile.ZipFile, manifest: Manifest, connection: Connection) -> None:
-    """The schema as it was, and every row of it."""
+    """The schema at its revision, and every row."""
     raise_to(connection, manifest.revision)
     tables = {table.name: table for table in tables_of(connection)}
     for contents in manifest.tables:
@@ -103,7 +102,7 @@ def _put_rows(archive: zipfile.ZipFile, manifest: Manifest, connection: Connecti
 
 
 def verified(file: Path) -> Manifest:
-    """What a backup holds; DamagedError with every part that is not as it was written."""
+    """The manifest of a verified backup; DamagedError with every damaged part."""
     with opened(file) as archive:
         manifest = read_manifest(archive)
         faults = list(_faults(archive, manifest))
@@ -113,7 +112,7 @@ def verified(file: Path) -> Manifest:
 
 
 def _faults(archive: zipfile.ZipFile, manifest: Manifest) -> Iterator[str]:
-    """Whatever is not as the manifest says."""
+    """Everything that differs from the manifest."""
     yield from (f"{name} does not belong to it" for name in sorted(set(archive.namelist()) - manifest.members))
     for table in manifest.tables:
         if not _is_table(archive, table):
@@ -125,7 +124,7 @@ def _faults(archive: zipfile.ZipFile, manifest: Manifest) -> Iterator[str]:
             yield f"file {digest} was changed or is missing"
 
 
-PIECE = 1024 * 1024
+CHUNK = 1024 * 1024
 """Bytes of a file that are held at a time."""
 
 
@@ -145,8 +144,8 @@ def _is_file(archive: zipfile.ZipFile, digest: str) -> bool:
     try:
         with archive.open(file_member(digest)) as member:
             hashed = sha256()
-            while piece := member.read(PIECE):
-                hashed.update(piece)
+            while chunk := member.read(CHUNK):
+                hashed.update(chunk)
             return hashed.hexdigest() == digest
     except UNREADABLE:
         return False

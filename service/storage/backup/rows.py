@@ -1,4 +1,4 @@
-"""Rows as lines that mean the same on SQLite and on PostgreSQL, by the tables that the database really has."""
+"""Rows as lines with the same meaning on SQLite and on PostgreSQL, for the tables in the database."""
 
 import base64
 import json
@@ -26,11 +26,11 @@ from sqlalchemy.types import UserDefinedType
 BATCH = 100
 """Rows that are held at a time: the widest, the statistics of a session, have some hundred kilobytes."""
 BOOKKEEPING = "alembic_version"
-"""The table that is made by the migrations themselves."""
+"""Table made by the migrations themselves."""
 
 
 class _Written(UserDefinedType[str]):
-    """JSON as it was written, character by character; the driver passes it on."""
+    """JSON text passed to the driver unchanged."""
 
     cache_ok = True
 
@@ -48,24 +48,24 @@ def tables_of(connection: Connection) -> list[Table]:
 def lines_of(connection: Connection, table: Table) -> Iterator[bytes]:
     """Every row, by primary key."""
     columns = [cast(c, Text).label(c.name) if isinstance(c.type, JSON) else c for c in table.columns]
-    plain = [_plain(column) for column in table.columns]
+    writers = [_plain(column) for column in table.columns]
     query = select(*columns).order_by(*table.primary_key.columns)
-    with connection.execution_options(yield_per=BATCH).execute(query) as found:
-        for row in found:
-            values = [None if value is None else to(value) for to, value in zip(plain, row, strict=True)]
+    with connection.execution_options(yield_per=BATCH).execute(query) as rows:
+        for row in rows:
+            values = [None if value is None else to(value) for to, value in zip(writers, row, strict=True)]
             yield json.dumps(values, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
 
 
 def put_lines(connection: Connection, table: Table, columns: tuple[str, ...], lines: Iterator[bytes]) -> None:
-    """Puts rows into a table that is empty."""
-    own = [table.columns[name] for name in columns]
-    stored = [_stored(column, naive=connection.dialect.name == "sqlite") for column in own]
-    for column in own:
+    """Inserts rows into an empty table."""
+    target_columns = [table.columns[name] for name in columns]
+    stored = [_stored(column, naive=connection.dialect.name == "sqlite") for column in target_columns]
+    for column in target_columns:
         if isinstance(column.type, JSON):
             column.type = _Written()
     batch: list[dict[str, Any]] = []
     for line in lines:
-        values = zip(own, stored, json.loads(line), strict=True)
+        values = zip(target_columns, stored, json.loads(line), strict=True)
         batch.append({c.name: None if value is None else to(value) for c, to, value in values})
         if len(batch) == BATCH:
             connection.execute(table.insert(), batch)
@@ -75,7 +75,7 @@ def put_lines(connection: Connection, table: Table, columns: tuple[str, ...], li
 
 
 def continue_numbers(connection: Connection, table: Table) -> None:
-    """PostgreSQL hands out numbers after the largest that was put in; SQLite does so by itself."""
+    """Sets PostgreSQL's sequences behind the largest inserted number; SQLite does so by itself."""
     if connection.dialect.name != "postgresql":
         return
     for column in table.primary_key.columns:
@@ -87,7 +87,7 @@ def continue_numbers(connection: Connection, table: Table) -> None:
 
 
 def _plain(column: Column[Any]) -> Callable[[Any], Any]:
-    """How a value of a column is written down."""
+    """Function that writes a value of a column."""
     if isinstance(column.type, DateTime):
         return _instant
     if isinstance(column.type, Date):
@@ -98,12 +98,12 @@ def _plain(column: Column[Any]) -> Callable[[Any], Any]:
 
 
 def _instant(value: datetime) -> str:
-    """SQLite's times are UTC without saying so."""
+    """SQLite's times are UTC without a zone."""
     return (value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)).isoformat()
 
 
 def _stored(column: Column[Any], *, naive: bool) -> Callable[[Any], Any]:
-    """How a value that was written down is put in again."""
+    """Function that reads a written value of a column."""
     if isinstance(column.type, DateTime):
         return lambda value: datetime.fromisoformat(value).replace(tzinfo=None if naive else UTC)
     if isinstance(column.type, Date):

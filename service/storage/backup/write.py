@@ -1,6 +1,5 @@
-"""Writes a backup while the service runs: one read transaction sees all tables as they were at one moment, and the
-files that they name are there already and never change.
-"""
+"""Writes a backup while the service runs: one read transaction sees all tables at one moment; the files that they name
+exist already and never change."""
 
 import zipfile
 from collections import defaultdict
@@ -25,20 +24,20 @@ from service.storage.waiting import whole_file
 from service.storage.waits import PATIENT
 
 QUICK = 1
-"""Level of compression: nearly as small as the best, several times as fast."""
+"""Compression level: nearly as small as the best, several times as fast."""
 UPLOAD = "upload"
-"""Kind of the jobs whose files wait beside the uploads."""
+"""Kind of the jobs whose files wait next to the uploads."""
 
 
 def write_backup(url: str, files: Files, target: Path, now: datetime) -> Manifest:
-    """Writes a backup that is there whole or not at all; refuses to write over a file.
+    """Writes a backup completely or not at all; refuses to overwrite a file.
 
     A file that a session names but that is missing or damaged is listed as lost, and the rest is written.
     """
     if target.exists():
         raise ConflictError(f"{target} is there already. A backup is never written over another file.")
     sweep(target.absolute().parent)
-    with _moment(url) as connection, written_whole(target.absolute()) as file:
+    with _snapshot(url) as connection, written_whole(target.absolute()) as file:
         revision = stored_revision(connection)
         if revision is None:
             raise ServiceError("The database holds no schema of this program, so there is nothing to write.")
@@ -49,30 +48,30 @@ def write_backup(url: str, files: Files, target: Path, now: datetime) -> Manifes
 
 
 @contextmanager
-def _moment(url: str) -> Iterator[Connection]:
-    """A read transaction in which all tables stand still."""
+def _snapshot(url: str) -> Iterator[Connection]:
+    """A read transaction with a consistent snapshot of all tables."""
     engine = open_engine(url, PATIENT)
-    still = {} if engine.name == "sqlite" else {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
+    options = {} if engine.name == "sqlite" else {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
     try:
-        with database_faults(), engine.connect().execution_options(**still) as connection:
+        with database_faults(), engine.connect().execution_options(**options) as connection:
             yield connection
     finally:
         engine.dispose()
 
 
-def _written(archive: zipfile.ZipFile, connection: Connection, files: Files, made: tuple[str, datetime]) -> Manifest:
-    """Tables, then files, then what they are."""
+def _written(archive: zipfile.ZipFile, connection: Connection, files: Files, stamp: tuple[str, datetime]) -> Manifest:
+    """Tables, then files, then the manifest."""
     tables = tables_of(connection)
     contents = tuple(_write_table(archive, connection, table) for table in tables)
     waiting = _waiting(connection, tables)
-    named = sorted(_named(connection, tables) | set(waiting))
-    lost = {digest for digest in named if not _write_file(archive, files, digest, waiting.get(digest, ()))}
+    digests = sorted(_named(connection, tables) | set(waiting))
+    lost = {digest for digest in digests if not _write_file(archive, files, digest, waiting.get(digest, ()))}
     manifest = Manifest(
         version=VERSION,
-        revision=made[0],
-        made_at=made[1],
+        revision=stamp[0],
+        made_at=stamp[1],
         tables=contents,
-        files=tuple(digest for digest in named if digest not in lost),
+        files=tuple(digest for digest in digests if digest not in lost),
         lost=tuple(sorted(lost)),
     )
     write_manifest(archive, manifest)
@@ -91,19 +90,19 @@ def _write_table(archive: zipfile.ZipFile, connection: Connection, table: Table)
 
 
 def _named(connection: Connection, tables: list[Table]) -> set[str]:
-    """Hashes of the files that sessions were made of, and of those that were attached."""
-    holding = [table for table in tables if table.name in ("sessions", "attachments")]
-    return {digest for table in holding for digest in connection.scalars(select(table.columns.sha256))}
+    """Hashes of the files of sessions and attachments."""
+    file_tables = [table for table in tables if table.name in ("sessions", "attachments")]
+    return {digest for table in file_tables for digest in connection.scalars(select(table.columns.sha256))}
 
 
 def _waiting(connection: Connection, tables: list[Table]) -> dict[str, list[str]]:
-    """Hashes of files that jobs are to take in, with the places where they lie until then."""
-    found = defaultdict[str, list[str]](list)
+    """Hashes of files that jobs will process, with the places where they are stored until then."""
+    places = defaultdict[str, list[str]](list)
     for jobs in (table for table in tables if table.name == "jobs" and "sent" in table.columns):
-        own = (jobs.columns.kind == UPLOAD, jobs.columns.ended_at.is_(None))
-        for digest, sent in connection.execute(select(jobs.columns.sha256, jobs.columns.sent).where(*own)):
-            found[digest].append(sent["place"])
-    return found
+        conditions = (jobs.columns.kind == UPLOAD, jobs.columns.ended_at.is_(None))
+        for digest, sent in connection.execute(select(jobs.columns.sha256, jobs.columns.sent).where(*conditions)):
+            places[digest].append(sent["place"])
+    return places
 
 
 def _write_file(archive: zipfile.ZipFile, files: Files, digest: str, places: Sequence[str]) -> bool:

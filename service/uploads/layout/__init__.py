@@ -1,1 +1,1 @@
-"""The page of a table of one's own layout."""
+"""The page of a table of custom layout."""

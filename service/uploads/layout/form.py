@@ -1,4 +1,4 @@
-"""The form of a mapping: what was corrected by hand, put into the mapping that it was made from."""
+"""The form of a mapping: corrections by hand, applied to the mapping it was made from."""
 
 import base64
 import binascii
@@ -14,31 +14,33 @@ from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.errors import RefusedError
 from service.ingest.layout.understand import run_words, split_unit
-from service.kit.arriving_files import SentFile, held
+from service.kit.arriving_files import held
 from service.kit.limits import in_force
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
+from service.sessions.sent import SentFile
 from service.storage.aside import aside, set_aside
 from service.storage.files import Files
 from service.uploads.preview import is_sensor
-from service.web.dependencies import Now, PlaceOf, limited
+from service.web.dependencies import Now, UploadSlotOf, limited
 
 MOST_CARRIED = 4 * 1024 * 1024
-"""Bytes of a file that a page itself carries until it is confirmed; a larger one is set aside for who sent it."""
+"""Bytes of a file that the page itself carries until it is confirmed; a larger one is stored temporarily."""
 MOST_FIELDS = 5000
 """Of the form: two for each of 300 columns, a few for each sensor."""
 INFLATION = 1.4
-"""Of bytes written as text: 4/3, and what surrounds them."""
+"""Of bytes encoded as text: 4/3, and the form around them."""
 CHOSEN = ("sheet", "encoding", "separator", "decimal", "header_row", "first_row")
-"""How the file is taken apart, as far as that can be chosen."""
+"""Settings of the parser that can be chosen."""
 TEXTS = ("unit", "unit_type", "operator", "notes", "programme", "block", "stand.id")
 NUMBERS = (
-    "stand.alpha_deg", "stand.chi_deg", "site.latitude_deg", "site.gravity_m_s2", "count_time_s", "sample_rate_hz",
-    "direction_sigma_deg",
+    "stand.alpha_deg", "stand.chi_deg", "site.latitude_deg", "site.gravity_m_s2", "time_since_power_on_s",
+    "count_time_s", "sample_rate_hz", "direction_sigma_deg",
 )  # fmt: skip
-"""Facts of the session that the form asks for."""
+"""Facts of the session in the form."""
 ORTHOGONAL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 HALF_ANGLE = radians(54.735610317245346)
 """Of the cone on which three axes are orthogonal: its cosine is 1/√3."""
@@ -46,15 +48,15 @@ HALF_ANGLE = radians(54.735610317245346)
 
 @dataclass(frozen=True)
 class LayoutForm:
-    """What the form brought."""
+    """Contents of the form."""
 
     file: SentFile
     """Empty where it was not sent again."""
     fields: Mapping[str, str]
-    mapping: dict[str, Any] | None
-    """As the page before showed it; None at first."""
+    mapping: Json | None
+    """As on the previous page; None at first."""
     owner: str = ""
-    """Login of who makes it; empty where nobody signs in."""
+    """Login of the sender; empty where there are no accounts."""
 
     @property
     def unit(self) -> str:
@@ -63,24 +65,24 @@ class LayoutForm:
 
     @property
     def like(self) -> str:
-        """The unit type whose facts are taken."""
+        """The unit type whose facts are used."""
         return self.fields.get("like", "")
 
     @property
     def is_other_type(self) -> bool:
-        """Whether another type was chosen than the facts are of."""
+        """Whether another type was chosen than that of the facts."""
         return self.like != self.fields.get("was_like", self.like)
 
     @property
     def is_other_unit(self) -> bool:
-        """Whether another unit was named than the facts are of."""
+        """Whether another unit was named than that of the facts."""
         return self.unit != self.fields.get("was_unit", "")
 
 
-async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now, _: PlaceOf) -> LayoutForm:
-    most = int(in_force().whole * INFLATION)
-    body = limited(request, most, is_form=True)
-    async with body.form(max_files=1, max_fields=MOST_FIELDS, max_part_size=most) as form:
+async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now, _: UploadSlotOf) -> LayoutForm:
+    limit = int(in_force().whole * INFLATION)
+    body = limited(request, limit, is_form=True)
+    async with body.form(max_files=1, max_fields=MOST_FIELDS, max_part_size=limit) as form:
         file, text = form.get("file"), form.get("content")
         fields = {name: value for name, value in form.items() if isinstance(value, str) and name != "content"}
         content = await file.read() if isinstance(file, UploadFile) else b""
@@ -88,23 +90,23 @@ async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now
     if not content and isinstance(text, str):
         content = _bytes(text)
     if not content and fields.get("aside"):
-        kept = await run_in_threadpool(aside, storage.files, person.login, fields["aside"], now)
-        content = kept or b""
+        stored = await run_in_threadpool(aside, storage.files, person.login, fields["aside"], now)
+        content = stored or b""
     return LayoutForm(SentFile(name, content), fields, _mapping(fields.get("mapping", "")), person.login)
 
 
 @dataclass(frozen=True)
 class Carried:
-    """How a table comes back with its page: one of the two is there."""
+    """How a table returns with its page: one of the two is set."""
 
     content: str = ""
-    """Its bytes as text, where they are few."""
+    """Its bytes as text, for a small table."""
     aside: str = ""
-    """The hash under which it was set aside."""
+    """The hash under which it is stored temporarily."""
 
 
 def carried(files: Files, owner: str, file: SentFile, now: datetime) -> Carried:
-    """The bytes as text for a page to bring back; many are set aside."""
+    """Bytes as text for a small table; a larger one is stored temporarily."""
     if len(file.content) <= MOST_CARRIED:
         return Carried(base64.b64encode(held(file.content)).decode())
     return Carried(aside=set_aside(files, owner, file.content, now))
@@ -122,21 +124,21 @@ def _bytes(text: str) -> bytes:
         ) from fault
 
 
-def _mapping(text: str) -> dict[str, Any] | None:
+def _mapping(text: str) -> Json | None:
     if not text:
         return None
     try:
-        found = json.loads(text)
+        document = json.loads(text)
     except ValueError as fault:
         raise RefusedError(
             "The form is damaged: upload the file again.", (Problem("mapping", "is damaged"),)
         ) from fault
-    if not isinstance(found, dict) or not isinstance(found.get("columns"), list):
+    if not isinstance(document, dict) or not isinstance(document.get("columns"), list):
         raise RefusedError("The form is damaged: upload the file again.", (Problem("mapping", "is damaged"),))
-    return found
+    return document
 
 
-def corrected(form: LayoutForm) -> dict[str, Any] | None:
+def corrected(form: LayoutForm) -> Json | None:
     """The mapping with everything that was chosen or written; None where there is none to correct yet."""
     if form.mapping is None:
         return None
@@ -155,21 +157,21 @@ def corrected(form: LayoutForm) -> dict[str, Any] | None:
     }
 
 
-def _chosen(fields: Mapping[str, str]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+def _chosen(fields: Mapping[str, str]) -> Json:
+    settings: Json = {}
     for key in CHOSEN:
         text = fields.get(f"table.{key}", "")
         if text:
-            found[key] = int(text) if text.isdecimal() and key.endswith("_row") else text
-    return found
+            settings[key] = int(text) if text.isdecimal() and key.endswith("_row") else text
+    return settings
 
 
-def _column(fields: Mapping[str, str], k: int, before: Any) -> dict[str, Any]:
-    """One column as it was chosen."""
+def _column(fields: Mapping[str, str], k: int, before: Any) -> Json:
+    """One column as chosen."""
     known = before if isinstance(before, dict) else {}
     meaning, unit = fields.get(f"as.{k}", known.get("as") or ""), fields.get(f"unit.{k}", known.get("unit") or "")
     heading = str(known.get("heading", ""))
-    column: dict[str, Any] = {"heading": heading, "as": meaning or None}
+    column: Json = {"heading": heading, "as": meaning or None}
     if meaning and (unit.strip() or split_unit(heading)[1]) and meaning not in ("run", "position"):
         column["unit"] = unit.strip()
     if meaning == "run":
@@ -180,8 +182,8 @@ def _column(fields: Mapping[str, str], k: int, before: Any) -> dict[str, Any]:
     return column
 
 
-def _session(fields: Mapping[str, str], before: Any, columns: list[dict[str, Any]]) -> dict[str, Any]:
-    """The facts with what was written; a field left empty states nothing."""
+def _session(fields: Mapping[str, str], before: Any, columns: list[Json]) -> Json:
+    """The facts with what was written; an empty field states nothing."""
     session = json.loads(json.dumps(before if isinstance(before, dict) else {}))
     for key in (*TEXTS, *NUMBERS):
         if f"fact.{key}" in fields:
@@ -202,14 +204,18 @@ def _started(fields: Mapping[str, str]) -> str:
 def moment(session: Mapping[str, Any]) -> tuple[str, str, str]:
     """Day, clock and offset of a session's start, as the form shows them."""
     try:
-        at = datetime.fromisoformat(str(session.get("started_at", "")))
+        start = datetime.fromisoformat(str(session.get("started_at", "")))
     except ValueError:
         return "", "", ""
-    offset = at.strftime("%z")
-    return at.date().isoformat(), at.strftime("%H:%M"), "Z" if offset in ("", "+0000") else f"{offset[:3]}:{offset[3:]}"
+    offset = start.strftime("%z")
+    return (
+        start.date().isoformat(),
+        start.strftime("%H:%M"),
+        "Z" if offset in ("", "+0000") else f"{offset[:3]}:{offset[3:]}",
+    )
 
 
-def _put(session: dict[str, Any], key: str, value: Any) -> None:
+def _put(session: Json, key: str, value: Any) -> None:
     parent, _, step = key.rpartition(".")
     node = session.setdefault(parent, {}) if parent else session
     if not isinstance(node, dict):
@@ -225,7 +231,7 @@ def _put(session: dict[str, Any], key: str, value: Any) -> None:
 
 
 def _value(text: str) -> float | str | None:
-    """A number, with a decimal comma too; text that is none stays, so that it is refused by its name."""
+    """A number, with a decimal comma too; any other text is kept, so that it is refused under its name."""
     text = text.strip()
     try:
         return float(text.replace(",", ".")) if text else None
@@ -233,15 +239,13 @@ def _value(text: str) -> float | str | None:
         return text
 
 
-def _sensors(
-    fields: Mapping[str, str], session: Mapping[str, Any], columns: list[dict[str, Any]]
-) -> list[dict[str, Any]]:
-    """One a column that is read as a sensor, with what is known and what was written of it."""
+def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: list[Json]) -> list[Json]:
+    """One sensor per column of readings, with known facts and what was written."""
     known = {s.get("name"): s for s in session.get("sensors") or () if isinstance(s, dict)}
-    named = [column for column in columns if column["as"] and is_sensor(column["as"])]
-    axes = _arranged(fields.get("arrangement", ""), len(named))
-    found = []
-    for column, axis in zip(named, axes, strict=True):
+    sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
+    axes = _arranged(fields.get("arrangement", ""), len(sensor_columns))
+    sensors = []
+    for column, axis in zip(sensor_columns, axes, strict=True):
         name = column["as"]
         sensor = {"reading_unit": column.get("unit", ""), **known.get(name, {}), "name": name}
         written = {key: fields.get(f"sensor.{name}.{key}") for key in ("kind", "axis", "scale", "unit")}
@@ -255,8 +259,8 @@ def _sensors(
             sensor["nominal_scale"] = _value(written["scale"])
         if written["unit"]:
             sensor["reading_unit"] = written["unit"].strip()
-        found.append({key: value for key, value in sensor.items() if value not in (None, "", [])})
-    return found
+        sensors.append({key: value for key, value in sensor.items() if value not in (None, "", [])})
+    return sensors
 
 
 def _arranged(arrangement: str, count: int) -> list[tuple[float, float, float] | None]:
@@ -271,20 +275,20 @@ def _arranged(arrangement: str, count: int) -> list[tuple[float, float, float] |
 
 
 def _components(text: str) -> list[float | str]:
-    """``1 0 0`` or ``1; 0; 0`` or ``1, 0, 0``; with decimal commas where spaces or semicolons part them."""
+    """``1 0 0`` or ``1; 0; 0`` or ``1, 0, 0``; with decimal commas where spaces or semicolons separate them."""
     parts = text.replace(";", " ").split() if ";" in text or text.count(",") != 2 else text.replace(",", " ").split()
     return [number for part in parts if (number := _value(part.strip(","))) is not None]
 
 
-def filled_in(session: Mapping[str, Any], facts: Mapping[str, Any]) -> dict[str, Any]:
-    """What was written, and of the facts what was left open; sensors by their names."""
-    named = {sensor["name"]: sensor for sensor in facts.get("sensors", ())}
-    whole = dict(session)
+def filled_in(session: Mapping[str, Any], facts: Mapping[str, Any]) -> Json:
+    """What was written, completed by the facts; sensors by their names."""
+    by_name = {sensor["name"]: sensor for sensor in facts.get("sensors", ())}
+    merged = dict(session)
     for key, value in facts.items():
         if key == "sensors":
-            whole[key] = [{**named.get(s.get("name"), {}), **s} for s in session.get(key) or facts[key]]
+            merged[key] = [{**by_name.get(s.get("name"), {}), **s} for s in session.get(key) or facts[key]]
         elif isinstance(value, Mapping) and isinstance(session.get(key), Mapping):
-            whole[key] = {**value, **{k: v for k, v in session[key].items() if v not in (None, "")}}
+            merged[key] = {**value, **{k: v for k, v in session[key].items() if v not in (None, "")}}
         else:
-            whole.setdefault(key, value)
-    return whole
+            merged.setdefault(key, value)
+    return merged

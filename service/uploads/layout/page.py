@@ -1,4 +1,4 @@
-"""The page of a table of one's own layout: how each column is read, what is missing, and the first rows."""
+"""The page of a table of custom layout: how each column is read, what is missing, and the first rows."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
@@ -16,14 +17,14 @@ from service.uploads.layout.form import Carried, LayoutForm, moment
 from service.uploads.preview import Preview, felt_length, first_rows, is_sensor
 
 MOST_SHOWN = 30
-"""Columns that are shown whether they are read or not; further ones that are left out stand behind a click."""
+"""Columns that are always shown; further ignored ones are behind a click."""
 NEW_SENSORS = 12
-"""Names of sensors that are offered where none is known."""
+"""Offered names of sensors where none is known."""
 UNITS = (
     "V", "mV", "µV", "mA", "µA", "count", "pulse", "m/s²", "g", "mg", "rad/s", "°/s", "°/h", "deg", "rad", "arcmin",
     "arcsec", "s", "ms", "min", "h", "°C", "K", "°F",
 )  # fmt: skip
-"""That are offered."""
+"""Offered units."""
 SEPARATORS = {";": "semicolon ;", ",": "comma ,", "\t": "tab", "|": "bar |"}
 DECIMALS = {".": "point 0.5", ",": "comma 0,5"}
 OFFSETS = ("Z", *(f"{sign}{h:02}:00" for sign, hours in (("+", range(1, 15)), ("-", range(1, 13))) for h in hours))
@@ -33,7 +34,7 @@ LABELS = {
     "vibration_m_s2": "vibration", "turn_angle_deg": "angle of the turntable", "turn_rate_deg_s": "rate of the table",
     "position": "position", "direction_x": "direction x", "direction_y": "direction y", "direction_z": "direction z",
 }  # fmt: skip
-"""What columns are called here."""
+"""Names of columns on this page."""
 FACTS = (
     ("fact.operator", "Operator", "operator"), ("fact.notes", "Notes", "notes"),
 )  # fmt: skip
@@ -41,13 +42,14 @@ PLACES = (
     ("stand.id", "Stand: name or number", "text"), ("stand.alpha_deg", "Elevation of the head's axis α, °", "decimal"),
     ("site.latitude_deg", "Latitude, °", "decimal"), ("site.gravity_m_s2", "or measured gravity, m/s²", "decimal"),
 )  # fmt: skip
-"""What is asked of the stand and the site."""
+"""Fields of the stand and the site."""
 RARE = (
+    ("time_since_power_on_s", "From switching on to the first row, s", "decimal"),
     ("stand.chi_deg", "Gyroscopes: elevation χ, °", "decimal"), ("count_time_s", "Pulses: count time, s", "decimal"),
     ("sample_rate_hz", "Raw log: samples a second", "decimal"),
     ("direction_sigma_deg", "Directions: known to, °", "decimal"),
 )  # fmt: skip
-"""What only some sessions need."""
+"""Fields that only some sessions need."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class ColumnRow:
     unit: str
     has_unit: bool
     words: tuple[tuple[str, str], ...]
-    """Of the run, and what each means."""
+    """Words of the run, with their meaning."""
     all_words: str
     empty: bool
 
@@ -99,7 +101,7 @@ class FactField:
 
 @dataclass(frozen=True)
 class LayoutPage:
-    """Everything the page shows."""
+    """Contents of the page."""
 
     filename: str
     carried: Carried
@@ -108,11 +110,11 @@ class LayoutPage:
     rows: str
     columns: tuple[ColumnRow, ...]
     more: tuple[ColumnRow, ...]
-    """Columns of a wide table that are left out."""
+    """Ignored columns of a wide table."""
     left_out: int
-    """Columns that say nothing."""
+    """Number of empty columns."""
     taken: tuple[tuple[str, str, tuple[Choice, ...]], ...]
-    """Key, label and choices of how the file is taken apart."""
+    """Key, label and choices of the parser's settings."""
     numbers: tuple[FactField, ...]
     unit: str
     unit_type: str
@@ -134,29 +136,29 @@ class LayoutPage:
     units: tuple[str, ...] = UNITS
     can_store: bool = False
     changed: bool = False
-    """Whether it was to be stored, but not as it was shown before."""
+    """Whether it was confirmed, but differs from what was shown."""
 
 
-def layout_page(carried: Carried, found: Preview, form: LayoutForm, types: Sequence[str]) -> LayoutPage:
-    """The page under the mapping at hand."""
-    mapping, session = found.mapping, found.mapping["session"]
+def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Sequence[str]) -> LayoutPage:
+    """The page for a mapping."""
+    mapping, session = preview.mapping, preview.mapping["session"]
     day, clock, offset = moment(session)
     like = form.like or str(session.get("unit_type") or "")
     like = like if like in types else ""
-    columns = tuple(_columns(found))
-    filled = tuple(column for column in columns if not column.empty)
-    shown = tuple(column for column in filled if column.meaning or column.place < MOST_SHOWN)
-    dated = _dated(found.problems, day)
+    columns = tuple(_columns(preview))
+    filled_columns = tuple(column for column in columns if not column.empty)
+    shown = tuple(column for column in filled_columns if column.meaning or column.place < MOST_SHOWN)
+    problems = _dated(preview.problems, day)
     return LayoutPage(
         filename=form.file.filename,
         carried=carried,
         mapping=json.dumps(mapping, ensure_ascii=False),
-        remembered=found.remembered,
-        rows=f"{found.seen['rows']:,}",
+        remembered=preview.remembered,
+        rows=f"{preview.seen['rows']:,}",
         columns=shown,
-        more=tuple(column for column in filled if column not in shown),
+        more=tuple(column for column in filled_columns if column not in shown),
         left_out=sum(column.empty for column in columns),
-        taken=tuple(_taken(found)),
+        taken=tuple(_taken(preview)),
         numbers=tuple(_row_fields(mapping["table"])),
         unit=str(session.get("unit") or ""),
         unit_type=str(session.get("unit_type") or ""),
@@ -173,48 +175,48 @@ def layout_page(carried: Carried, found: Preview, form: LayoutForm, types: Seque
         places=_fields(PLACES, session),
         rare=_fields(RARE, session),
         sensors=tuple(_sensor(s, session) for s in session.get("sensors") or () if isinstance(s, dict)),
-        problems=dated,
-        can_store=not dated,
-        changed=form.fields.get("do") == "store" and not dated,
-        **_first(found),
+        problems=problems,
+        can_store=not problems,
+        changed=form.fields.get("do") == "store" and not problems,
+        **_first(preview),
     )
 
 
 def _dated(problems: tuple[Problem, ...], day: str) -> tuple[Problem, ...]:
-    """A history needs the day, which a session file may leave out."""
-    return problems if day else (*problems, Problem("started_at", "missing; say on which day it was measured"))
+    """A history needs the day, which a session file may omit."""
+    return problems if day else (*problems, Problem("started_at", "missing; state the day of measurement"))
 
 
 def _choices(values: Sequence[str], chosen: str) -> tuple[Choice, ...]:
     return tuple(Choice(value, value, value == chosen) for value in values)
 
 
-def _columns(found: Preview) -> Iterator[ColumnRow]:
-    sensors = _sensor_names(found)
-    for place, (seen, column) in enumerate(zip(found.seen["columns"], found.mapping["columns"], strict=True)):
+def _columns(preview: Preview) -> Iterator[ColumnRow]:
+    sensors = _sensor_names(preview)
+    for place, (source, column) in enumerate(zip(preview.seen["columns"], preview.mapping["columns"], strict=True)):
         meaning = column.get("as") or ""
         words = column.get("words") or {}
         yield ColumnRow(
             place,
-            seen["heading"],
-            tuple(seen["cells"]),
+            source["heading"],
+            tuple(source["cells"]),
             meaning,
             tuple(_meanings(meaning, sensors)),
             column.get("unit") or "",
             meaning not in ("run", "position"),
             tuple(words.items()) if meaning == "run" else (),
-            "\t".join(seen["words"]),
-            seen["empty"] and not meaning,
+            "\t".join(source["words"]),
+            source["empty"] and not meaning,
         )
 
 
-def _sensor_names(found: Preview) -> list[str]:
-    """Those that are known, and names for further ones."""
-    known = [str(s.get("name", "")) for s in found.mapping["session"].get("sensors") or () if isinstance(s, dict)]
-    used = [column["as"] for column in found.mapping["columns"] if column.get("as") and is_sensor(column["as"])]
-    letter = "G" if found.mapping["session"].get("block") == GYROSCOPE else "A"
-    free = [f"{letter}{k}" for k in range(1, NEW_SENSORS + 1)]
-    return list(dict.fromkeys((*known, *used, *free)))
+def _sensor_names(preview: Preview) -> list[str]:
+    """Known names, and new ones."""
+    known = [str(s.get("name", "")) for s in preview.mapping["session"].get("sensors") or () if isinstance(s, dict)]
+    used = [column["as"] for column in preview.mapping["columns"] if column.get("as") and is_sensor(column["as"])]
+    letter = "G" if preview.mapping["session"].get("block") == GYROSCOPE else "A"
+    unused = [f"{letter}{k}" for k in range(1, NEW_SENSORS + 1)]
+    return list(dict.fromkeys((*known, *used, *unused)))
 
 
 def _meanings(meaning: str, sensors: Sequence[str]) -> Iterator[Choice]:
@@ -227,11 +229,11 @@ def _meanings(meaning: str, sensors: Sequence[str]) -> Iterator[Choice]:
         yield Choice(f"{name}_se", say("standard error of {name}", name=name), f"{name}_se" == meaning)
 
 
-def _taken(found: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
-    table = found.mapping["table"]
-    if found.seen["sheets"]:
-        yield "sheet", "Sheet", _choices(tuple(found.seen["sheets"]), str(table.get("sheet")))
-    if found.seen["kind"] == "text":
+def _taken(preview: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
+    table = preview.mapping["table"]
+    if preview.seen["sheets"]:
+        yield "sheet", "Sheet", _choices(tuple(preview.seen["sheets"]), str(table.get("sheet")))
+    if preview.seen["kind"] == "text":
         yield "encoding", "Encoding", _choices(tuple(dict.fromkeys((*ENCODINGS, table["encoding"]))), table["encoding"])
         separators = SEPARATORS | {table["separator"]: SEPARATORS.get(table["separator"], table["separator"])}
         yield (
@@ -239,7 +241,7 @@ def _taken(found: Preview) -> Iterator[tuple[str, str, tuple[Choice, ...]]]:
             "Columns parted by",
             tuple(Choice(k, v, k == table["separator"]) for k, v in separators.items()),
         )
-    if found.seen["kind"] in ("text", "xlsx"):
+    if preview.seen["kind"] in ("text", "xlsx"):
         yield "decimal", "Decimal sign", tuple(Choice(k, v, k == table["decimal"]) for k, v in DECIMALS.items())
 
 
@@ -249,11 +251,11 @@ def _row_fields(table: Mapping[str, Any]) -> Iterator[FactField]:
             yield FactField(key, label, str(table[key]), "numeric")
 
 
-def _fields(asked: Sequence[tuple[str, str, str]], session: Mapping[str, Any]) -> tuple[FactField, ...]:
-    return tuple(FactField(key, label, _said(session, key), mode) for key, label, mode in asked)
+def _fields(entries: Sequence[tuple[str, str, str]], session: Mapping[str, Any]) -> tuple[FactField, ...]:
+    return tuple(FactField(key, label, _text_of(session, key), mode) for key, label, mode in entries)
 
 
-def _said(session: Mapping[str, Any], key: str) -> str:
+def _text_of(session: Mapping[str, Any], key: str) -> str:
     parent, _, step = key.rpartition(".")
     node = session.get(parent) if parent else session
     value = node.get(step) if isinstance(node, Mapping) else None
@@ -273,16 +275,16 @@ def _sensor(sensor: Mapping[str, Any], session: Mapping[str, Any]) -> SensorRow:
     )
 
 
-def _first(found: Preview) -> dict[str, Any]:
-    """The first rows as they will be read, and the length of what they say was felt."""
-    if found.session is None:
+def _first(preview: Preview) -> Json:
+    """The first rows as they will be read, and the length of the measured vector."""
+    if preview.session is None:
         return {"preview": (), "headings": (), "felt": ""}
-    rows = first_rows(found.session)
-    measure = "m/s²" if found.session.block == ACCELEROMETER else "rad/s"
+    rows = first_rows(preview.session)
+    measure = "m/s²" if preview.session.block == ACCELEROMETER else "rad/s"
     units = {"beta_rad": "β, rad", "time_s": "t, s", "temperature_c": "T, °C", "run": "run"}
     headings = tuple(units.get(name, say("{name}, {measure}", name=name, measure=measure)) for name in rows[0])
     cells = tuple(tuple(value if isinstance(value, str) else number(value) for value in row.values()) for row in rows)
-    length = felt_length(found.session)
+    length = felt_length(preview.session)
     return {
         "preview": cells,
         "headings": headings,

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, Request, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, Request, sync_playwright
 
 from service.uploads.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
@@ -112,10 +112,14 @@ class Witness:
 
     def watch(self, page: Page) -> None:
         """Listens to a page from now on."""
-        page.on("console", lambda m: m.type in ("error", "warning") and self.complaints.append(m.text))
+        page.on("console", self._heard)
         page.on("pageerror", lambda fault: self.complaints.append(str(fault)))
         page.on("requestfailed", self._failed)
         page.on("request", lambda request: self.addresses.append(request.url))
+
+    def _heard(self, message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning"):
+            self.complaints.append(message.text)
 
     def _failed(self, request: Request) -> None:
         """What the browser itself let go, leaving a page before its icon came, is nobody's fault."""
@@ -126,7 +130,7 @@ class Witness:
 @contextmanager
 def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[tuple[BrowserContext, Page]]:
     """A fresh browser context with one page."""
-    context = browser.new_context(viewport={"width": width, "height": 900}, **options)  # type: ignore[arg-type]
+    context = browser.new_context(viewport={"width": width, "height": 900}, **options)
     context.set_default_timeout(1000 * LONG)
     yield context, context.new_page()
     context.close()

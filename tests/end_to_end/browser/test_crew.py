@@ -86,8 +86,8 @@ def send(page: Page, heading: str, **fields: str) -> None:
 def test_readings_in_mv_are_put_right_by_one_button(crew: str, page: Page) -> None:
     uploaded(page, crew, slipped(times(1000.0), unit="MILLI-1"))
     assert "Questioned" in head(page)
-    assert "the readings are in another unit than the file says, such as mV for V" in head(page)
-    send(page, "Put the file right")
+    assert "the readings are not in the unit that the file states, such as mV instead of V" in head(page)
+    send(page, "Correct the file")
     assert "Reference set" in head(page)
 
 
@@ -111,7 +111,7 @@ def test_a_first_session_that_turns_out_bad_gives_way_to_a_better_reference(crew
     assert "Chosen as the reference" in head(page)
     page.goto(f"{crew}/units/FIRST-1")
     assert "Fit" in head(page)
-    assert "The session of 1 Mar 2026 is the reference that A3 is judged against now." in page.inner_text("main")
+    assert "A3 is now judged against the session of 1 Mar 2026." in page.inner_text("main")
 
 
 def test_a_service_entered_a_week_late_takes_the_fail_back(crew: str, page: Page) -> None:
@@ -153,13 +153,13 @@ def test_a_unit_mounted_otherwise_by_two_degrees_is_fit(crew: str, page: Page) -
     assert "Fit" in head(page)
     said = page.locator("p.line", has_text="The whole block turned by").inner_text()
     assert "turned by 1.9999" in said or "turned by 2.0000" in said
-    assert "The sensors are judged without it" in said
+    assert "The sensors are judged without this effect" in said
 
 
 def test_a_stand_seated_badly_for_a_month_is_named_with_its_dates(crew: str, page: Page) -> None:
     page.goto(f"{crew}/")
-    said = page.locator("p.line", has_text="Stand S1 was shifted for a time").inner_text()
+    said = page.locator("p.line", has_text="Stand S1 was shifted temporarily").inner_text()
     assert "from 1 Jun 2026 until before 1 Aug 2026" in said
-    assert "The units are judged without it" in said
+    assert "The units are judged without this effect" in said
     page.goto(f"{crew}/units/MO-1")
     assert "Fit" in head(page)

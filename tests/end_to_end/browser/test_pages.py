@@ -239,7 +239,7 @@ def test_two_sessions_are_chosen_on_the_unit_s_page(chromium: Browser, site: Sit
         page.locator("#compare select[name=a]").select_option(site.first_session)
         page.locator("#compare button").click()
         page.wait_for_url("**/compare?**")
-        assert "A3 bias moved −8" in page.locator("main").inner_text()
+        assert "A3 bias changed by −8" in page.locator("main").inner_text()
         assert page.locator("tr.fail th").all_inner_texts() == ["A3 bias"]
 
 

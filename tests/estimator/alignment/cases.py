@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 
 from estimator.alignment.align import align
 from estimator.alignment.results import AlignmentResult
-from estimator.alignment.simulate import Imperfections, Programme, Truth, simulate_alignment, triads
-from estimator.alignment.sins import Model
+from estimator.alignment.simulate import Imperfections, Truth, TurntableProgramme, simulate_alignment, triads
+from estimator.alignment.sins import InertialModel
 from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Array, CalibrationSession, Site
@@ -16,7 +16,7 @@ from estimator.session import Array, CalibrationSession, Site
 DEGREE_PER_HOUR = np.pi / 180 / 3600
 SITE = Site(latitude=np.radians(40.0))
 G = gravity(SITE)
-SHORT = Programme(dwell=200.0, row=0.5)
+SHORT = TurntableProgramme(dwell=200.0, row=0.5)
 QUIET = Imperfections(accelerometer=1e-7, gyro=1e-10)
 TYPICAL = Imperfections(wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
 
@@ -46,7 +46,12 @@ class Case:
 
 
 def session(
-    truth: Truth, seed: int = 1, *, programme: Programme = SHORT, noise: Imperfections = TYPICAL, site: Site = SITE
+    truth: Truth,
+    seed: int = 1,
+    *,
+    programme: TurntableProgramme = SHORT,
+    noise: Imperfections = TYPICAL,
+    site: Site = SITE,
 ) -> tuple[CalibrationSession, Array]:
     """A session of three accelerometers and three gyros, and the true attitudes."""
     return simulate_alignment(triads(), site, programme, truth, np.random.default_rng(seed), imperfections=noise)
@@ -56,8 +61,8 @@ def aligned(
     truth: Truth,
     seed: int = 1,
     *,
-    model: Model = Model.TURNTABLE,
-    programme: Programme = SHORT,
+    model: InertialModel = InertialModel.TURNTABLE,
+    programme: TurntableProgramme = SHORT,
     noise: Imperfections = TYPICAL,
     site: Site = SITE,
     lever_arms: bool = True,

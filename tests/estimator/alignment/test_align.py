@@ -8,8 +8,8 @@ import pytest
 
 from estimator import align, calibrate, read_session
 from estimator.alignment.axes import reduction
-from estimator.alignment.simulate import Programme, Truth, simulate_alignment, triads
-from estimator.alignment.sins import Model
+from estimator.alignment.simulate import Truth, TurntableProgramme, simulate_alignment, triads
+from estimator.alignment.sins import InertialModel
 from estimator.errors import FormatError, ScheduleError
 from estimator.results import ARCSEC
 from estimator.session import ARBITRARY_ORIENTATIONS, CalibrationSession
@@ -20,7 +20,7 @@ from tests.estimator.alignment.cases import QUIET, SHORT, SITE, TYPICAL, G, alig
 TRUTH = Truth(mounting=(4 * ARCSEC, 8 * ARCSEC), accelerometer_bias=np.array([2e-4, -1e-4, 0.0]))
 
 
-def given(programme: Programme = SHORT) -> CalibrationSession:
+def given(programme: TurntableProgramme = SHORT) -> CalibrationSession:
     return session(TRUTH, programme=programme)[0]
 
 
@@ -37,7 +37,7 @@ def test_the_heading_is_found() -> None:
 
 def test_known_mounting_errors_taken_off_leave_none_in_the_ten_state_estimate() -> None:
     measured, _ = session(TRUTH, noise=QUIET)
-    found = align(measured, model=Model.TEN, mounting=TRUTH.mounting)
+    found = align(measured, model=InertialModel.TEN, mounting=TRUTH.mounting)
     assert found.parameter("nabla_x").value == pytest.approx(2e-4, abs=1e-6)
     assert found.parameter("nabla_y").value == pytest.approx(-1e-4, abs=1e-6)
 
@@ -91,27 +91,27 @@ def test_as_a_calibration_the_axes_carry_the_errors() -> None:
 
 
 def test_what_is_not_told_has_no_value() -> None:
-    found = align(given(), model=Model.MOUNTING)
+    found = align(given(), model=InertialModel.MOUNTING)
     assert found.parameter("E_xz").value is None
     told = {entry["name"]: entry["observable"] for entry in found.to_dict()["parameters"]}
     assert (told["nabla_x"], told["eps_y"]) == (False, True)
 
 
 def test_a_single_position_is_too_few() -> None:
-    with pytest.raises(ScheduleError, match=r"the table stands only at 0°; stop .* at two angles or more"):
-        align(given(Programme(angles=(0.0,), dwell=100.0, row=0.5)))
+    with pytest.raises(ScheduleError, match=r"the table rests only at 0°; stop .* at two or more angles"):
+        align(given(TurntableProgramme(angles=(0.0,), dwell=100.0, row=0.5)))
 
 
 def test_a_whole_turn_is_no_second_position() -> None:
-    with pytest.raises(ScheduleError, match="two angles or more"):
-        align(given(Programme(angles=(0.0, 2 * np.pi), dwell=60.0, row=0.5)))
+    with pytest.raises(ScheduleError, match="two or more angles"):
+        align(given(TurntableProgramme(angles=(0.0, 2 * np.pi), dwell=60.0, row=0.5)))
 
 
 def test_a_block_that_moves_at_a_stop_is_noticed() -> None:
     measured = given()
     moved = measured.readings.copy()
     moved[100:150, 3] += np.radians(2.0)
-    with pytest.raises(ScheduleError, match=r"table stands in rows 1 to \d+, but the gyros read 2 °/s"):
+    with pytest.raises(ScheduleError, match=r"table is at rest in rows 1 to \d+, but the gyros read 2 °/s"):
         align(replace(measured, readings=moved))
 
 
@@ -156,7 +156,7 @@ def test_another_programme_is_refused() -> None:
 
 
 def test_a_file_without_turn_angle_or_times_names_both() -> None:
-    document = session_document(given(Programme(dwell=20.0, row=1.0)))
+    document = session_document(given(TurntableProgramme(dwell=20.0, row=1.0)))
     del document["table"]["turn_angle_deg"], document["table"]["time_s"]
     with pytest.raises(FormatError) as caught:
         read_session(document)
@@ -164,7 +164,7 @@ def test_a_file_without_turn_angle_or_times_names_both() -> None:
 
 
 def test_a_file_without_gyros_is_refused() -> None:
-    document = session_document(given(Programme(dwell=20.0, row=1.0)))
+    document = session_document(given(TurntableProgramme(dwell=20.0, row=1.0)))
     document |= {"block": "accelerometer", "sensors": [s for s in document["sensors"] if s["name"].startswith("A")]}
     for name in ("G1", "G2", "G3"):
         del document["table"][name]
@@ -178,7 +178,7 @@ def test_a_stuck_channel_is_named() -> None:
     measured = given()
     stuck = measured.readings.copy()
     stuck[:, 4] = 0.0
-    with pytest.raises(ScheduleError, match="G2: reads the same in every row"):
+    with pytest.raises(ScheduleError, match="G2: has the same reading in every row"):
         align(replace(measured, readings=stuck))
 
 
@@ -193,7 +193,7 @@ def senseless(measured: CalibrationSession, seed: int) -> CalibrationSession:
 
 
 def test_senseless_readings_are_refused_or_give_numbers() -> None:
-    measured = given(Programme(dwell=30.0, row=0.5))
+    measured = given(TurntableProgramme(dwell=30.0, row=0.5))
     found = []
     for seed in range(30):
         with suppress(ScheduleError):

@@ -7,8 +7,8 @@ from scipy.stats import chi2
 from benchmarks.papers_alignment.observability import planned_path
 from estimator.alignment.filtering import KalmanState, correct, predict
 from estimator.alignment.noise import at_rest
-from estimator.alignment.simulate import Imperfections, Programme, Truth, true_attitude, true_motion
-from estimator.alignment.sins import Model, dynamics, earth_rate, transition
+from estimator.alignment.simulate import Imperfections, Truth, TurntableProgramme, true_attitude, true_motion
+from estimator.alignment.sins import InertialModel, dynamics, earth_rate, transition
 from estimator.results import ARCSEC
 from estimator.session import Array, Site
 from tests.estimator.alignment.cases import SITE, TYPICAL, Case, G, aligned, drawn
@@ -16,12 +16,12 @@ from tests.estimator.alignment.cases import SITE, TYPICAL, Case, G, aligned, dra
 LATITUDE = SITE.latitude or 0.0
 RUNS = 24
 NOISY = Imperfections(accelerometer=5e-5 * G, gyro=0.02 * ARCSEC * 60, wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
-FOUR = Programme(angles=(0, np.pi / 2, np.pi, 1.5 * np.pi), dwell=120.0, row=0.5)
+FOUR = TurntableProgramme(angles=(0, np.pi / 2, np.pi, 1.5 * np.pi), dwell=120.0, row=0.5)
 CASES = {
-    "turntable": (Model.TURNTABLE, TYPICAL, Programme(dwell=200.0, row=0.5), 20 * ARCSEC),
-    "noisy": (Model.TURNTABLE, NOISY, Programme(dwell=200.0, row=0.5), 20 * ARCSEC),
-    "four stops": (Model.TURNTABLE, TYPICAL, FOUR, 20 * ARCSEC),
-    "ten states": (Model.TEN, Imperfections(), Programme(dwell=200.0, row=0.5), 0.0),
+    "turntable": (InertialModel.TURNTABLE, TYPICAL, TurntableProgramme(dwell=200.0, row=0.5), 20 * ARCSEC),
+    "noisy": (InertialModel.TURNTABLE, NOISY, TurntableProgramme(dwell=200.0, row=0.5), 20 * ARCSEC),
+    "four stops": (InertialModel.TURNTABLE, TYPICAL, FOUR, 20 * ARCSEC),
+    "ten states": (InertialModel.TEN, Imperfections(), TurntableProgramme(dwell=200.0, row=0.5), 0.0),
 }
 
 
@@ -31,7 +31,7 @@ def runs(name: str) -> list[Case]:
     for seed in range(RUNS):
         rng = np.random.default_rng(seed)
         site = Site(latitude=rng.uniform(-1.1, 1.1))
-        truth = drawn(rng, mounting=mounting, kappa=0.0 if model is Model.TEN else 1e-5)
+        truth = drawn(rng, mounting=mounting, kappa=0.0 if model is InertialModel.TEN else 1e-5)
         found.append(aligned(truth, seed, model=model, noise=noise, programme=programme, site=site))
     return found
 
@@ -40,7 +40,7 @@ def runs(name: str) -> list[Case]:
 def test_errors_are_as_large_as_their_covariance_says(name: str) -> None:
     cases = runs(name)
     nees = sum(float(c.error @ np.linalg.solve(c.covariance, c.error)) for c in cases)
-    low, high = chi2.ppf([0.001, 0.999], RUNS * len(cases[0].error))
+    low, high = chi2.ppf(np.array([0.001, 0.999]), RUNS * len(cases[0].error))
     assert low < nees < high
     z = np.array([c.error / np.sqrt(np.diag(c.covariance)) for c in cases])
     assert np.abs(z).max() < 4.2
@@ -48,7 +48,7 @@ def test_errors_are_as_large_as_their_covariance_says(name: str) -> None:
 
 def test_a_block_at_rest_reads_gravity_and_the_earth_s_rotation() -> None:
     """In any heading and at any length of row: C turns with the Earth, so the mean over a row is that at any time."""
-    attitude = true_attitude(Programme(angles=(0.3,), dwell=20.0, row=5.0), Truth(), np.zeros((1, 2)))
+    attitude = true_attitude(TurntableProgramme(angles=(0.3,), dwell=20.0, row=5.0), Truth(), np.zeros((1, 2)))
     motion = true_motion(attitude, 5.0, LATITUDE, G)
     east_north_up = attitude[0].T @ earth_rate(LATITUDE)
     assert motion.forces == pytest.approx(np.tile([0.0, 0.0, G], (4, 1)), abs=1e-12)
@@ -62,7 +62,7 @@ def test_innovations_are_as_large_as_expected() -> None:
 
 
 def test_the_transition_is_that_of_the_differential_equation() -> None:
-    path = planned_path(Programme(dwell=20.0, row=0.5), LATITUDE, G)
+    path = planned_path(TurntableProgramme(dwell=20.0, row=0.5), LATITUDE, G)
     F = dynamics(path, LATITUDE, G)
     fine = np.eye(F.shape[1])
     for _ in range(2000):

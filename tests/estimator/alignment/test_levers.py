@@ -8,7 +8,7 @@ import pytest
 from estimator import align
 from estimator.alignment.levers import coefficients, place_of, turning
 from estimator.alignment.results import AlignmentResult
-from estimator.alignment.simulate import Programme, table_angle, turn_rates
+from estimator.alignment.simulate import TurntableProgramme, table_angle, turn_rates
 from estimator.results import ARCSEC
 from estimator.session import Array
 from tests.estimator.alignment.cases import SHORT, TYPICAL, aligned, drawn
@@ -91,7 +91,7 @@ def test_the_place_follows_from_what_is_felt() -> None:
 
 
 def test_a_simulated_turn_starts_and_stops_evenly() -> None:
-    programme = Programme(angles=(0.0, np.pi, 0.5), dwell=20.0, ramp=2.0)
+    programme = TurntableProgramme(angles=(0.0, np.pi, 0.5), dwell=20.0, ramp=2.0)
     angle, _ = table_angle(programme)
     rate = turn_rates(angle, programme.row)
     assert np.abs(rate).max() == pytest.approx(programme.rate, rel=0.01)
@@ -101,7 +101,7 @@ def test_a_simulated_turn_starts_and_stops_evenly() -> None:
 
 
 def test_a_table_that_starts_at_once_is_as_before() -> None:
-    angle, _ = table_angle(Programme(dwell=10.0))
+    angle, _ = table_angle(TurntableProgramme(dwell=10.0))
     assert np.unique(np.round(np.diff(angle), 9)).tolist() == [0.0, pytest.approx(np.radians(0.6), abs=1e-9)]
 
 

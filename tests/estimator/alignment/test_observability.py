@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 from benchmarks.papers_alignment.observability import Expected, expected, gramian, hidden, planned_path
-from estimator.alignment.filtering import Setting
-from estimator.alignment.noise import Noise
-from estimator.alignment.simulate import Programme
-from estimator.alignment.sins import PHI, Model, dynamics, earth_rate
+from estimator.alignment.filtering import FilterSetting
+from estimator.alignment.noise import FilterNoise
+from estimator.alignment.simulate import TurntableProgramme
+from estimator.alignment.sins import PHI, InertialModel, dynamics, earth_rate
 from estimator.results import ARCSEC
 from tests.estimator.alignment.cases import SITE, TYPICAL, G, aligned, drawn
 
 LATITUDE = SITE.latitude or 0.0
-NOISE = Noise((5e-6 * G) ** 2 * np.eye(3), (0.06 * ARCSEC) ** 2 * np.eye(3), 0.0, stated=True)
-SETTING = Setting(LATITUDE, G, NOISE, wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
+NOISE = FilterNoise((5e-6 * G) ** 2 * np.eye(3), (0.06 * ARCSEC) ** 2 * np.eye(3), 0.0, stated=True)
+SETTING = FilterSetting(LATITUDE, G, NOISE, wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
 TURNS = {
     "two": (0.0, np.pi),
     "three": (0.0, np.pi / 2, np.pi),
@@ -22,14 +22,14 @@ TURNS = {
 }
 
 
-def told(angles: tuple[float, ...], model: Model) -> Expected:
+def told(angles: tuple[float, ...], model: InertialModel) -> Expected:
     """What 15 minutes tell."""
-    return expected(planned_path(Programme(angles, 900 / len(angles), row=1.0), LATITUDE, G), SETTING, model)
+    return expected(planned_path(TurntableProgramme(angles, 900 / len(angles), row=1.0), LATITUDE, G), SETTING, model)
 
 
 @pytest.mark.parametrize("angles", TURNS.values(), ids=TURNS)
 def test_velocity_alone_does_not_tell_mounting_errors_from_biases(angles: tuple[float, ...]) -> None:
-    found = told(angles, Model.MOUNTING)
+    found = told(angles, InertialModel.MOUNTING)
     assert found.rank < len(found.names)
     unseen = {name for name, seen in zip(found.names, found.observable, strict=True) if not seen}
     assert {"E_xz", "E_yz", "nabla_x", "nabla_y", "phi_E", "phi_N"} <= unseen
@@ -38,26 +38,28 @@ def test_velocity_alone_does_not_tell_mounting_errors_from_biases(angles: tuple[
 
 @pytest.mark.parametrize("angles", TURNS.values(), ids=TURNS)
 def test_the_turntable_s_direction_tells_them(angles: tuple[float, ...]) -> None:
-    found = told(angles, Model.TURNTABLE)
+    found = told(angles, InertialModel.TURNTABLE)
     assert found.rank == len(found.names) == 11
     assert found.sigma("E_xz") < 0.5 * ARCSEC
     assert found.sigma("nabla_x") < 2e-6 * G
 
 
 def test_more_positions_tell_more() -> None:
-    sigmas = [told(TURNS[name], Model.TURNTABLE).sigma("E_yz") for name in ("two", "three", "five and a whole turn")]
+    sigmas = [
+        told(TURNS[name], InertialModel.TURNTABLE).sigma("E_yz") for name in ("two", "three", "five and a whole turn")
+    ]
     assert sigmas[0] > sigmas[1] > sigmas[2]
 
 
 def test_one_position_tells_neither_heading_nor_biases() -> None:
-    found = told((0.0,), Model.TEN)
+    found = told((0.0,), InertialModel.TEN)
     assert found.rank == 5
     assert not found.observable[found.names.index("nabla_x")]
 
 
 def test_the_hidden_error_obeys_the_model_but_for_the_azimuth() -> None:
     """φ turns with the block, f × φ + C∇ = 0, and only φ_U drifts, by Ω cos L·φ_E."""
-    path = planned_path(Programme(TURNS["three"], 20.0, row=0.1), LATITUDE, G, heading=0.7)
+    path = planned_path(TurntableProgramme(TURNS["three"], 20.0, row=0.1), LATITUDE, G, heading=0.7)
     F = dynamics(path, LATITUDE, G)[:, :13, :13]
     states = np.array([hidden(C, 4 * ARCSEC, 8 * ARCSEC, G) for C in path.mean])
     rates = np.einsum("kij,kj->ki", F, states)
@@ -70,15 +72,15 @@ def test_the_hidden_error_obeys_the_model_but_for_the_azimuth() -> None:
 
 
 def test_the_hidden_direction_is_the_weakest_of_the_gramian() -> None:
-    path = planned_path(Programme(TURNS["there and back"], 300.0, row=1.0), LATITUDE, G)
-    weak = np.linalg.eigvalsh(gramian(path, SETTING, Model.MOUNTING))
-    strong = np.linalg.eigvalsh(gramian(path, SETTING, Model.TURNTABLE))
+    path = planned_path(TurntableProgramme(TURNS["there and back"], 300.0, row=1.0), LATITUDE, G)
+    weak = np.linalg.eigvalsh(gramian(path, SETTING, InertialModel.MOUNTING))
+    strong = np.linalg.eigvalsh(gramian(path, SETTING, InertialModel.TURNTABLE))
     assert weak[1] < 100 < 1e4 < strong[0]
 
 
 def test_the_expected_sigmas_are_those_that_the_alignment_reports() -> None:
     case = aligned(drawn(np.random.default_rng(5)), noise=TYPICAL)
-    path = planned_path(Programme(dwell=200.0, row=0.5), LATITUDE, G)
-    planned = expected(path, SETTING, Model.TURNTABLE)
+    path = planned_path(TurntableProgramme(dwell=200.0, row=0.5), LATITUDE, G)
+    planned = expected(path, SETTING, InertialModel.TURNTABLE)
     reported = np.sqrt(np.diag(case.covariance))
     assert reported == pytest.approx(planned.sigmas, rel=0.25)

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.papers_alignment.observability import mounting_effect
 from estimator.alignment.simulate import Truth
-from estimator.alignment.sins import Model
+from estimator.alignment.sins import InertialModel
 from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Site
@@ -16,7 +16,7 @@ BLOCK_X_EAST = Truth(mounting=(4 * ARCSEC, 8 * ARCSEC))
 
 def test_the_published_end_values_are_reached() -> None:
     """Liu et al., figures 1 and 2: −8″, +4″, about −2e-5 g and −4e-5 g."""
-    error = aligned(BLOCK_X_EAST, model=Model.TEN, noise=QUIET).error
+    error = aligned(BLOCK_X_EAST, model=InertialModel.TEN, noise=QUIET).error
     assert error[:2] / ARCSEC == pytest.approx([-8, 4], abs=0.05)
     assert error[6:8] / G == pytest.approx([-1.939e-5, -3.879e-5], abs=2e-7)
 
@@ -27,7 +27,7 @@ def test_the_prediction_holds_for_any_mounting_error_latitude_and_heading(seed: 
     site, heading = Site(latitude=rng.uniform(-1.2, 1.2)), rng.uniform(0, 2 * np.pi)
     E_xz, E_yz = 30 * ARCSEC * rng.standard_normal(2)
     truth = Truth(mounting=(E_xz, E_yz), heading=heading)
-    error = aligned(truth, model=Model.TEN, noise=QUIET, site=site).error
+    error = aligned(truth, model=InertialModel.TEN, noise=QUIET, site=site).error
     left = mounting_effect(E_xz, E_yz, gravity(site))
     back = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
     assert back @ error[:2] / ARCSEC == pytest.approx([left["phi_E"] / ARCSEC, left["phi_N"] / ARCSEC], abs=0.02)

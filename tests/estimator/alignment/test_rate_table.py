@@ -31,7 +31,7 @@ def test_errors_are_as_large_as_their_covariance_says() -> None:
         found = rate_table(measured(seed))
         error = found.estimate - truth
         total += float(error @ np.linalg.solve(found.covariance, error))
-    low, high = chi2.ppf([0.001, 0.999], 360)
+    low, high = chi2.ppf(np.array([0.001, 0.999]), 360)
     assert low < total < 1.4 * high, "1.4: a covariance of 15 turns is itself uncertain"
 
 

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from estimator.allan.growth import Course, growth
+from estimator.allan.growth import GrowthCourse, growth
 
 SENSORS, LEVEL = 6, 0.01
 
 
-def records(rng: np.random.Generator, count: int, *, beyond: float = 0.0, last: float = 1.0) -> list[Course]:
+def records(rng: np.random.Generator, count: int, *, beyond: float = 0.0, last: float = 1.0) -> list[GrowthCourse]:
     """White noise of size one, of six sensors in so many records, that scatters by ``beyond`` from record to record."""
     freedom = rng.choice([50.0, 2000.0], count)
     true = np.exp(beyond * rng.standard_normal((SENSORS, count)))
     true[:, -1] *= last
     value = true * np.sqrt(rng.chisquare(freedom, (SENSORS, count)) / freedom)
-    return [Course(own, own / np.sqrt(2 * freedom)) for own in value]
+    return [GrowthCourse(own, own / np.sqrt(2 * freedom)) for own in value]
 
 
 @pytest.mark.parametrize(("count", "beyond"), [(2, 0.0), (4, 0.0), (8, 0.1), (3, 0.3)])
@@ -32,5 +32,5 @@ def test_three_times_the_noise_is_larger_by_what_it_grew() -> None:
 
 
 def test_what_is_worth_no_words_is_not_larger_however_sure() -> None:
-    sure = [Course(np.array([1.0, 1.0, 1.2]), np.full(3, 1e-6))]
+    sure = [GrowthCourse(np.array([1.0, 1.0, 1.2]), np.full(3, 1e-6))]
     assert not growth(sure, LEVEL)[0].is_larger

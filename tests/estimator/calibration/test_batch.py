@@ -7,6 +7,7 @@ import pytest
 
 from estimator import Calibration, ScheduleError, calibrate, calibrate_many
 from estimator.calibration import batch
+from estimator.calibration.stand import calibrate_stand
 from estimator.calibration.stand_report import Reports
 from estimator.session import RATE_TABLE
 from tests.estimator.calibration.cases import CASES
@@ -44,7 +45,7 @@ def test_no_sessions_no_results() -> None:
 
 def test_sessions_of_one_schedule_are_solved_in_few_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
-    whole = batch.calibrate_stand
+    whole = calibrate_stand
 
     def counted(sessions: list) -> Reports:
         calls.append(len(sessions))

@@ -10,12 +10,23 @@ import pytest
 from scipy import stats
 from scipy.spatial.transform import Rotation
 
-from estimator import calibrate, calibrate_many
+from estimator import Calibration, calibrate, calibrate_many
 from estimator.session import Array
 from tests.estimator.calibration.bound import bound
-from tests.estimator.calibration.cases import CASES, Case, at_rows, estimates
+from tests.estimator.calibration.cases import CASES, Case, Trials, at_rows, estimates
 
-every = pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+
+@pytest.fixture(scope="module", params=CASES, ids=lambda case: case.name)
+def case(request: pytest.FixtureRequest) -> Case:
+    """Each in turn, with all its tests one after another: its trials are drawn once."""
+    found: Case = request.param
+    return found
+
+
+@pytest.fixture(scope="module")
+def trials(case: Case) -> Trials:
+    """The Monte Carlo of the case."""
+    return case.trials()
 
 
 def whitened(found: Array, covariance: Array) -> Array:
@@ -32,19 +43,16 @@ def rank(covariance: Array) -> int:
     return int(np.linalg.matrix_rank(covariance / np.outer(sigma, sigma), rtol=1e-9, hermitian=True))
 
 
-@every
-def test_truth_lies_within_the_stated_uncertainty(case: Case) -> None:
-    found = case.trials
-    sigma = np.sqrt(np.diagonal(found.covariance, axis1=1, axis2=2))
-    assert np.abs(found.errors / sigma).max() < 6
-    assert all(r.fit.converged for r in found.results)
+def test_truth_lies_within_the_stated_uncertainty(trials: Trials) -> None:
+    sigma = np.sqrt(np.diagonal(trials.covariance, axis1=1, axis2=2))
+    assert np.abs(trials.errors / sigma).max() < 6
+    assert trials.converged
 
 
-@every
-def test_monte_carlo_variance_reaches_the_cramer_rao_bound(case: Case) -> None:
+def test_monte_carlo_variance_reaches_the_cramer_rao_bound(case: Case, trials: Trials) -> None:
     least = bound(case)
-    kept = case.trials.seen & np.isfinite(np.diagonal(least))
-    found = case.trials.errors[:, kept[case.trials.seen]]
+    kept = trials.seen & np.isfinite(np.diagonal(least))
+    found = trials.errors[:, kept[trials.seen]]
     least = least[np.ix_(kept, kept)]
     assert kept.any()
     assert whitened(found, least).mean() / kept.sum() == pytest.approx(1.0, abs=0.05)
@@ -52,35 +60,28 @@ def test_monte_carlo_variance_reaches_the_cramer_rao_bound(case: Case) -> None:
     assert np.all(np.abs(one_by_one - 1.0) < 5 * np.sqrt(2 / len(found)))
 
 
-@every
-def test_stated_covariance_is_the_bound(case: Case) -> None:
-    least = np.diagonal(bound(case))[case.trials.seen]
-    stated = np.diagonal(case.trials.covariance.mean(axis=0))
+def test_stated_covariance_is_the_bound(case: Case, trials: Trials) -> None:
+    least = np.diagonal(bound(case))[trials.seen]
+    stated = np.diagonal(trials.covariance.mean(axis=0))
     kept = np.isfinite(least)
     assert np.allclose(stated[kept], least[kept], rtol=0.03)
 
 
-@every
-def test_ninety_five_per_cent_intervals_hold(case: Case) -> None:
-    sigma = np.sqrt(np.diagonal(case.trials.covariance, axis1=1, axis2=2))
-    assert 0.93 <= np.mean(np.abs(case.trials.errors) < 1.96 * sigma) <= 0.97
+def test_ninety_five_per_cent_intervals_hold(trials: Trials) -> None:
+    sigma = np.sqrt(np.diagonal(trials.covariance, axis1=1, axis2=2))
+    assert 0.93 <= np.mean(np.abs(trials.errors) < 1.96 * sigma) <= 0.97
 
 
-@every
-def test_normalised_error_squared_is_chi_square(case: Case) -> None:
-    found = case.trials
-    total = whitened(found.errors, found.covariance).sum()
-    freedom = rank(found.covariance[0]) * len(found.errors)
+def test_normalised_error_squared_is_chi_square(trials: Trials) -> None:
+    total = whitened(trials.errors, trials.covariance).sum()
+    freedom = rank(trials.covariance[0]) * len(trials.errors)
     assert stats.chi2.ppf(5e-4, freedom) < total < stats.chi2.ppf(1 - 5e-4, freedom)
 
 
-@every
-def test_p_values_are_uniform(case: Case) -> None:
-    p_values = [r.fit.p_value for r in case.trials.results]
-    assert stats.kstest(p_values, "uniform").pvalue > 1e-3
+def test_p_values_are_uniform(trials: Trials) -> None:
+    assert stats.kstest(trials.p_values, "uniform").pvalue > 1e-3
 
 
-@every
 def test_row_order_does_not_matter(case: Case) -> None:
     session = case.simulated(1)[0]
     order = np.random.default_rng(0).permutation(len(session.readings))
@@ -90,7 +91,6 @@ def test_row_order_does_not_matter(case: Case) -> None:
     assert np.allclose(plain.residuals.value[order], shuffled.residuals.value, rtol=0, atol=1e-7)
 
 
-@every
 @pytest.mark.parametrize("turn", [np.eye(3)[[2, 0, 1]], Rotation.from_rotvec([0.4, -0.9, 2.0]).as_matrix()])
 def test_naming_of_the_block_axes_does_not_matter(case: Case, turn: Array) -> None:
     session = case.simulated(1)[0]
@@ -99,7 +99,6 @@ def test_naming_of_the_block_axes_does_not_matter(case: Case, turn: Array) -> No
     assert np.abs(moved(calibrate(session), turned, turn)).max() < 1e-3
 
 
-@every
 def test_one_by_one_is_the_same_as_together(case: Case) -> None:
     sessions = case.simulated(3, seed=9)
     for alone, together in zip(map(calibrate, sessions), calibrate_many(sessions), strict=True):
@@ -113,7 +112,7 @@ def agree(a: Array, b: Array) -> bool:
     return bool(np.allclose(a / np.outer(sigma, sigma), b / np.outer(sigma, sigma), atol=1e-4, equal_nan=True))
 
 
-def moved(plain: object, other: object, turn: Array) -> Array:
+def moved(plain: Calibration, other: Calibration, turn: Array) -> Array:
     """Differences of the observed parameters in the first one's sigmas, axes turned back first."""
     a, b = estimates(plain), estimates(other)
     b = replace(b, axis=b.axis @ turn)

@@ -7,7 +7,7 @@ import pytest
 
 from estimator import read_session
 from estimator.calibration.free import accelerometer_rows, calibrate_free
-from estimator.calibration.free.model import Rows, Unknowns, jacobian, linearise, predicted
+from estimator.calibration.free.model import ModelRows, Unknowns, jacobian, linearise, predicted
 from estimator.calibration.free.optional import starts_around
 from estimator.calibration.free.schedule import classified
 from estimator.calibration.free.solve import search
@@ -80,7 +80,7 @@ def test_eliminating_the_orientations_equals_inverting_the_whole():
     rng = np.random.default_rng(1)
     true, d = truth(4), sphere(6, rng)
     at = Unknowns(np.zeros(4), np.zeros(4), np.zeros(4), true.axes, d)
-    rows = Rows(predicted(at), np.full((6, 4), 0.01), d, np.full(6, 1e3), true.nominal)
+    rows = ModelRows(predicted(at), np.full((6, 4), 0.01), d, np.full(6, 1e3), true.nominal)
     own, shared = jacobian(at)
     whole = np.zeros((24, 20 + 12))
     for j in range(6):

@@ -8,7 +8,7 @@ import pytest
 
 from estimator.calibration.free import calibrate_free
 from estimator.calibration.free.information import information
-from estimator.calibration.free.model import Rows, Unknowns
+from estimator.calibration.free.model import ModelRows, Unknowns
 from estimator.errors import ScheduleError
 from tests.estimator.calibration.free_sessions import errors, session, sphere, truth
 
@@ -18,7 +18,9 @@ def known(m, directions, quadratic=False):
     axes, R = truth(m).axes, len(directions)
     unknowns = Unknowns(np.zeros(m), np.zeros(m), np.zeros(m), axes, directions)
     empty = np.zeros((R, 3))
-    return information(Rows(np.zeros((R, m)), np.full((R, m), 1e-6), empty, np.zeros(R), axes), unknowns, quadratic)
+    return information(
+        ModelRows(np.zeros((R, m)), np.full((R, m), 1e-6), empty, np.zeros(R), axes), unknowns, quadratic
+    )
 
 
 def two_planes(count):
@@ -65,7 +67,7 @@ def test_too_few_rows_say_how_many_to_add():
 
 
 def test_a_block_that_was_never_turned_is_refused():
-    with pytest.raises(ScheduleError, match="all 12 rows show the same orientation"):
+    with pytest.raises(ScheduleError, match="all 12 rows have the same orientation"):
         calibrate_free(session(truth(4), np.tile([0.0, 0.0, 1.0], (12, 1))))
 
 
@@ -90,7 +92,7 @@ def test_too_few_live_sensors_are_named():
     measured = session(truth(3), sphere(24, np.random.default_rng(1)))
     stuck = measured.readings.copy()
     stuck[:, 1] = 0.4
-    with pytest.raises(ScheduleError, match="A2 did not answer"):
+    with pytest.raises(ScheduleError, match="A2 did not respond"):
         calibrate_free(replace(measured, readings=stuck))
 
 

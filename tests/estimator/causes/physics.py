@@ -171,6 +171,7 @@ ACTED: dict[str, Acted] = {
     "scale-asymmetry": term(lambda s, x: (np.abs(s.a),)),
     "cross-coupling": term(lambda s, x: (s.a * s.pn, s.a * s.on)),
     "bias-temperature": term(lambda s, x: (s.warmth,)),
+    "bias-temperature-curve": term(lambda s, x: (s.warmth, s.warmth**2)),
     "scale-temperature": term(lambda s, x: (s.warmth * s.a,)),
     "bias-ramp": term(lambda s, x: (s.elapsed,)),
     "warm-up": term(lambda s, x: (np.exp(-s.t / x[0]),)),

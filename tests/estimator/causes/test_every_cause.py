@@ -22,6 +22,7 @@ TABLE = [
     "scale-asymmetry",
     "cross-coupling",
     "bias-temperature",
+    "bias-temperature-curve",
     "scale-temperature",
     "bias-ramp",
     "warm-up",

@@ -36,7 +36,7 @@ def test_a_zero_that_follows_the_vibration_in_a_way_unknown_lives_there() -> Non
     session = spoilt("vibration-rectification", where.measured(1), where, np.random.default_rng(1))
     told = diagnose(session, catalogue=[c for c in CATALOGUE if c.identifier != "vibration-rectification"])
     assert told.findings == ()
-    assert [s.where for s in told.structures] == ["smooth along the vibration, in no pattern known"]
+    assert [s.where for s in told.structures] == ["smooth along the vibration, in no known pattern"]
 
 
 def test_vibration_alone_is_no_cause() -> None:

@@ -8,7 +8,7 @@ import pytest
 from estimator import diagnose
 from estimator.alignment.align import prepared
 from estimator.alignment.lever_arms import lever_arms
-from estimator.alignment.simulate import Programme, Truth, simulate_alignment, triads
+from estimator.alignment.simulate import Truth, TurntableProgramme, simulate_alignment, triads
 from estimator.diagnosis import Diagnosis
 from estimator.session import Array, CalibrationSession
 from estimator.simulate import cone
@@ -37,7 +37,8 @@ def test_lever_arms_are_named_with_their_place() -> None:
 
 def test_the_sentence_says_how_far() -> None:
     assert (
-        diagnose(turned(AWAY)).findings[0].sentence == "A1 stands 9.1 ± 0.3 cm from the turn axis and feels the turns."
+        diagnose(turned(AWAY)).findings[0].sentence
+        == "A1 is 9.1 ± 0.3 cm from the turn axis and measures the rotation."
     )
 
 
@@ -154,13 +155,13 @@ def test_positions_that_hold_leave_nothing_to_say() -> None:
 def test_of_two_positions_that_the_turns_contradict_either_may_be_wrong() -> None:
     [finding] = diagnose(stated(A1=0.03)).findings
     assert (finding.cause, finding.sensors) == ("lever-arm", ("A1", "A2"))
-    assert "do not stand to one another as the file says: one of them is 2." in finding.sentence
+    assert "are not at their stated positions relative to one another: one of them is 2." in finding.sentence
 
 
 def cone_of_six(places: Array, said: Array | None = None) -> CalibrationSession:
     """Six accelerometers at places (6, 3), m, and where the file says that they are."""
     sensors = triads(cone(6, np.radians(54.7), (0.0, 0.0, 1.0)))
-    programme = Programme(angles=(0.0, np.pi, 0.5), dwell=60.0, row=0.2, ramp=1.0)
+    programme = TurntableProgramme(angles=(0.0, np.pi, 0.5), dwell=60.0, row=0.2, ramp=1.0)
     truth = Truth(positions=np.vstack([places, np.zeros((6, 3))]))
     made, _ = simulate_alignment(sensors, SITE, programme, truth, np.random.default_rng(2), imperfections=TYPICAL)
     described = zip(made.sensors, [*(said if said is not None else [None] * 6), *[None] * 6], strict=True)
@@ -183,7 +184,7 @@ def test_of_many_stated_positions_the_wrong_one_is_named() -> None:
     wrong[2, :2] += 0.04, 0.03
     [finding] = diagnose(cone_of_six(places, wrong)).findings
     assert finding.sensors == ("A3",)
-    assert finding.sentence.startswith("A3 stands 5.")
+    assert finding.sentence.startswith("A3 is 5.")
 
 
 def test_many_turns_are_cut_into_fewer_pieces() -> None:
@@ -195,7 +196,7 @@ def test_many_turns_are_cut_into_fewer_pieces() -> None:
 
 def test_what_no_turn_shows_is_said() -> None:
     found = diagnose(turned(AWAY))
-    assert found.notes[0].startswith("A3 points along the turn axis: where it stands does not show.")
+    assert found.notes[0].startswith("A3 points along the turn axis: its position is not observable.")
     assert [limit.cause for limit in found.limits] == ["lever-arm"]
 
 

@@ -10,9 +10,9 @@ from estimator import CalibrationSession, diagnose, diagnose_group, diagnose_sta
 from estimator.causes.catalogue import UNEXPLAINED
 from estimator.groups.evidence import SAME
 from estimator.groups.gain import gained, names_that_predict
-from estimator.groups.lack_of_fit import Group, names_that_fit
-from estimator.groups.layout import TERMS, UNIT, Layout
-from estimator.groups.selection import Found, Selection, select
+from estimator.groups.lack_of_fit import LackOfFitGroup, names_that_fit
+from estimator.groups.layout import TERMS, UNIT, GroupLayout
+from estimator.groups.selection import Found, GroupSelection, select
 from estimator.groups.session_statistics import as_kept
 from estimator.groups.terms import Library, confirmed
 from tests.blind.world import Effect
@@ -30,15 +30,15 @@ def sessions(effect: Effect | None, count: int = 8) -> tuple[CalibrationSession,
 
 
 @cache
-def selected(effect: Effect | None) -> Selection:
+def selected(effect: Effect | None) -> GroupSelection:
     """What the catalogue alone makes of them."""
-    return select(Layout.of([statistics_of(s) for s in sessions(effect)], UNIT))
+    return select(GroupLayout.of([statistics_of(s) for s in sessions(effect)], UNIT))
 
 
 def test_the_catalogue_alone_names_what_it_does_not_have_and_the_library_takes_it_back() -> None:
     state = selected(WARM)
     assert state.found
-    left = names_that_fit(Group(state, sessions(WARM)))
+    left = names_that_fit(LackOfFitGroup(state, sessions(WARM)))
     assert left.found == ()
     ((structure, statistic),) = left.structures
     assert (structure.cause, structure.sensor, structure.words) == (TERMS, "A2", ("|a|·(T − T̄)",))
@@ -46,7 +46,7 @@ def test_the_catalogue_alone_names_what_it_does_not_have_and_the_library_takes_i
 
 
 def test_a_cause_of_the_catalogue_stays_without_a_doubt() -> None:
-    left = names_that_fit(Group(selected(CUBIC), sessions(CUBIC)))
+    left = names_that_fit(LackOfFitGroup(selected(CUBIC), sessions(CUBIC)))
     assert {f.hypothesis.sensor for f in left.found} == {"A2"}
     assert (left.structures, left.doubted) == ((), frozenset())
 
@@ -54,7 +54,7 @@ def test_a_cause_of_the_catalogue_stays_without_a_doubt() -> None:
 def test_what_is_taken_back_is_told_with_the_terms_that_fit_better() -> None:
     found = diagnose_group(sessions(WARM))
     assert (found.findings, found.unexplained) == ((), True)
-    assert "|a|·(T − T̄) fits better: it has no name" in " ".join(found.notes)
+    assert "|a|·(T − T̄) agrees better: it has no name" in " ".join(found.notes)
     assert [term.words for term in found.terms] == [("|a|·(T − T̄)",)]
 
 

@@ -36,14 +36,20 @@ def test_what_is_modelled_gains_on_later_sessions(sessions: list[CalibrationSess
     assert gain.log_score > 0
     assert gain.chi2_per_dof_after < gain.chi2_per_dof_before
     assert gain.moved
+    assert gain.before is not None
+    assert gain.after is not None
+    fall = [gain.after[kind][name] / error for kind, own in gain.before.items() for name, error in own.items()]
+    assert len(fall) == len(sessions[-1].sensors)
+    assert np.mean(fall) < 1
+    assert min(fall) > 0
 
 
 def test_the_picture_shows_the_effect_without_it_and_none_with_it(sessions: list[CalibrationSession]) -> None:
     picture = diagnose_group(sessions, "stand").findings[0].picture
     assert picture is not None
-    before, after = (np.square(np.array(picture[s]) / picture["sigma"]).sum() for s in ("before", "after"))
-    n = len(picture["at"])
-    assert picture["variable"] == "β"
+    before, after = (np.square(np.array(side) / picture.sigma).sum() for side in (picture.before, picture.after))
+    n = len(picture.at)
+    assert picture.variable == "β"
     assert after < n + 3 * np.sqrt(2 * n) < before
 
 

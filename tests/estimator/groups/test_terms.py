@@ -36,7 +36,7 @@ def test_the_group_is_unexplained_and_shows_the_term(sessions) -> None:
     (term,) = found.terms
     assert "sin 3β" in term.equation
     assert term.gain > 0
-    before, after = (np.abs(term.picture[name]) for name in ("before", "after"))
+    before, after = (np.abs(side) for side in (term.picture.before, term.picture.after))
     assert after.mean() < before.mean()
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from estimator.arrays import tangents
-from estimator.health import Judgement, judge
+from estimator.health import ParameterJudgement, judge
 from estimator.health.common_motion import CommonMotion, Split, common_motion
 from estimator.results import ARCSEC, Calibration
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
@@ -243,7 +243,7 @@ def test_a_sensor_that_tilts_beside_a_large_turn_is_found_and_does_not_drag_it(a
         assert nees(found.motion, turn) < stats.chi2.isf(1e-5, 3)
 
 
-def verdicts(moved: Array | None, turn: Array) -> dict[tuple[str, str], Judgement]:
+def verdicts(moved: Array | None, turn: Array) -> dict[tuple[str, str], ParameterJudgement]:
     """The judgements of six sensors."""
     rng = np.random.default_rng(7)
     now, then = measured(6, rng, moved, turn), block(axes_of(6), _errors(6, rng), covariance_of(6), np.zeros(3))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from estimator.health import Judgement, judge
+from estimator.health import ParameterJudgement, judge
 from estimator.health.rule import critical_factors
 from estimator.results import Estimate
 from estimator.session import ACCELEROMETER, GYROSCOPE
@@ -17,10 +17,10 @@ SPREAD = {"scale": 0.12 * 1e-5, "bias": 2e-5, "quadratic": 1e-7}
 TIGHT = np.eye(2) * 1e-6**2
 
 
-def judged(current: dict[str, object], reference: dict[str, object] | None = None) -> dict[str, Judgement]:
+def judged(current: dict[str, object], reference: dict[str, object] | None = None) -> dict[str, ParameterJudgement]:
     """Judgements of one sensor by parameter."""
-    then = calibration(sensor(**(reference or {}), covariance=TIGHT))  # type: ignore[arg-type]
-    now = calibration(sensor(**({"covariance": TIGHT} | current)))  # type: ignore[arg-type]
+    then = calibration(sensor(**(reference or {}), covariance=TIGHT))
+    now = calibration(sensor(**({"covariance": TIGHT} | current)))
     return {j.parameter: j for j in judge(now, then, TOLERANCES)}
 
 
@@ -93,7 +93,7 @@ def test_a_measurement_without_noise_is_judged_too() -> None:
     assert [j.verdict for j in judge(current, same, TOLERANCES)] == ["pass", "pass", "pass", "fail"]
 
 
-def found(parameter: str, now: float | None = None, then: float | None = None) -> Judgement:
+def found(parameter: str, now: float | None = None, then: float | None = None) -> ParameterJudgement:
     """A judgement of two sessions of equal sigmas, noise known to so many degrees of freedom."""
     current, origin = (
         calibration(replace(sensor(offset=offset, covariance=TIGHT), bias=Estimate(0.0, 3e-5, 3e-5, dof), axis_dof=dof))
@@ -149,7 +149,7 @@ def test_a_sensor_of_another_kind_is_no_reference() -> None:
     assert {j.verdict for j in judge(calibration(sensor()), then, TOLERANCES)} == {"undecidable"}
 
 
-def healthy(rng: np.random.Generator, common: float) -> tuple[Judgement, ...]:
+def healthy(rng: np.random.Generator, common: float) -> tuple[ParameterJudgement, ...]:
     """Six sensors that did not move, their errors correlated; every tolerance equals U, the hardest case."""
     shared = rng.standard_normal(5)
     draws = np.sqrt(common) * shared + np.sqrt(1 - common) * rng.standard_normal((6, 5))

@@ -31,7 +31,7 @@ def test_p_values_are_uniform_where_nothing_happens(sessions: int, components: i
     p = [found(still(rng, sessions, components)).p_value for _ in range(RUNS)]
     assert stats.kstest(p, "uniform").pvalue > 1e-3
     for level in (0.2, 0.05):
-        low, high = stats.binom.ppf([5e-4, 1 - 5e-4], RUNS, level)
+        low, high = stats.binom.ppf(np.array([5e-4, 1 - 5e-4]), RUNS, level)
         assert low <= np.sum(np.array(p) < level) <= high
 
 

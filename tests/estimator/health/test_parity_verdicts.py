@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from estimator.health import Judgement
+from estimator.health import ParameterJudgement
 from estimator.health.parity import judge_parity
 from estimator.parity import parity_check
 from estimator.session import ACCELEROMETER
@@ -15,7 +15,7 @@ MOVED = 5e-3
 
 
 @cache
-def judged(sensors: int, moved: float, tolerance: float) -> dict[str, Judgement]:
+def judged(sensors: int, moved: float, tolerance: float) -> dict[str, ParameterJudgement]:
     """The biases by sensor; the second one's zero has moved, m/s²."""
     true, reference = block(sensors)
     found = parity_check(recording(biased(true, 1, moved), seconds=120.0), reference)

@@ -3,14 +3,14 @@
 import numpy as np
 
 from estimator.health.stand_search import MOST_DATES
-from estimator.health.stands import Motion, StandShift, stand_states
+from estimator.health.stands import StandMotion, StandShift, stand_states
 from estimator.session import Array
 
 UNITS, SESSIONS = 40, 10
 TURNED = np.array([12.0, 0.0, -16.0])
 
 
-def fleet(turned: Array, wild: tuple[int, ...] = ()) -> tuple[list[Motion], Array]:
+def fleet(turned: Array, wild: tuple[int, ...] = ()) -> tuple[list[StandMotion], Array]:
     """Forty units on two stands in turn, and the dates of the first of them, on which blocks are ``turned`` at given
     sessions (s,); ``wild`` mountings are out by three times as much besides."""
     rng = np.random.default_rng(8)
@@ -25,11 +25,11 @@ def fleet(turned: Array, wild: tuple[int, ...] = ()) -> tuple[list[Motion], Arra
         unit = (i * 7 // 2) % UNITS
         reference = first.setdefault(unit, pose)
         covariance = np.zeros((3, 3)) if reference is pose else 0.5 * np.eye(3)
-        motions.append(Motion(f"S{i % 2}", f"U{unit}", float(time), pose - reference, covariance))
+        motions.append(StandMotion(f"S{i % 2}", f"U{unit}", float(time), pose - reference, covariance))
     return motions, times[at]
 
 
-def shifts(motions: list[Motion]) -> tuple[StandShift, ...]:
+def shifts(motions: list[StandMotion]) -> tuple[StandShift, ...]:
     return stand_states(motions)[0].shifts
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from estimator.health.stands import Motion, StandShift, StandState, stand_states
+from estimator.health.stands import StandMotion, StandShift, StandState, stand_states
 from estimator.session import Array
 
 Seating = Callable[[str, str, float], Array]
@@ -14,7 +14,7 @@ SIGMA, SEATING = 1.0, 0.5
 SHIFT = np.array([0.0, 6.0, -8.0])
 
 
-def fleet(rng: np.random.Generator, added: Seating, units: int = 8) -> list[Motion]:
+def fleet(rng: np.random.Generator, added: Seating, units: int = 8) -> list[StandMotion]:
     """Twelve sessions of every unit on three stands over three years, the first its reference."""
     made = []
     for unit in range(units):
@@ -25,7 +25,7 @@ def fleet(rng: np.random.Generator, added: Seating, units: int = 8) -> list[Moti
             seen = value + SIGMA * rng.standard_normal(3)
             reference = seen if reference is None else reference
             covariance = np.zeros((3, 3)) if seen is reference else 2 * SIGMA**2 * np.eye(3)
-            made.append(Motion(stand, f"U{unit}", float(time), seen - reference, covariance))
+            made.append(StandMotion(stand, f"U{unit}", float(time), seen - reference, covariance))
     return made
 
 

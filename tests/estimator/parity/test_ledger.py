@@ -5,16 +5,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from estimator.parity.blocks import Selection, grouped, select
+from estimator.parity.blocks import BlockSelection, grouped, select
 from estimator.parity.ledger import Blocks, Ledger, Rails
-from estimator.parity.reference import Reference, reference_of
+from estimator.parity.reference import ParityReference, reference_of
 from estimator.session import ACCELEROMETER, Array
 from tests.estimator.calibration.free_sessions import session
 from tests.estimator.parity.cases import block
 
 
 @cache
-def reference() -> Reference:
+def reference() -> ParityReference:
     true, calibration = block(6)
     return reference_of(session(true, np.eye(3)).sensors, calibration, ACCELEROMETER)
 
@@ -117,7 +117,7 @@ def test_a_gap_ends_a_group() -> None:
     assert 155 in cuts
 
 
-def selection() -> Selection:
+def selection() -> BlockSelection:
     """Of forty blocks of which the tenth moves."""
     rng = np.random.default_rng(6)
     readings = 1e-3 * rng.standard_normal((400, 6))

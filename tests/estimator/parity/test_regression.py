@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.linalg import null_space
 
-from estimator.parity.blocks import Selection, select, wanted
+from estimator.parity.blocks import BlockSelection, select, wanted
 from estimator.parity.check import ParityAccumulator
 from estimator.parity.flight import AEROBATIC, Manoeuvre
-from estimator.parity.hypotheses import Evidence
+from estimator.parity.hypotheses import ParityEvidence
 from estimator.parity.ledger import Ledger
 from estimator.parity.regression import excited, regress, sensor_noise
 from estimator.session import Array
@@ -19,11 +19,11 @@ from tests.estimator.parity.test_ledger import placed, reference
 GROUPS = 32
 
 
-def selection(groups: int = GROUPS) -> Selection:
+def selection(groups: int = GROUPS) -> BlockSelection:
     """Ten blocks a group; only the groups are looked at."""
     blocks = placed(list(range(10 * groups)))
     mask = np.zeros(len(blocks), dtype=bool)
-    return Selection(blocks, np.repeat(np.arange(groups), 10), mask, mask, (), {}, len(blocks))
+    return BlockSelection(blocks, np.repeat(np.arange(groups), 10), mask, mask, (), {}, len(blocks))
 
 
 def directions(swing: Array) -> Array:
@@ -138,11 +138,11 @@ def test_chi_square_by_a_covariance_from_few_groups_has_the_moments_that_are_sta
     assert 2 * scale**2 * effective == pytest.approx(found.var(), rel=0.15)
 
 
-def evidence(manoeuvres: tuple[Manoeuvre, ...], dof: float) -> Evidence:
+def evidence(manoeuvres: tuple[Manoeuvre, ...], dof: float) -> ParityEvidence:
     """Of a flight of six sensors, with noise that is all its own and known from ``dof`` numbers."""
     true, calibration = block(6)
     flight = recording(true, manoeuvres=manoeuvres, seconds=120.0)
     stream = ParityAccumulator("T-1", flight.sensors, calibration, sample_rate=20.0, site=flight.site)
     stream.add(flight.readings)
     change = regress(select(stream.ledger, "any"), stream.reference, 9.81)
-    return Evidence(replace(change, dof=dof, known=np.zeros_like(change.known)))
+    return ParityEvidence(replace(change, dof=dof, known=np.zeros_like(change.known)))

@@ -7,7 +7,7 @@ from scipy import stats
 from estimator.health.parity import probability_out
 from estimator.parity import ParityAccumulator, parity_check
 from estimator.parity.blocks import select
-from estimator.parity.hypotheses import Evidence
+from estimator.parity.hypotheses import ParityEvidence
 from estimator.parity.isolation import log_tail
 from estimator.parity.reference import reference_of
 from estimator.parity.regression import regress
@@ -31,10 +31,10 @@ def stream(size: float) -> ParityAccumulator:
     return made
 
 
-def evidence(size: float) -> Evidence:
+def evidence(size: float) -> ParityEvidence:
     """Of the flight."""
     taken = stream(size)
-    return Evidence(regress(select(taken.ledger, "auto"), taken.reference, 9.81))
+    return ParityEvidence(regress(select(taken.ledger, "auto"), taken.reference, 9.81))
 
 
 def test_half_of_the_false_alarms_is_for_all_numbers_and_half_for_the_best_hypothesis() -> None:

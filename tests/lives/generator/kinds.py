@@ -52,7 +52,7 @@ def _ramp(rng: Random) -> Array:
 
 def _step(rng: Random) -> Array:
     at = 2.5 * rng.weibull(1.3)
-    return _sign(rng) * rng.triangular(0.2, 0.5, 1.6) * (at <= DAYS / YEAR)
+    return np.asarray(_sign(rng) * rng.triangular(0.2, 0.5, 1.6) * (at <= DAYS / YEAR))
 
 
 def _aging(rng: Random) -> Array:

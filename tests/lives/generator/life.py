@@ -119,8 +119,8 @@ def draw_life(
 ) -> Life:
     """One unit's life; units of one workshop share ``stands``, which are drawn where none are given."""
     plan, stands = plan or Plan(), stands or draw_stands(rng)
-    names = {"accelerometers": ("A",) * 6, "gyros": ("G",) * 6, "both": ("A",) * 3 + ("G",) * 3}[type_.sensors]
-    names = tuple(f"{letter}{i + 1}" for i, letter in enumerate(names))
+    letters = {"accelerometers": ("A",) * 6, "gyros": ("G",) * 6, "both": ("A",) * 3 + ("G",) * 3}[type_.sensors]
+    names = tuple(f"{letter}{i + 1}" for i, letter in enumerate(letters))
     kinds, shares = zip(*plan.shares, strict=True)
     kind = str(rng.choice(kinds, p=np.array(shares) / sum(shares)))
     days = session_days(rng.uniform(*plan.years), rng)

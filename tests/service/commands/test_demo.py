@@ -1,5 +1,6 @@
 """The demonstration fleet: what it shows, that it is always the same, and that it is never mixed with real units."""
 
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -14,8 +15,13 @@ from service.demo.history import files_of
 from service.flags.store import FlagQuery, Flags
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
+from service.judging.use import Use, in_words
+from service.models.records import Scope
 from service.outlook.reading import outlook_of
+from service.records.flagging.overdue_units import flag_overdue
+from service.records.flagging.stands import flag_shifted_stands
 from service.sessions.decision import Verdict
+from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
 from service.settings import Settings
 from service.stands.health import stand_health
@@ -24,9 +30,12 @@ from service.storage.schema import upgrade
 from service.units.remarks_store import Notes
 from service.units.store import Services
 from service.uploads.receive import upload
+from service.work.watch import update_outlooks
 from tests.conftest import StockOf
 from tests.databases import Databases
-from tests.service.commands.conftest import COMMAND, started
+from tests.service.commands.conftest import COMMAND, Run, started
+from tests.service.commands.said_alike import check_unit, fleet_of
+from tests.serving import serving
 from tests.stock import stores
 
 CONDITIONS = {
@@ -108,7 +117,7 @@ def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
         notes = [note.text for serial in units for note in Notes(store).of_unit(serial)]
         stages = [session.stage for session in Sessions(store).of_unit("BA-109") if session.stage]
         breaks = {serial: Services(store).of_unit(serial) for serial in units}
-        sessions = Sessions(store).page("BA-107", 0, 50)
+        sessions = Sessions(store).wanted(SessionQuery(unit="BA-107", limit=50))
         stands = stand_health(store)
         outlooks = {serial: outlook_of(store, serial, END) for serial in units}
     assert {serial: units[serial].verdict for serial in CONDITIONS} == CONDITIONS
@@ -126,6 +135,25 @@ def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
     assert [s.is_reference for s in sessions].count(True) == 2, "a new reference after the service"
 
 
+def test_a_unit_has_one_flag_at_most_and_none_where_it_is_fit_without_a_reservation(demonstration: Storage) -> None:
+    """Faults of stands are flags of the stands."""
+    update_outlooks(demonstration, END)
+    flag_overdue(demonstration, END)
+    flag_shifted_stands(demonstration, END)
+    with demonstration.database.reading() as store:
+        units = Fleet(store).units(FleetQuery())
+        about = Counter(flag.scope for flag in Flags(store).page(FlagQuery(unresolved=True)))
+    flags = {unit.serial: unit.flags for unit in units}
+    fit = {unit.serial for unit in units if unit.verdict is Verdict.PASS and not unit.reservations}
+    assert max(flags.values()) == 1, flags
+    assert {serial: flags[serial] for serial in fit} == dict.fromkeys(fit, 0)
+    assert {"BA-107", "BA-109"} <= fit
+    assert {serial for serial in ("BA-105", "BA-106", "BA-111", "RT-301") if flags[serial]} == {
+        "BA-105", "BA-106", "BA-111", "RT-301",
+    }  # fmt: skip
+    assert (about[Scope.UNIT], about[Scope.STAND]) == (sum(flags.values()), 3)
+
+
 def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Settings) -> None:
     with serve_demo(served) as address:
         assert address.startswith("http://127.0.0.1:")
@@ -133,6 +161,19 @@ def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Set
         fleet = httpx.get(f"{address}/api/v1/fleet").json()
         sessions = httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]
     assert (fleet["units"], fleet["simulated"], len(sessions)) == (len(CAST), len(CAST), FILES)
+
+
+def test_every_unit_is_said_alike_everywhere(served: Settings, run: Run) -> None:
+    """On its page, in the list, on its label, in the calendar, the report, an export, over HTTP and in the terminal."""
+    with serving(served) as url, httpx.Client(base_url=url) as client:
+        for member in CAST:
+            client.get(f"/api/v1/units/{member.serial}/usable").raise_for_status()  # its dates are worked out
+        fleet = fleet_of(client)
+        for member in CAST:
+            answer = check_unit(client, member.serial, fleet)
+            ran = run("usable", member.serial, "--server", url)
+            assert ran.code == (0 if answer["usable"] else 1)
+            assert in_words(Use(answer["use"]), answer["action"]) in " ".join(ran.out.split())
 
 
 def test_a_flight_shows_what_the_stand_has_not_seen_yet(empty: Storage) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from service.commands.doctor import State, database, variables
+from service.commands.doctor import CheckState, database, variables
 from service.records.unit_changes import add_note
 from service.settings import Settings
 from service.storage import Storage
@@ -65,7 +65,7 @@ def test_a_clock_that_is_behind_what_is_stored_fails(settings_holding: SettingsH
     with stores(settings) as storage:
         _write_later(storage)
     clock = next(one for one in database(settings, NOW) if one.what == "clock")
-    assert clock.state is State.FAIL
+    assert clock.state is CheckState.FAIL
 
 
 def _write_later(storage: Storage) -> None:
@@ -75,7 +75,7 @@ def _write_later(storage: Storage) -> None:
 
 def test_a_misspelt_setting_is_named_with_the_right_one(run: Run, tmp_path: Path) -> None:
     (found,) = variables({"IMU_HEALTH_MACHIN": "large", "IMU_HEALTH_PORT": "1", "HOME": "/"})
-    assert (found.state, found.remedy) == (State.WARN, "Did you mean IMU_HEALTH_MACHINE?")
+    assert (found.state, found.remedy) == (CheckState.WARN, "Did you mean IMU_HEALTH_MACHINE?")
 
 
 @pytest.mark.parametrize("command", ["serve", "doctor"])

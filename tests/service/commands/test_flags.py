@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from service.flags.records import Concern, Matter
-from service.records.flagging.fold import Occasion, raise_flag
+from service.records.flagging.acts import Occasion, raise_flag
 from service.units.store import Units
 from tests.conftest import StockOf
 from tests.databases import Databases

@@ -12,10 +12,10 @@ from sqlalchemy import text
 
 from service.jobs.records import JobState
 from service.jobs.store import Jobs
-from service.kit.arriving_files import SentFile
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
 from service.records.reception import Reception
+from service.sessions.sent import SentFile
 from service.settings import Settings
 from service.storage.backup import write_backup
 from service.uploads.take_in import ask_upload, take_in

@@ -37,7 +37,7 @@ def test_a_corrected_file_stands_for_a_stored_session(run: Run, address: str, tm
     assert "one corrected file" in run("upload", right, right, *instead).err
     assert "Fit" in run("upload", right, *instead, "--by", "K. Ito", "--why", "typing error").out
     again = run("session", "accept", SECOND, "--by", "K. Ito", "--why", "?", "--server", address)
-    assert f"stands for session {SECOND}" in again.err
+    assert f"replaces session {SECOND}" in again.err
 
 
 def test_a_service_is_withdrawn(run: Run, address: str) -> None:

@@ -83,11 +83,11 @@ def test_the_answer_counts_rows_as_the_diagnosis_does(run: Run, tmp_path: Path) 
 def test_only_the_effect_tells_it_from_the_session_without_it(run: Run, tmp_path: Path) -> None:
     for folder, hidden in (("plain", []), ("hidden", ["--hide", "reading-outlier", "--sensor", "A3"])):
         run("simulate", "--out", tmp_path / folder, *hidden)
-    plain, hidden = (read_session(tmp_path / folder / "SIM-001-001.json") for folder in ("plain", "hidden"))
-    changed = np.argwhere(np.abs(hidden.readings - plain.readings) > 1e-12)
+    plain, other = (read_session(tmp_path / folder / "SIM-001-001.json") for folder in ("plain", "hidden"))
+    changed = np.argwhere(np.abs(other.readings - plain.readings) > 1e-12)
     assert changed.shape[0] == 1
     assert changed[0, 1] == 2
-    assert hidden.notes == plain.notes == "Simulated."
+    assert other.notes == plain.notes == "Simulated."
 
 
 def test_the_same_seed_hides_the_same_and_nothing_but_the_answer_tells_it(run: Run, tmp_path: Path) -> None:

@@ -4,15 +4,17 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import cast
 
 import pytest
+from typer.core import TyperGroup
 from typer.main import get_command
 
 from service.cli import app
 from service.commands.catalogue import CATALOGUE
 from tests.service.commands.conftest import Run
 
-COMMANDS = get_command(app)
+COMMANDS = cast(TyperGroup, get_command(app))
 
 
 def ran(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:

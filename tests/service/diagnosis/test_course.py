@@ -33,14 +33,14 @@ def test_a_course_along_the_angle_is_drawn_against_it_and_another_in_order() -> 
     assert RESIDUALS.beta is not None
     along, ordered = (
         course_charts(Course(order, ("α",), VALUES), RESIDUALS, "course")[0].panels[0].datasets["points"]
-        for order in ("β, each run for itself", "the order measured")
+        for order in ("β, each run separately", "the order measured")
     )
     assert [point["x"] for point in along] == [float(f"{x:.6g}") for x in np.degrees(RESIDUALS.beta) % 360]
     assert [point["x"] for point in ordered] == list(range(1, ROWS + 1))
 
 
 def test_rows_are_joined_only_where_the_course_is_smooth() -> None:
-    assert ("line" in marks("β"), "line" in marks("no order: anew at every row")) == (True, False)
+    assert ("line" in marks("β"), "line" in marks("no order: independent in every row")) == (True, False)
 
 
 def test_a_vector_that_turned_as_a_whole_has_no_chart() -> None:

@@ -1,6 +1,7 @@
-"""The page "What the simulation gets wrong" over HTTP: what it says first, and the forms that it holds."""
+"""The page of a diagnosis over HTTP: what it says first, and the forms that it holds."""
 
 import json
+import re
 import zlib
 
 import httpx
@@ -20,9 +21,9 @@ from tests.stock import stores
 
 ACCEPT = {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen twice"}
 FIRST = {
-    "named": (TEMPERATURE, "The zero of A5 follows the temperature."),
+    "named": (TEMPERATURE, "The bias of A5 depends on temperature."),
     "a choice": (ALIASES, "Likely cubic nonlinearity (A2), 9"),
-    "unexplained": (UNEXPLAINED, "Something is there that no known cause explains"),
+    "unexplained": (UNEXPLAINED, "An effect that no known cause explains"),
 }
 
 
@@ -48,7 +49,7 @@ def test_session_and_unit_say_it_in_one_line(holding: Holding) -> None:
     client, id = held(holding, TEMPERATURE)
     unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
     for path in (f"/sessions/{id}", f"/units/{unit}"):
-        assert "The zero of A5 follows the temperature." in client.get(path, headers=HTML).text
+        assert "The bias of A5 depends on temperature." in client.get(path, headers=HTML).text
 
 
 def page_after(holding: Holding, *, follows: bool) -> str:
@@ -60,7 +61,7 @@ def page_after(holding: Holding, *, follows: bool) -> str:
 
 @pytest.mark.parametrize(
     ("follows", "since"),
-    [(True, "It was there in the earlier sessions too."), (False, "New since the earlier sessions.")],
+    [(True, "Present in the earlier sessions too."), (False, "New since the earlier sessions.")],
 )
 def test_the_page_says_whether_the_cause_is_new(holding: Holding, follows: bool, since: str) -> None:
     assert since in page_after(holding, follows=follows)
@@ -78,14 +79,14 @@ def test_a_unit_type_without_tolerances_is_diagnosed_like_any_other(holding: Hol
     none = {"tolerances": dict.fromkeys(("scale", "bias", "quadratic", "axis"))}
     client.put(f"/api/v1/unit-types/{name}", json=none).raise_for_status()
     text = page(client, send(client, warm(2, "2026-03-05T08:00:00Z")))
-    assert "The zero of A2 follows the temperature." in text
-    assert "No verdict: nothing of this session was judged." in text
+    assert "The bias of A2 depends on temperature." in text
+    assert "No verdict: no parameter of this session was judged." in text
 
 
 def test_what_a_cause_explains_is_no_noise(holding: Holding) -> None:
     document = json.dumps(warm(2, "2026-03-05T08:00:00Z")).encode()
     client, id = holding(document), session_id(document)
-    assert "The readings scatter more than that" in client.get(f"/sessions/{id}", headers=HTML).text
+    assert "The readings scatter more:" in client.get(f"/sessions/{id}", headers=HTML).text
     text = page(client, id)
     assert "The band is ±2σ of the stated noise." in text
     assert "scatter more" not in text
@@ -95,11 +96,37 @@ def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -
     client, id = held(holding, TEMPERATURE)
     accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML, follow_redirects=True)
     assert "K. Ito" in accepted.text
-    assert "calibrated before it" in accepted.text
+    assert "Held-out error of A5" in accepted.text
+    assert "when somebody has them computed again" in accepted.text
+    assert "calibrated before it" in page(client, id)
     unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
     again = {"scope": "unit", "subject": unit, "by": "K. Ito"}
     assert client.post("/jobs/recalibration", data=again, headers=HTML).status_code == 303
     assert "calibrated with it" in page(client, id)
+
+
+def test_a_program_has_them_computed_again_too(holding: Holding) -> None:
+    client, id = held(holding, TEMPERATURE)
+    made = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT | {"again": True}).raise_for_status()
+    [unit] = client.get(f"/api/v1/models/{made.json()['id']}").json()["recomputations"]
+    assert (unit["state"], unit["outcome"]["recomputed"] > 0) == ("done", True)
+
+
+def test_stored_sessions_are_computed_again_as_a_cause_is_accepted(holding: Holding) -> None:
+    client, id = held(holding, TEMPERATURE)
+    form = ACCEPT | {"again": "yes"}
+    accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=form, headers=HTML, follow_redirects=True)
+    assert "Sessions computed again" in accepted.text
+    assert "calibrated with it" in page(client, id)
+
+
+def test_the_gain_is_told_in_one_number(holding: Holding) -> None:
+    client, id = held(holding, TEMPERATURE)
+    told = client.get(f"/api/v1/sessions/{id}/diagnosis").json()["gain_in_words"]
+    assert re.fullmatch(r"Held-out error of A5 .*µg \(readings that took no part\)\.", told)
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    for path in (f"/sessions/{id}", f"/sessions/{id}/diagnosis", f"/units/{unit}"):
+        assert told in client.get(path, headers=HTML).text
 
 
 @pytest.mark.parametrize("path", ["/sessions/{id}/diagnosis/accept", "/jobs/recalibration"])

@@ -38,8 +38,8 @@ def test_the_reference_has_every_call_and_leads_to_every_document(settings: Sett
     named = {schema.name for schema in page.schemas}
     fields = [field for schema in page.schemas for field in schema.fields]
     fields += [field for section in page.sections for call in section.calls for field in call.fields]
-    answers = [a for section in page.sections for call in section.calls for a in (*call.answers,)]
-    assert {one.schema for one in (*fields, *answers)} - {""} <= named
+    answers = {a.schema for section in page.sections for call in section.calls for a in call.answers}
+    assert ({field.schema for field in fields} | answers) - {""} <= named
     assert len({call.anchor for section in page.sections for call in section.calls}) == len(calls)
 
 

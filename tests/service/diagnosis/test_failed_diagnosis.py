@@ -18,7 +18,7 @@ from sqlalchemy import text
 from service.app import create_app
 from service.diagnosis.store import Diagnoses
 from service.kit.bell import Bell
-from service.kit.guard import AT_FAULT
+from service.kit.failure import AT_FAULT
 from service.kit.metrics import Metrics
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -27,8 +27,8 @@ from service.settings import Settings
 from service.storage import Storage
 from service.work import readers as read_diagnosis
 from service.work.helper import Helper
-from service.work.kinds import DIAGNOSES, MOST_ATTEMPTS
-from service.work.loop import LEASE, Worker, work_next
+from service.work.kinds import DIAGNOSES, LEASE, MOST_ATTEMPTS
+from service.work.loop import Worker, work_next
 from tests.conftest import SettingsHolding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import warm
@@ -67,14 +67,14 @@ def shown(spoilt: Storage, settings: Settings) -> Iterator[httpx.Client]:
 def test_the_verdict_says_that_it_was_not_checked(shown: httpx.Client) -> None:
     shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
     said = shown.get(f"/api/v1/sessions/{ID}").json()["said"]
-    assert said.endswith(", but it was not checked for causes: see what its diagnosis says")
+    assert said.endswith(", but causes were not checked: see its diagnosis")
 
 
 def test_the_page_says_that_it_is_a_fault_of_the_program_and_where_to_look(shown: httpx.Client) -> None:
     page = shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
     assert page.status_code == 200
     assert "a fault of the program, not of the session" in page.text
-    assert f"under session {ID}" in page.text
+    assert f"about session {ID}" in page.text
     assert "Error" not in page.text
 
 

@@ -21,7 +21,7 @@ def test_two_shape_parameters_of_one_unit_are_told_apart() -> None:
     each = nonlinear(("s", "row", "s"), (60.0, 3.0, 900.0))
     assert each == {"s 1": 60.0, "row": 4.0, "s 2": 900.0}
     assert nonlinear(("row", "s"), (3.0, 60.0)) == {"row": 4.0, "s": 60.0}
-    words = shape_of(replace(JUMP, cause="warm-up", nonlinear_each=(each,)))
+    words = shape_of(replace(JUMP, cause="thermal-lag", nonlinear_each=(each,)))
     assert words == f"time constant 60{THIN}s and row 4 and 900{THIN}s"
 
 
@@ -59,15 +59,15 @@ def test_a_cause_that_this_version_does_not_know_is_called_by_its_identifier() -
 
 
 def test_that_no_known_cause_may_act_is_said() -> None:
-    assert what_is_wrong(LONE) == "Cannot tell which: bias jump or one that is not in the catalogue (A1, A2)."
+    assert what_is_wrong(LONE) == "Cannot tell which: bias jump or a cause outside the catalogue (A1, A2)."
     many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "unexplained"), sensors=(), ranking=())
-    listed = "bias jump, warm up, bias ramp, 1 more or one that is not in the catalogue"
+    listed = "bias jump, warm up, bias ramp, 1 more or a cause outside the catalogue"
     assert what_is_wrong(many) == f"Cannot tell which: {listed}."
 
 
 def test_a_sensor_with_two_names_has_two_causes_at_once_or_an_unknown_one() -> None:
     other = replace(LONE, cause="hysteresis")
-    said = "Two causes at once, or one that is not in the catalogue (A1, A2): bias jump and hysteresis."
+    said = "Two causes at once, or a cause outside the catalogue (A1, A2): bias jump and hysteresis."
     assert what_is_wrong(LONE, (LONE, other)) == said
     assert what_is_wrong(LONE, (LONE, replace(other, sensors=("A3",)))) == what_is_wrong(LONE)
 
@@ -79,7 +79,7 @@ def test_no_model_can_take_in_a_cause_that_nobody_knows() -> None:
 def test_a_cause_that_nobody_knows_has_no_share_among_the_known() -> None:
     known, unknown = finding_view(LONE).choices
     assert (known.share, unknown.name, unknown.share) == (
-        "70.0\u00a0%", "one that is not in the catalogue (A1, A2)", "–"
+        "70.0\u00a0%", "a cause outside the catalogue (A1, A2)", "–"
     )  # fmt: skip
 
 
@@ -106,9 +106,9 @@ def test_a_size_that_is_not_known_is_left_out() -> None:
 @pytest.mark.parametrize(
     ("p_value", "chance"),
     [
-        (0.02, "by chance alone in 2.00\u00a0% of sound sessions"),
-        (2.5e-5, "by chance alone in fewer than 1 of 10⁴ sound sessions"),
-        (1e-30, "by chance alone in fewer than 1 of 10¹² sound sessions"),
+        (0.02, "by chance in 2.00\u00a0% of sound sessions"),
+        (2.5e-5, "by chance in fewer than 1 of 10⁴ sound sessions"),
+        (1e-30, "by chance in fewer than 1 of 10¹² sound sessions"),
         (nan, "no probability is known"),
     ],
 )
@@ -119,12 +119,12 @@ def test_the_chance_of_a_sound_session_is_said(p_value: float, chance: str) -> N
 def test_equal_causes_come_with_what_would_distinguish_them() -> None:
     first, second = finding_view(JUMP).choices
     assert (first.name, first.share, first.measurement) == ("bias jump (A1, A2)", "70.0\u00a0%", "")
-    assert (second.now, second.measurement) == ("1.5\u00a0σ", "repeat the session (expected 4.5\u00a0σ apart)")
+    assert (second.now, second.measurement) == ("1.5\u00a0σ", "repeat the session (expected separation 4.5\u00a0σ)")
 
 
 def test_a_measurement_that_would_not_help_is_not_proposed() -> None:
     near = replace(JUMP.separations[0], then=2.0)
-    assert finding_view(replace(JUMP, separations=(near,))).choices[1].measurement.endswith("look at the hardware")
+    assert finding_view(replace(JUMP, separations=(near,))).choices[1].measurement.endswith("inspect the hardware")
 
 
 def test_redundancy_says_stand_or_sensor() -> None:

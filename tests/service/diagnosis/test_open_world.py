@@ -30,8 +30,8 @@ def headline(text: str) -> str:
 
 def test_what_all_sensors_show_sends_people_to_the_stand(holding: Holding) -> None:
     _, _, text = shown(holding, swaying_stand())
-    assert "Something common to all sensors, of the stand or fixture, that no known cause explains" in headline(text)
-    assert "Look at the stand, the fixture and the reference" in text
+    assert "An effect common to all sensors, of the stand or fixture, that no known cause explains" in headline(text)
+    assert "Check the stand, the fixture and the reference" in text
 
 
 def test_the_course_is_drawn_and_stands_in_a_table(holding: Holding) -> None:
@@ -54,9 +54,9 @@ def test_wrong_standard_errors_are_the_first_thing_said_where_nothing_else_is_wr
 
 def test_a_doubt_of_a_name_stands_in_the_headline_and_its_advice_waits(holding: Holding) -> None:
     text = unescape(page(*held(holding, TWO_AT_ONCE)))
-    assert "Two causes at once, or one that is not in the catalogue (G2)" in headline(text)
+    assert "Two causes at once, or a cause outside the catalogue (G2)" in headline(text)
     assert "Repeat the session before you act" in text
-    assert text.count("If it comes back:") == 2
+    assert text.count("If it appears again:") == 2
     assert 'value="unexplained"' not in text
 
 

@@ -43,10 +43,10 @@ def test_the_api_answers_one_finding_with_the_course_of_all_sensors(holding: Hol
 
 def test_the_page_says_it_in_one_sentence_and_draws_one_chart(holding: Holding) -> None:
     text = page(*held(holding), "en")
-    assert "The zeros of all sensors of the block settle together after switching on." in text
+    assert "The biases of all sensors of the block settle together after switch-on." in text
     assert "time constant" in text
     assert text.count('id="spec-shared-1"') == 1
-    assert "The shared course as a table" in text
+    assert "The common course as a table" in text
 
 
 def test_the_page_says_it_in_russian(holding: Holding) -> None:

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from estimator.diagnosis.results import Shared
 from service.diagnosis.words.amplitudes import more_of, shape_of
 from service.kit.measures import HARD, THIN
@@ -16,7 +18,21 @@ WARM = replace(
 
 
 def test_the_time_constant_has_its_uncertainty() -> None:
-    assert shape_of(WARM) == f"time constant 690{HARD}±{HARD}40{THIN}s"
+    assert shape_of(WARM).startswith(f"time constant 690{HARD}±{HARD}40{THIN}s; ")
+
+
+@pytest.mark.parametrize(
+    ("since", "words"),
+    [
+        (None, "size at the session's start"),
+        (39.2, "size at switching on, 40 seconds before the first reading"),
+        (2400.0, "size at switching on, 40 min before the first reading"),
+        (18_600.0, "size at switching on, 5 h 10 min before the first reading"),
+        (864_000.0, "size at switching on, 10 days before the first reading"),
+    ],
+)
+def test_it_is_told_where_the_size_is_counted_from(since: float | None, words: str) -> None:
+    assert shape_of(replace(WARM, since_power_on=since)).endswith(f"; {words}")
 
 
 def test_a_row_has_none() -> None:

@@ -9,20 +9,20 @@ OWN = Structure("harmonic 3 of β", ("A2",), 1e-9, 9.0)
 COURSE = Structure("of the stand", (), 1e-9, 9.0, Course("β", ("α",), ((1e-5,), (-1e-5,))))
 PATTERN = Structure("the applied vector, common to all sensors: harmonic 3 of β", (), 1e-9, 9.0)
 MIXED = Structure("input axes 74° off: columns are mixed up", ("A1", "A2"), 0.0, 9.0, of_record=True)
-COMMON = "Something common to all sensors, of the stand or fixture, that no known cause explains"
+COMMON = "An effect common to all sensors, of the stand or fixture, that no known cause explains"
 
 
 def test_what_one_sensor_does_is_told_of_that_sensor() -> None:
-    assert told([OWN]) == "Something is there that no known cause explains in A2: harmonic 3 of β."
+    assert told([OWN]) == "An effect in A2 that no known cause explains: harmonic 3 of β."
 
 
 def test_what_all_sensors_show_is_told_of_the_stand() -> None:
-    assert told([COURSE]) == f"{COMMON}: the applied vector is off in α, smoothly along β."
+    assert told([COURSE]) == f"{COMMON}: the applied vector deviates in α, smoothly along β."
     assert told([PATTERN]) == f"{COMMON}: harmonic 3 of β."
 
 
 def test_a_mixed_up_record_is_told_before_all_else() -> None:
-    assert told([OWN, MIXED]) == "The record cannot be right: input axes 74° off: columns are mixed up."
+    assert told([OWN, MIXED]) == "The record is wrong: input axes 74° off: columns are mixed up."
 
 
 @pytest.mark.parametrize(
@@ -39,16 +39,16 @@ def test_the_headline_is_that_of_the_first() -> None:
 
 
 def test_a_flag_tells_of_the_stand_and_of_the_sensors_beside_it() -> None:
-    beside = "Beside it: something is there that no known cause explains in A2."
+    beside = "In addition: an effect in A2 that no known cause explains."
     assert summed_up([OWN, COURSE]) == f"{COMMON}. {beside}"
-    assert summed_up([OWN]) == "Something is there that no known cause explains in A2."
+    assert summed_up([OWN]) == "An effect in A2 that no known cause explains."
 
 
 @pytest.mark.parametrize(
     ("order", "components", "words"),
     [
-        ("β, each run for itself", ("β", "size"), "is off in β and size, smoothly along β, each run for itself"),
-        ("no order: anew at every row", ("α",), "is off in α, anew at every row"),
+        ("β, each run separately", ("β", "size"), "deviates in β and size, smoothly along β, each run separately"),
+        ("no order: independent in every row", ("α",), "deviates in α, independently in every row"),
         ("turned as a whole", (), "turned as a whole"),
     ],
 )

@@ -11,7 +11,7 @@ from service.pages.unit.report import UnitReport
 from service.sessions.records import PARAMETERS
 from service.types.records import Tolerances, UnitType
 from service.web.render import render
-from tests.service.pages.records import NOON, bias_point, unit_summary
+from tests.service.pages.records import NOON, bias_point, unit_summary, uses_of
 
 SESSIONS, SENSORS = 200, 6
 
@@ -25,7 +25,7 @@ def test_unit_with_200_sessions_is_a_fraction_of_a_megabyte() -> None:
     ]
     kind = UnitType("hex-cone", "accelerometer", (), (), (), Tolerances(1e-4, 1e-3, 1e-6, 1e-4), None, 1)
     summary = replace(unit_summary(), sessions=SESSIONS, last_at=NOON + timedelta(days=7 * SESSIONS))
-    page = unit_page(UnitReport(summary, kind, None, (), ()), points, now=NOON)
+    page = unit_page(UnitReport(summary, kind, None, (), ()), points, uses_of(summary)[summary.serial])
     request = Request({"type": "http", "path": "/units/BA-017", "headers": [], "query_string": b""})
     packed = gzip.compress(bytes(render(request, "unit.html", page).body))
     assert len(packed) < 500_000

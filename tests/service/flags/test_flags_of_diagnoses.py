@@ -43,7 +43,7 @@ def test_a_cause_that_an_unknown_one_may_be_raises_its_flag_with_the_doubt(holdi
     assert ("cause", "G2", "raised") in flagged(client, id)
     said = [flag["summary"] for flag in client.get("/api/v1/flags").json()["flags"] if flag["place"] == "G2"]
     assert said == [
-        "Two causes at once, or one that is not in the catalogue (G2): cubic nonlinearity and scale asymmetry."
+        "Two causes at once, or a cause outside the catalogue (G2): cubic nonlinearity and scale asymmetry."
     ]
 
 
@@ -51,7 +51,7 @@ def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding)
     content = json.dumps(swaying_stand()).encode()
     (flag,) = holding(content, diagnosed=True).get("/api/v1/flags").json()["flags"]
     assert (flag["matter"], flag["place"]) == ("unexplained", "")
-    assert flag["summary"].startswith("Something common to all sensors, of the stand or fixture")
+    assert flag["summary"].startswith("An effect common to all sensors, of the stand or fixture")
 
 
 def test_a_cause_that_nobody_knows_cannot_be_accepted(holding: Holding) -> None:
@@ -63,7 +63,11 @@ def test_a_cause_that_nobody_knows_cannot_be_accepted(holding: Holding) -> None:
 
 
 def test_a_fault_of_the_stand_raises_a_flag_on_the_stand(holding: Holding) -> None:
-    assert ("stand", drawn(ECCENTRIC).session["stand"]["id"], "raised") in flagged(*held(holding, ECCENTRIC))
+    client, _ = held(holding, ECCENTRIC)
+    [flag] = [flag for flag in client.get("/api/v1/flags").json()["flags"] if flag["matter"] == "stand"]
+    stand = drawn(ECCENTRIC).session["stand"]["id"]
+    assert (flag["scope"], flag["subject"], flag["state"]) == ("stand", stand, "raised")
+    assert flag["summary"].endswith(f"Seen with {flag['unit']}.")
 
 
 def test_a_recording_in_which_no_causes_are_looked_for_speaks_for_resolving_none(holding: Holding) -> None:

@@ -4,9 +4,7 @@ import httpx
 import pytest
 from lxml import html
 
-from service.flags import pages as flags
-from service.flags import view as flags_view
-from service.flags.view import FlagsAsked, FlagsView
+from service.flags.view import FlagsView
 from tests.conftest import Holding
 from tests.service.made_sessions import session_bytes
 
@@ -88,10 +86,10 @@ def test_acknowledging_with_a_name_gives_them_too(client: httpx.Client, flagged:
 def test_a_page_stays_where_it_was_when_flags_before_it_are_settled(
     client: httpx.Client, flagged: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (flags, flags_view):
-        monkeypatch.setattr(module, "PAGE_SIZE", 1)
+    monkeypatch.setattr(FlagsView, "PAGE_SIZE", 1)
     second = html.fromstring(client.get("/flags").text).xpath("//a[@rel='next']/@href")[0]
     assert numbers(client, second.removeprefix("/flags")) == [flagged[1]]
+    assert numbers(client, f"?sort=oldest&before={flagged[2]}") == [flagged[1]]
     client.post("/flags/resolve", data=SAID | {"flag": flagged[2:]})
     shown = client.get(second).text
     assert numbers(client, second.removeprefix("/flags")) == [flagged[1]]
@@ -108,5 +106,5 @@ def numbers(client: httpx.Client, query: str) -> list[int]:
 
 
 def test_a_view_comes_back_from_its_own_address() -> None:
-    view = FlagsView.of(FlagsAsked(q=" BA ", matter="stand", state="raised"))
+    view = FlagsView(q=" BA ", matter="stand", state="raised")
     assert view.url() == "/flags?q=BA&matter=stand&state=raised"

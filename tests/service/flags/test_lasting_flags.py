@@ -7,7 +7,7 @@ import pytest
 
 from service.flags.changes import resolve_flag
 from service.flags.pages import flag_cards
-from service.flags.records import Flag, FlagState, Matter
+from service.flags.records import Concern, Flag, FlagState, Matter
 from service.flags.store import FlagQuery, Flags
 from service.fleet.store import Fleet
 from service.fleet.wanted_store import Announcements
@@ -16,12 +16,14 @@ from service.groups.sections import found_line
 from service.groups.store import Groups, read_group
 from service.models.records import NewLasting, Scope
 from service.records.changes import withdraw_session
-from service.records.flagging.lasting import flag_lasting
+from service.records.flagging.acts import Occasion, raise_flag
+from service.records.flagging.lasting import TOLD, flag_lasting
 from service.records.models import accept_lasting, withdraw_model
 from service.records.refresh_group import current, members_of, refresh_group
 from service.storage import Storage
 from service.storage.queries import Store
 from service.storage.schema import downgrade, upgrade
+from service.units.store import Units
 from service.uploads.receive import upload
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
@@ -61,7 +63,7 @@ def test_an_effect_is_flagged_once(flagged: Storage) -> None:
     upload(flagged, GROUP[4], "a.json", NOW)
     (flag,) = refreshed(flagged)
     assert (flag.unit, flag.place) == ("BA-017", "unit BA-017: cubic nonlinearity (A2)")
-    assert flag.summary.startswith("The sessions of unit BA-017 show together: A2 bends")
+    assert flag.summary.startswith("The sessions of unit BA-017 show together: A2 has a cubic")
     assert flag.session == session_id(GROUP[3])
 
 
@@ -84,11 +86,24 @@ def test_what_a_person_settled_stays_settled(flagged: Storage) -> None:
 
 
 @one_engine
-def test_what_the_sessions_no_longer_show_is_proposed_to_be_resolved(flagged: Storage) -> None:
+def test_what_the_sessions_no_longer_show_is_closed_with_the_reason(flagged: Storage) -> None:
     for content in GROUP[:3]:
         withdraw_session(flagged, way(flagged), session_id(content), step())
     (flag,) = refreshed(flagged)
-    assert (flag.state, flag.proposal) == (FlagState.RAISED, "The sessions together no longer show it.")
+    assert (flag.state, flag.changes[-1].text) == (FlagState.RESOLVED, "The sessions together no longer show it.")
+
+
+@one_engine
+def test_an_effect_that_a_flag_of_the_sensor_tells_of_has_none(flagged: Storage) -> None:
+    with flagged.database.writing() as store:
+        concern = Concern(Matter.CAUSE, "A2", 1, "A2 bends.")
+        raise_flag(store, Occasion(Units(store).key("BA-017"), None, NOW), concern)
+    (flag,) = refreshed(flagged)
+    assert (flag.state, flag.changes[-1].text) == (FlagState.RESOLVED, TOLD)
+    with flagged.database.reading() as store:
+        (own,) = Flags(store).page(FlagQuery(matter=Matter.CAUSE))
+    resolve_flag(flagged, own.id, "K. Ito", "by design", NOW)
+    assert [f.state for f in refreshed(flagged)] == [FlagState.RAISED, FlagState.RESOLVED]
 
 
 @one_engine
@@ -98,7 +113,7 @@ def test_the_fleet_says_what_was_found_while_it_is_of_the_sessions_of_now(flagge
     assert line is not None
     ((home, whose, what),) = line.found
     assert (home, whose, line.more) == ("/units/BA-017#together", "unit BA-017", 0)
-    assert what.startswith("A2 bends with the cube")
+    assert what.startswith("A2 has a cubic nonlinearity")
     upload(flagged, GROUP[4], "a.json", NOW)
     with flagged.database.reading() as store:
         assert found_line(Announcements(store).all(9, 4)) is None

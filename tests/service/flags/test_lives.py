@@ -49,7 +49,7 @@ def flagged(filled: Filled) -> Storage:
 def test_a_failing_session_raises_a_flag_on_the_sensor(flagged: Storage) -> None:
     [flag] = flags(flagged)
     assert (flag.matter, flag.place, flag.state) == (Matter.TOLERANCE, "A3", FlagState.RAISED)
-    assert flag.summary.startswith("A3 bias moved +9")
+    assert flag.summary.startswith("A3 bias changed by +9")
     assert kinds(flag) == ["raised"]
 
 
@@ -57,7 +57,7 @@ def test_the_same_matter_again_updates_the_open_flag(flagged: Storage) -> None:
     latest = measured(flagged, 3, 120.0)
     [flag] = flags(flagged)
     assert flag.session == latest
-    assert flag.summary.startswith("A3 bias moved +1")
+    assert flag.summary.startswith("A3 bias changed by +1")
     assert kinds(flag) == ["raised", "seen"]
 
 
@@ -111,7 +111,7 @@ def test_what_does_not_fit_the_state_is_refused(flagged: Storage) -> None:
     id = flags(flagged)[0].id
     resolve_flag(flagged, id, "K. Ito", "done", NOW)
     for act in (acknowledge_flag, resolve_flag):
-        with pytest.raises(ConflictError, match="is resolved already"):
+        with pytest.raises(ConflictError, match="is already resolved"):
             act(flagged, id, "K. Ito", "again", NOW)
         with pytest.raises(NotFoundError):
             act(flagged, id + 1, "K. Ito", "why", NOW)
@@ -121,7 +121,7 @@ def test_a_session_that_comes_in_late_says_what_it_would_have_said_in_time(flagg
     measured(flagged, 4)
     measured(flagged, 3, 300.0)
     [flag] = flags(flagged)
-    assert flag.summary.startswith("A3 bias moved +30")
+    assert flag.summary.startswith("A3 bias changed by +30")
     assert flag.proposal == "The session of 1 Apr 2026 finds every parameter of A3 within its tolerance."
     assert kinds(flag) == ["raised", "clear", "seen", "clear"]
 

@@ -1,6 +1,7 @@
 """What dashboards and notebooks ask of the API: forms of tables, times in milliseconds, answers that may be held."""
 
 import io
+from collections.abc import Callable
 from datetime import datetime
 
 import httpx
@@ -12,7 +13,7 @@ from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: 
 from tests.service.made_sessions import FAILED, session_bytes
 
 HISTORY, REPORT = "/api/v1/units/BA-017/history", "/api/v1/fleet/report"
-READERS = {
+READERS: dict[str, Callable[..., pl.DataFrame]] = {
     "text/csv": pl.read_csv,
     "application/vnd.apache.parquet": pl.read_parquet,
     "application/vnd.apache.arrow.stream": pl.read_ipc_stream,

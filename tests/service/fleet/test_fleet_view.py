@@ -4,32 +4,31 @@ import httpx
 import pytest
 
 from service.fleet.records import Order
-from service.pages.fleet.view import FleetAsked, FleetView
+from service.pages.fleet.view import FleetView
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.made_sessions import session_bytes
 from tests.service.pages.records import NOON
 
 
 def test_a_view_comes_back_from_its_own_address() -> None:
-    asked = FleetAsked(q="BA", condition="fail", due="overdue", type="RA-6", stand="S 1", flagged="yes", sort="-due")
-    view = FleetView.of(asked)
+    view = FleetView(q="BA", condition="fail", due="overdue", type="RA-6", stand="S 1", flagged="yes", sort="-due")
     assert view.url() == "/?q=BA&condition=fail&due=overdue&type=RA-6&stand=S+1&flagged=yes&sort=-due"
     assert (view.order, view.backwards) == (Order.DUE, True)
 
 
 def test_what_nobody_knows_is_left_out() -> None:
-    assert FleetView.of(FleetAsked(condition="odd", due="soon", sort="colour")).url() == "/"
+    assert FleetView(condition="odd", due="soon", sort="colour").url() == "/"
 
 
 def test_a_heading_orders_the_list_and_then_turns_it_round() -> None:
-    view = FleetView.of(FleetAsked(stand="S", sort="due"))
+    view = FleetView(stand="S", sort="due")
     assert view.sorted_by("unit") == "/?stand=S&sort=unit"
     assert view.sorted_by("due") == "/?stand=S&sort=-due"
 
 
 @pytest.mark.parametrize(("due", "days"), [("overdue", 0), ("30", 30), ("90", 90)])
 def test_a_choice_of_dates_is_counted_from_now(due: str, days: int) -> None:
-    until = FleetView.of(FleetAsked(due=due)).query(NOON).due_before
+    until = FleetView(due=due).query(NOON).due_before
     assert until is not None
     assert (until - NOON).days == days
 

@@ -61,7 +61,7 @@ def test_units_are_listed_in_the_order_asked_for(fleet: Storage, order: Order, l
     ],
 )
 def test_a_list_is_narrowed(fleet: Storage, wanted: dict[str, object], letters: str) -> None:
-    assert listed(fleet, replace(ALL, order=Order.SERIAL, **wanted)) == letters  # type: ignore[arg-type]
+    assert listed(fleet, replace(ALL, order=Order.SERIAL, **wanted)) == letters
 
 
 def test_what_a_list_can_be_narrowed_to(fleet: Storage) -> None:

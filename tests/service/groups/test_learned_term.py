@@ -31,8 +31,8 @@ def plain(text: str) -> str:
 def test_each_angle_has_its_own_line() -> None:
     lines = [(what, plain(equation)) for what, equation in term_view(TERM).lines]
     assert lines == [
-        ("the angle β is more by", "(0.86 ± 0.16 arcsec) · sin 3β + (0.04 ± 0.16 arcsec) · cos 3β"),
-        ("the elevation α is more by", "(2.00 ± 0.50 arcsec) · (t − t̄)"),
+        ("the angle β is larger by", "(0.86 ± 0.16 arcsec) · sin 3β + (0.04 ± 0.16 arcsec) · cos 3β"),
+        ("the elevation α is larger by", "(2.00 ± 0.50 arcsec) · (t − t̄)"),
     ]
 
 
@@ -41,16 +41,16 @@ def test_a_term_of_a_sensor_says_which() -> None:
         TERM, words=("a·|a|",), sensors=("A2",), amplitude=(9.80665e-5,), sigma=(9.80665e-6,), units=("m/s²",)
     )
     assert [(what, plain(text)) for what, text in term_view(own).lines] == [
-        ("A2 reads more by", "(10.0 ± 2.0 µg) · a·|a|")
+        ("A2 reads high by", "(10.0 ± 2.0 µg) · a·|a|")
     ]
 
 
 def test_what_it_is_worth_and_what_comes_near_it_are_said() -> None:
     told = term_view(TERM)
-    assert plain(told.worth).startswith("It removes 24 % of what the sessions that took no part")
+    assert plain(told.worth).startswith("It removes 24 % of the excess")
     assert told.nearest == "Nearest in the catalogue: beta scale, 12.4 standard errors from it."
 
 
 def test_a_gain_that_is_none_is_said_as_less() -> None:
     assert gain_in_words(None) == ""
-    assert gain_in_words(GroupGain(8, 4, -1.5, 1.2, 1.25, ())).endswith("their log score is 1.5 less.")
+    assert gain_in_words(GroupGain(8, 4, -1.5, 1.2, 1.25, ())).endswith("log score 1.5 less.")

@@ -17,8 +17,8 @@ from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
 from service.work.helper import Helper
-from service.work.kinds import GROUPS
-from service.work.loop import LEASE, Worker, work_next
+from service.work.kinds import GROUPS, LEASE
+from service.work.loop import Worker, work_next
 from service.work.watch import ask_for_outdated
 from tests.databases import one_engine
 from tests.service.grouped import GROUP

@@ -109,6 +109,19 @@ def test_a_simulated_session_is_one_in_every_format(kind):
 
 
 @pytest.mark.parametrize("kind", WRITERS)
+@pytest.mark.parametrize("stated", [{"powered_on_at": "2026-03-01T08:20:00Z"}, {"time_since_power_on_s": 2400.0}])
+def test_when_the_unit_was_switched_on_survives_every_format(kind, stated):
+    document = rounded(builders.accelerometer_block(3)) | stated
+    session = read_upload(WRITERS[kind](document), f"x.{kind}")
+    assert session.time_since_power_on == 2400.0
+    assert (
+        content_digest(session)
+        == content_digest(read_session(document))
+        != content_digest(read_session(rounded(builders.accelerometer_block(3))))
+    )
+
+
+@pytest.mark.parametrize("kind", WRITERS)
 def test_where_sensors_sit_and_how_pulses_are_counted_survive_every_format(kind):
     document = builders.gyro_block() | {"counter": "reset"}
     document["sensors"][2]["position_m"] = [0.01, -0.02, 0.0]

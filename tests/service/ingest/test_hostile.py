@@ -163,4 +163,4 @@ def test_mat_without_metadata():
 def test_metadata_that_holds_the_table_itself():
     buffer = BytesIO()
     pl.DataFrame({"A1": [1.0]}).write_parquet(buffer, metadata={"imu-session": json.dumps(SMALL)})
-    refused(buffer.getvalue(), "table: stands in the imu-session metadata")
+    refused(buffer.getvalue(), "table: is in the imu-session metadata")

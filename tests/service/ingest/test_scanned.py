@@ -1,36 +1,36 @@
-"""Whoever waits for a long file hears how far it is, and nothing once the answer follows."""
+"""The progress of reading a long file is reported now and then, and no more once the answer follows."""
 
 import pytest
 
-from service.ingest import apart as scanned
-from service.ingest.apart import Teller
+from service.ingest import apart as reading
+from service.ingest.apart import ProgressReporter
 
 
 @pytest.fixture
-def told(monkeypatch: pytest.MonkeyPatch) -> tuple[Teller, list[tuple[int, int]]]:
-    """One that tells all of it, and what it told."""
-    monkeypatch.setattr(scanned, "PAUSE", 0.0)
-    heard: list[tuple[int, int]] = []
-    return Teller(lambda *how_far: heard.append(how_far)), heard
+def reported(monkeypatch: pytest.MonkeyPatch) -> tuple[ProgressReporter, list[tuple[int, int]]]:
+    """A reporter that leaves no report out, and its reports."""
+    monkeypatch.setattr(reading, "PROGRESS_INTERVAL", 0.0)
+    reports: list[tuple[int, int]] = []
+    return ProgressReporter(lambda *progress: reports.append(progress)), reports
 
 
-def test_it_counts_how_often_all_was_read(told) -> None:
-    teller, heard = told
+def test_it_counts_the_passes(reported) -> None:
+    reporter, reports = reported
     for done in (40, 100, 40, 100, 40):
-        teller.at(done, 100)
-    assert heard == [(40, 0), (100, 0), (40, 1), (100, 1), (40, 2)]
+        reporter.report(done, 100)
+    assert reports == [(40, 0), (100, 0), (40, 1), (100, 1), (40, 2)]
 
 
-def test_it_is_silent_before_the_answer(told) -> None:
-    teller, heard = told
-    teller.silence()
-    teller.at(40, 100)
-    assert heard == []
+def test_it_is_silent_before_the_answer(reported) -> None:
+    reporter, reports = reported
+    reporter.stop()
+    reporter.report(40, 100)
+    assert reports == []
 
 
-def test_it_tells_now_and_then_only() -> None:
-    heard: list[tuple[int, int]] = []
-    teller = Teller(lambda *how_far: heard.append(how_far))
+def test_reports_come_at_intervals() -> None:
+    reports: list[tuple[int, int]] = []
+    reporter = ProgressReporter(lambda *progress: reports.append(progress))
     for done in range(100):
-        teller.at(done, 100)
-    assert len(heard) == 1
+        reporter.report(done, 100)
+    assert len(reports) == 1

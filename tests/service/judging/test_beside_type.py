@@ -54,8 +54,8 @@ def uncertain(document: Document) -> None:
 
 SLIPS: dict[str, tuple[Callable[[Document], None], str]] = {
     "unit": (in_mv, "Every scale factor is 1000 times its value in the type's other units"),
-    "names": (renamed, "from where it does in the type's other units, along that of A2"),
-    "errors": (uncertain, "times less certain than those of the type's other units"),
+    "names": (renamed, "away from its direction in the other units of the type, along the axis of A2"),
+    "errors": (uncertain, "times less certain than in the other units of the type"),
 }
 
 
@@ -70,7 +70,7 @@ def test_what_only_the_type_can_tell_is_questioned(fleet: Storage, name: str) ->
 def test_a_zero_that_no_unit_of_the_type_has_is_questioned_before_it_is_a_reference(fleet: Storage) -> None:
     receipt = upload(fleet, session_bytes(unit_type=TYPE, unit="NEW-2", seed=41, a3_moved=9000.0), "a.json", NOW)
     assert receipt.state is RecordState.QUESTIONED
-    assert "The zero of A3 lies" in receipt.reason
+    assert "The bias of A3 differs by" in receipt.reason
     moved = session_bytes(unit_type=TYPE, unit="OK-1", seed=42, month=5, a3_moved=9000.0)
     assert upload(fleet, moved, "a.json", NOW).state is RecordState.ACCEPTED
 

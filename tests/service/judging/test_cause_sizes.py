@@ -61,6 +61,15 @@ def test_of_several_sensors_the_one_where_it_weighs_most_counts() -> None:
     assert (got.sensors, got.value, got.sigma) == (("A5",), 3e-4, pytest.approx(3e-5))
 
 
+@pytest.mark.parametrize(("since", "left"), [(None, 1.0), (0.0, 1.0), (1800.0, np.exp(-2))])
+def test_of_what_settles_counts_what_is_left_at_the_first_row(since: float | None, left: float) -> None:
+    warm = found("warm-up", ("m/s²",) * 2, (1e-3, 4e-3), ("A2", "A5"))
+    got = size_of_cause(replace(warm, nonlinear_each=({"s": 900.0}, {"s": 900.0}), since_power_on=since), BY)
+    assert got is not None
+    assert (got.sensors, got.value) == (("A5",), pytest.approx(4e-3 * left))
+    assert got.sigma == pytest.approx(4e-4 * left)
+
+
 def test_where_no_tolerance_is_set_nothing_is_large() -> None:
     assert size_of_cause(found("bias-jump", ("m/s²",), (1.0,), ("A2",)), replace(BY, tolerances={})) is None
 

@@ -14,6 +14,6 @@ def test_where_nothing_is_left_to_judge_by_nothing_is_called_right() -> None:
     session, _ = measured(3, 9, False, np.random.default_rng(5))
     found = diagnose(session)
     assert state_of(found) is DiagnosisState.UNDECIDED
-    assert headline(found) == "Too few positions to judge the simulation"
+    assert headline(found) == "Too few positions for a diagnosis"
     assert summary_of(found).startswith("Too few positions")
     assert "add 5" in what_to_do(found)

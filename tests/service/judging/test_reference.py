@@ -3,7 +3,7 @@
 from datetime import UTC, datetime
 
 from estimator.session import ACCELEROMETER, IN_SERVICE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
-from service.judging.reference import Reference, reference_of
+from service.judging.reference import EpochReference, reference_of
 from service.records.changes import record_service
 from service.storage import Storage
 from service.units.records import NewService
@@ -26,7 +26,7 @@ def serviced(storage: Storage, at: datetime) -> None:
     record_service(storage, "BA-017", NewService("repair", at), NOW)
 
 
-def chosen(storage: Storage, at: datetime, programme: str = TWO_AXIS_STAND) -> Reference:
+def chosen(storage: Storage, at: datetime, programme: str = TWO_AXIS_STAND) -> EpochReference:
     """What a session measured at a time would be judged against."""
     with storage.database.reading() as store:
         return reference_of(store, Units(store).key("BA-017"), ACCELEROMETER, programme, at)
@@ -35,20 +35,20 @@ def chosen(storage: Storage, at: datetime, programme: str = TWO_AXIS_STAND) -> R
 def test_the_session_that_was_measured_first_is_the_reference_whenever_it_came_in(storage: Storage) -> None:
     stored(storage, 5)
     first = stored(storage, 3)
-    assert chosen(storage, APRIL) == chosen(storage, AUGUST) == Reference(first, None)
+    assert chosen(storage, APRIL) == chosen(storage, AUGUST) == EpochReference(first, None)
 
 
 def test_after_a_service_there_is_none_until_the_next_session(storage: Storage) -> None:
     stored(storage, 3)
     serviced(storage, JUNE)
-    assert chosen(storage, AUGUST) == Reference(None, JUNE)
+    assert chosen(storage, AUGUST) == EpochReference(None, JUNE)
 
 
 def test_a_session_at_the_moment_of_the_service_is_the_reference_after_it(storage: Storage) -> None:
     stored(storage, 3)
     serviced(storage, JUNE)
     second = stored(storage, 6)
-    assert chosen(storage, JUNE) == chosen(storage, AUGUST) == Reference(second, JUNE)
+    assert chosen(storage, JUNE) == chosen(storage, AUGUST) == EpochReference(second, JUNE)
 
 
 def test_a_session_at_the_moment_of_the_service_is_none_before_it(storage: Storage) -> None:
@@ -57,7 +57,7 @@ def test_a_session_at_the_moment_of_the_service_is_none_before_it(storage: Stora
     serviced(storage, JUNE)
     second = stored(storage, 6)
     assert chosen(storage, JUNE).session == second
-    assert chosen(storage, APRIL) == Reference(None, None)
+    assert chosen(storage, APRIL) == EpochReference(None, None)
 
 
 def test_a_recording_in_service_is_compared_with_the_calibrations_reference(storage: Storage) -> None:

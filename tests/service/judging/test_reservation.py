@@ -12,8 +12,8 @@ from service.sessions.doubt import Reservation, Reservations
 from service.sessions.words.conditions import FIT, REFERENCE, UNDECIDED, said_with
 from tests.service.findings import JUMP
 
-JUMPED = Reservation(Doubt.CAUSE, "the zero of A2 jumps once and stays", "repeat the session", share=1.0)
-UNFIT = Reservation(Doubt.OTHER_MODEL, "it would be unfit with warm up (A2) in the model", "repeat the session")
+JUMPED = Reservation(Doubt.CAUSE, "the bias of A2 has one step", "repeat the session", share=1.0)
+UNFIT = Reservation(Doubt.OTHER_MODEL, "Unfit with warm up (A2) corrected", "repeat the session")
 WRONG = Reservation(Doubt.RECORD, "the channels of A1 and A2 are exchanged", "correct the file and upload it again")
 
 
@@ -21,8 +21,8 @@ WRONG = Reservation(Doubt.RECORD, "the channels of A1 and A2 are exchanged", "co
     ("reservations", "said"),
     [
         ((), "Fit"),
-        (None, "Fit; causes are still being looked for"),
-        ((JUMPED,), "Fit, but the zero of A2 jumps once and stays: repeat the session"),
+        (None, "Fit; the search for causes is not finished"),
+        ((JUMPED,), "Fit, but the bias of A2 has one step: repeat the session"),
         ((JUMPED, UNFIT), f"Fit, but {JUMPED.text}; and {UNFIT.text}: repeat the session"),
         ((JUMPED, UNFIT, UNFIT), f"Fit, but {JUMPED.text}; and {UNFIT.text}; and 1 more: repeat the session"),
         ((WRONG, JUMPED), f"Fit, but {WRONG.text}; and {JUMPED.text}: correct the file and upload it again"),
@@ -33,12 +33,12 @@ def test_a_verdict_is_said_with_its_reservations(reservations: Reservations, sai
 
 
 def test_the_same_is_not_advised_twice() -> None:
-    stand = replace(JUMPED, advice="put the stand right and repeat the session")
-    assert verdict_in_words(FIT, (stand, UNFIT)).endswith(": put the stand right and repeat the session")
+    stand = replace(JUMPED, advice="correct the stand and repeat the session")
+    assert verdict_in_words(FIT, (stand, UNFIT)).endswith(": correct the stand and repeat the session")
 
 
 def test_a_reference_is_said_with_them_too() -> None:
-    assert verdict_in_words(REFERENCE, (JUMPED,)).startswith("Reference set, but the zero of A2")
+    assert verdict_in_words(REFERENCE, (JUMPED,)).startswith("Reference set, but the bias of A2")
 
 
 def test_a_verdict_with_a_reservation_is_marked_in_words_and_keeps_its_rank() -> None:
@@ -70,15 +70,15 @@ def test_a_size_stands_beside_its_tolerance_in_one_measure_with_its_expanded_unc
 
 def test_another_verdict_names_the_model_that_gives_it() -> None:
     assert otherwise(Verdict.FAIL, ("warm-up", "bias-ramp"), ("A2",)) == (
-        "it would be unfit with warm up (A2) and bias ramp in the model"
+        "Unfit with warm up (A2) and bias ramp corrected"
     )
-    assert otherwise(Verdict.PASS, ("warm-up",), (), named=True) == "it would be fit with what was found in the model"
-    assert otherwise(Verdict.PASS, (), ()) == "it would be fit if what acts were none of the known causes"
+    assert otherwise(Verdict.PASS, ("warm-up",), (), named=True) == "Fit with these effects corrected"
+    assert otherwise(Verdict.PASS, (), ()) == "Fit if the cause is none of the known ones"
 
 
 def test_structure_says_where_it_is() -> None:
     own = Structure("harmonic 5 of β", ("A5",), 1e-9, 9.0)
-    assert unexplained((own,), "42 µg") == "something is there in A5 that no known cause explains (42 µg)"
+    assert unexplained((own,), "42 µg") == "an effect in A5 that no known cause explains (42 µg)"
     common = replace(own, sensors=(), course=Course("β", ("α",), ((1e-5,),)))
-    assert unexplained((common,), "9 µg") == "something is there in all sensors that no known cause explains (9 µg)"
-    assert unexplained((replace(own, of_record=True),), "") == "the record cannot be right"
+    assert unexplained((common,), "9 µg") == "an effect in all sensors that no known cause explains (9 µg)"
+    assert unexplained((replace(own, of_record=True),), "") == "the record is wrong"

@@ -124,7 +124,7 @@ def test_large_structure_without_a_name_and_understated_errors_are_told(storage:
     _, (sways,) = weighed(storage, (json.dumps(swaying_stand()).encode(),))
     _, (boasts,) = weighed(storage, (json.dumps(boasting()).encode(),))
     assert (sways.kind, sways.sensors, sways.advice) == (
-        Doubt.UNEXPLAINED, (), "put the stand right and repeat the session",
+        Doubt.UNEXPLAINED, (), "correct the stand and repeat the session",
     )  # fmt: skip
     assert (boasts.kind, boasts.text) == (
         Doubt.STATED_ERRORS, "the stated standard errors are about 4 times too small",

@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from service.kit.arriving_files import Replaced, Stated
 from service.records.supersede import successor_of, supersede_session
 from service.sessions.records import Receipt
+from service.sessions.sent import Replaced, Stated
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.storage import Storage

@@ -27,7 +27,7 @@ def case() -> tuple[CalibrationSession, Diagnosis, Basis]:
 def causes_tried(**changes: object) -> list[tuple[str, ...]]:
     """The models of the verdicts, the strongest finding changed."""
     session, found, basis = case()
-    first = replace(found.findings[0], **changes)  # type: ignore[arg-type]
+    first = replace(found.findings[0], **changes)
     return [one.causes for one in verdicts_under_alternatives(session, (first,), basis)]
 
 

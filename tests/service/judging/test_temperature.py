@@ -5,6 +5,7 @@ import json
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.made_sessions import session_bytes, session_id
+from tests.service.recordings import recording_document
 
 SAYS = "it was measured at 35 °C, 11 °C above its reference and earlier sessions (20–24 °C)"
 AGAIN = "measure again at about 20 °C, or calibrate over temperature"
@@ -41,3 +42,23 @@ def test_it_is_said_with_the_verdict_and_no_replacement_is_advised(holding: Hold
     pages = [client.get(path).text for path in (f"/sessions/{warm['id']}", "/units/BA-017", "/flags")]
     assert SAYS in plain(pages[0])
     assert "replacement" not in "".join(pages)
+
+
+def recorded(celsius: float, month: int) -> bytes:
+    """A recording in service at a temperature."""
+    document = recording_document(m=4) | {"started_at": f"2026-{month:02d}-01T09:00:00Z"}
+    document["table"]["temperature_c"] = [celsius] * len(document["table"]["A1"])
+    return json.dumps(document).encode()
+
+
+def test_a_unit_that_is_used_elsewhere_says_so(holding: Holding) -> None:
+    near, far = recorded(22.0, 5), recorded(-4.0, 6)
+    client = holding(SESSIONS[0], near, far, diagnosed=True)
+    at_home, away = (client.get(f"/api/v1/sessions/{session_id(s)}").json()["reservations"] for s in (near, far))
+    assert at_home == []
+    (found,) = away
+    assert found["kind"] == "temperature"
+    assert plain(found["text"]) == (
+        "it was measured at −4 °C, 24 °C below its reference and earlier sessions (20 °C), "
+        "and the temperature alone can make or hide a change of unknown size"
+    )

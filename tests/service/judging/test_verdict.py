@@ -18,7 +18,7 @@ BIAS = Decision(
 
 
 def test_a_failure_names_sensor_parameter_change_uncertainty_and_tolerance() -> None:
-    assert reason((BIAS,)) == "A3 bias moved +62 µg (U 8.0 µg) beyond the tolerance of 50 µg."
+    assert reason((BIAS,)) == "A3 bias changed by +62 µg (U 8.0 µg), beyond the tolerance of ±50 µg."
 
 
 def test_the_worst_verdict_comes_first_and_then_the_least_margin() -> None:
@@ -37,17 +37,17 @@ def test_a_margin_is_one_when_spotless_and_negative_beyond() -> None:
 def test_what_is_not_observed_names_every_sensor_and_says_what_to_do() -> None:
     unseen = replace(BIAS, value=None, deviation=None, expanded=None, verdict=Verdict.UNDECIDABLE)
     text = reason((unseen, replace(unseen, sensor="A4")))
-    assert text == "Bias of A3, A4 is not observable in this session: add the positions that show it."
+    assert text == "Bias of A3, A4 is not observable in this session: add positions."
 
 
 def test_too_coarse_a_measurement_says_so() -> None:
     coarse = replace(BIAS, expanded=80 * MICRO_G, verdict=Verdict.UNDECIDABLE)
-    assert "known to U 80 µg only, more than its tolerance of 50 µg" in reason((coarse,))
+    assert "has U 80 µg, more than its tolerance of ±50 µg" in reason((coarse,))
 
 
 def test_a_pass_names_what_is_closest_to_its_tolerance() -> None:
     good = replace(BIAS, deviation=-3 * MICRO_G, verdict=Verdict.PASS)
-    assert reason((good,)).endswith("closest to it: A3 bias, moved −3.0 µg (U 8.0 µg) of 50 µg allowed.")
+    assert reason((good,)).endswith("closest to it: A3 bias, changed by −3.0 µg (U 8.0 µg), tolerance ±50 µg.")
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from service.languages.catalogue import forms_of, path_of
 from service.languages.entry import places_of
 from service.languages.language import Language
 from service.languages.sources import messages
-from service.languages.update import untold, updated
+from service.languages.update import untranslated, updated
 
 OTHERS = [language for language in Language if language is not Language.ENGLISH]
 WHAT_TO_DO = "run `make words`, then write the translations into service/languages/*.po"
@@ -21,7 +21,7 @@ def stored(language: Language) -> Catalog:
 
 @pytest.mark.parametrize("language", OTHERS)
 def test_every_message_is_translated(language: Language) -> None:
-    assert untold(updated(language, messages())) == [], WHAT_TO_DO
+    assert untranslated(updated(language, messages())) == [], WHAT_TO_DO
 
 
 @pytest.mark.parametrize("language", OTHERS)

@@ -3,7 +3,7 @@
 import pytest
 from jinja2 import Environment
 
-from service.languages.entry import Entry
+from service.languages.entry import MessageEntry
 from service.languages.template import Template
 from service.languages.templates import in_language, literals
 
@@ -42,7 +42,7 @@ def rendered(source: str, said: dict[str, list[str]], **values: object) -> str:
     environment = Environment(autoescape=True)
     environment.filters.update(translated=lambda value: f"[{value}]", plural_form=lambda n: min(n - 1, 2))
 
-    def forms(message: Entry) -> list[str]:
+    def forms(message: MessageEntry) -> list[str]:
         return said.get(message.text, [])
 
     return environment.from_string(in_language(source, forms)).render(**values)

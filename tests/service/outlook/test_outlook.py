@@ -21,7 +21,7 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 def measure(storage: Storage, months: dict[int, float], unit: str = "BA-017", **changes: object) -> None:
     """Sessions of a unit by month of 2026, with how far A3's bias has moved, µg."""
     for month, moved in months.items():
-        content = session_bytes(seed=month, month=month, a3_moved=moved, unit=unit, **changes)  # type: ignore[arg-type]
+        content = session_bytes(seed=month, month=month, a3_moved=moved, unit=unit, **changes)
         upload_and_date(storage, content, "a.json", NOW, outlook=month == max(months))
 
 
@@ -44,7 +44,7 @@ def test_a_drift_brings_the_unit_back_before_its_tolerance(storage: Storage) -> 
     assert found.due < found.reach_50
     assert datetime(2026, 11, 1, tzinfo=UTC) < found.reach_50 < datetime(2027, 9, 1, tzinfo=UTC)
     assert found.risk_at_due == pytest.approx(0.05, abs=0.01)
-    assert found.reason.startswith("The chance that it is out of tolerance reaches 5 % on ")
+    assert found.reason.startswith("The risk that it is out of tolerance reaches 5 % on ")
     assert found.reason.endswith("A3 bias contributes most.")
 
 

@@ -9,12 +9,12 @@ import pytest
 
 from service.app import create_app
 from service.flags.store import Flags
-from service.fleet.records import Usable
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_unit as usable
+from service.judging.usable_words import DATES_PENDING
 from service.kit.bell import Bell
 from service.kit.metrics import Metrics
 from service.outlook.store import Outlooks
-from service.pages.unit.usable import usable
-from service.pages.unit.usable_words import DATES_PENDING
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.changes import withdraw_session
@@ -123,7 +123,7 @@ def test_until_its_dates_are_known_it_may_not_be_used_and_says_why(settings: Set
     with http_client(create_app(worked, lambda: NOW)) as client:
         page = client.get(f"/units/{UNIT}", headers={"Accept": "text/html"}).text
         answer = usable_now(storage)
-    assert "being worked out" in page
+    assert "being computed" in page
     assert 'http-equiv="refresh"' in page
     assert (answer.usable, answer.reasons) == (False, (DATES_PENDING,))
 

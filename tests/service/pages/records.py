@@ -9,6 +9,8 @@ from estimator.results import Calibration
 from service.fleet.condition import UnitSummary
 from service.ingest.checked import as_checked
 from service.judging.judge import judge
+from service.judging.records import Usable, UseFacts
+from service.judging.usable import usable
 from service.papers.session_report import SessionReport
 from service.sessions.decision import Verdict
 from service.sessions.records import HistoryPoint, StoredSession
@@ -30,7 +32,7 @@ def session_report(
         programme=session.programme, stand="ODG-1", operator="K. Ito", notes="", started_at=NOON, uploaded_at=NOON,
         verdict=judged.verdict, reason=judged.reason, is_reference=reference is None, simulated=False,
     )  # fmt: skip
-    return SessionReport(replace(stored, **changes), calibration, judged.decisions)  # type: ignore[arg-type]
+    return SessionReport(replace(stored, **changes), calibration, judged.decisions)
 
 
 def bias_point(day: int, value: float | None, *, reference: float | None = 0.0, sensor: str = "A1") -> HistoryPoint:
@@ -50,3 +52,8 @@ def unit_summary(serial: str = "BA-017", verdict: Verdict = Verdict.PASS, margin
         serial=serial, unit_type="hex-cone", simulated=False, sessions=3, last_session="5e55", last_at=NOON,
         verdict=verdict, is_reference=False, reason="why", worst_sensor="A3", worst_parameter="bias", margin=margin,
     )  # fmt: skip
+
+
+def uses_of(*units: UnitSummary) -> dict[str, Usable]:
+    """What units may be used for of which nothing else is known, by serial number."""
+    return {unit.serial: usable(UseFacts(unit), NOON) for unit in units}

@@ -5,7 +5,7 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -27,7 +27,7 @@ FROM, TO = 1_735_689_600_000, 1_830_297_600_000
 SHOWN = f"to_timestamp({FROM // 1000}) AND to_timestamp({TO // 1000})"
 TYPES = {"string": str, "number": int | float, "timestamp_epoch": int, "timestamp": str}
 """Of Infinity's columns, as JSON brings them."""
-FORMATS = {
+FORMATS: dict[str | None, Callable[[str], str]] = {
     None: str,
     "percentencode": lambda value: quote(value, safe=""),
     "sqlstring": lambda value: "'" + value.replace("'", "''") + "'",

@@ -55,5 +55,5 @@ def test_sessions_marked_on_their_pages_stand_beside_each_other(measured: httpx.
         assert answer.status_code == 303
     page = measured.get("/units/BA-017", headers=HTML).text
     assert "As found and as left" in page
-    assert "as left is still to be measured" in page
+    assert "as left: not measured yet" in page
     assert "A3 bias</th>" in page

@@ -158,7 +158,7 @@ def asked(client: httpx.Client, path: str, statements: list[str]) -> Iterator[in
 def test_pages_ask_the_database_a_fixed_few_questions(settings: Settings) -> None:
     app = create_app(settings)
     with http_client(app) as client, counted(app) as statements:
-        found = {}
+        found: dict[str, set[int]] = {}
         for month in (1, 2, 3):
             id = client.post("/api/v1/sessions", content=session_bytes(month=month, seed=month)).json()["id"]
             for path in ("/", "/units/BA-017", f"/sessions/{id}"):

@@ -1,4 +1,4 @@
-"""The page of a recording in service speaks of agreement, of what would have been seen, and of what never is."""
+"""The page of a recording in service speaks of agreement, of what would have been detected, and of what never is."""
 
 import json
 from functools import cache
@@ -26,21 +26,21 @@ def page(holding: Holding) -> str:
 
 
 def test_it_says_that_the_sensors_do_not_agree(page: str) -> None:
-    assert "The sensors do not agree with one another as they did at the calibration." in page
+    assert "The sensors do not agree with one another as at the calibration." in page
 
 
 def test_it_says_from_what_size_a_change_would_have_been_seen(page: str) -> None:
-    assert "What would have been seen" in page
+    assert "What would have been detected" in page
     assert '<td data-label="Share">50 %</td>' in page
 
 
 def test_it_says_what_parity_never_sees(page: str) -> None:
-    assert "Parity sees 12 of 24 numbers that can change. It never sees" in page
-    assert "more or other positions would tell it" not in page
+    assert "Parity observes 12 of 24 parameters. It cannot observe" in page
+    assert "more or other positions would show it" not in page
 
 
 def test_a_recording_of_one_orientation_is_told_to_turn(holding: Holding) -> None:
-    assert "The recording turns too little" in page_of(holding, recording_bytes(still=True))
+    assert "The recording has too little rotation" in page_of(holding, recording_bytes(still=True))
 
 
 @cache
@@ -60,9 +60,9 @@ def test_a_block_that_moves_too_much_is_told_so_and_what_to_do(holding: Holding)
     calibration, flight = moving_block()
     client = holding(calibration, flight)
     page = unescape(client.get(f"/sessions/{session_id(flight)}").text)
-    assert "Moving too much to tell." in page
-    assert "Moving too much to tell: the sensors disagree, and lever arms, delays between channels or vibration" in page
-    assert "hold the unit still for 15 s while recording, or state where its sensors sit (position_m)" in page
+    assert "Too much motion for a decision." in page
+    assert "Too much motion for a decision: the sensors disagree, possibly because of lever arms, delays" in page
+    assert "hold the unit still for 15 s while recording, or state where its sensors are (position_m)" in page
 
 
 def test_nothing_is_lost_for_a_block_that_moves_too_much(holding: Holding) -> None:
@@ -86,4 +86,4 @@ def test_a_channel_that_is_cut_off_at_times_is_said_to_be(holding: Holding) -> N
     document["table"]["A3"] = np.minimum(readings, np.quantile(readings, 0.96)).tolist()
     page = page_of(holding, json.dumps(document).encode())
     assert "A3 has changed since the calibration" in page
-    assert page.count("A3 stood at the end of its range in 4.0 % of the samples") == 2
+    assert page.count("A3 was at the end of its range in 4.0 % of the samples") == 2

@@ -10,6 +10,7 @@ from sqlalchemy import event
 from service.flags.store import FlagQuery, Flags
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
+from service.judging.usable_reading import usable_of
 from service.outlook.reading import outlook_of
 from service.outlook.rules.populations import fleet_standouts
 from service.outlook.store import Outlooks
@@ -38,7 +39,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "condition": (1, lambda store: Fleet(store).condition()),
     "history": (2, lambda store: History(store).points(Units(store).key("BA-000"), HistoryQuery())),
     "unit": (3, lambda store: unit_report(store, "BA-000", NOW)),
-    "sessions": (1, lambda store: Sessions(store).page(None, 0, 100)),
+    "what units may be used for": (2, lambda store: usable_of(store, Fleet(store).units(FleetQuery()), NOW)),
     "flags": (1, lambda store: Flags(store).page(FlagQuery())),
     "flags of a unit": (1, lambda store: Flags(store).page(FlagQuery("BA-000"))),
     "outlook": (4, lambda store: outlook_of(store, "BA-000", NOW)),
@@ -47,11 +48,11 @@ PAGES: dict[str, tuple[int, Page]] = {
     "stands": (1, stand_conditions),
     "types": (1, lambda store: UnitTypes(store).page(0, 100)),
     "list of sessions": (1, lambda store: Sessions(store).wanted(SessionQuery())),
-    "list of stands": (3, every_stand),
-    "stand": (6, lambda store: stand_report(store, "ODG-1")),
+    "list of stands": (4, every_stand),
+    "stand": (8, lambda store: stand_report(store, "ODG-1", NOW)),
     "uploads": (2, lambda store: Arrivals(store).page(ArrivalQuery())),
     "list of types": (2, every_type),
-    "type": (8, lambda store: type_report(store, "accelerometer × 6, V")),
+    "type": (9, lambda store: type_report(store, "accelerometer × 6, V", NOW)),
 }
 
 

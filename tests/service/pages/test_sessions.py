@@ -9,7 +9,7 @@ from service.fleet.records import FleetChoices
 from service.kit.person import EVERYBODY
 from service.pages.saved import saved
 from service.pages.session.list_pages import sessions_page
-from service.pages.session.view import PAGE_SIZE, SessionsAsked, SessionsView
+from service.pages.session.view import SessionsView
 from service.people.views import ListPage
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession
@@ -17,7 +17,7 @@ from tests.databases import one_engine
 from tests.service.made_sessions import FAILED, session_id
 from tests.service.pages.records import session_report
 
-ASKED = SessionsAsked(
+ASKED = SessionsView(
     q="BA",
     type="RA 6",
     since="2026-03-01",
@@ -39,13 +39,13 @@ def found(session: StoredSession, count: int) -> list[StoredSession]:
 
 
 def test_a_view_comes_back_from_its_own_address() -> None:
-    assert SessionsView.of(ASKED).url() == (
+    assert ASKED.url() == (
         "/sessions?q=BA&type=RA+6&since=2026-03-01&until=2026-03-31&state=withdrawn&verdict=fail&sort=-unit&after=x"
     )
 
 
 def test_the_last_day_belongs_to_the_list() -> None:
-    query = SessionsView.of(ASKED).query()
+    query = ASKED.query()
     assert query.since is not None
     assert query.until is not None
     assert (query.since.isoformat(), query.until.isoformat()) == (
@@ -55,8 +55,7 @@ def test_the_last_day_belongs_to_the_list() -> None:
 
 @pytest.mark.parametrize("day", ["soon", "2026-02-30", "9999-12-31", "\u0661"])
 def test_what_nobody_knows_is_left_out(day: str) -> None:
-    asked = SessionsAsked(since=day, until=day, state="odd", verdict="odd", sort="colour")
-    assert SessionsView.of(asked).url() == "/sessions"
+    assert SessionsView(since=day, until=day, state="odd", verdict="odd", sort="colour").url() == "/sessions"
 
 
 def test_a_reference_is_not_undecided() -> None:
@@ -68,9 +67,9 @@ def test_a_reference_is_not_undecided() -> None:
     ("view", "count", "ways"),
     [
         (SessionsView(), 3, ("", "")),
-        (SessionsView(), PAGE_SIZE + 1, ("", "/sessions?after=s49")),
+        (SessionsView(), SessionsView.PAGE_SIZE + 1, ("", "/sessions?after=s49")),
         (SessionsView(after="x"), 3, ("/sessions?before=s0", "")),
-        (SessionsView(before="x"), PAGE_SIZE + 1, ("/sessions?before=s1", "/sessions?after=s50")),
+        (SessionsView(before="x"), SessionsView.PAGE_SIZE + 1, ("/sessions?before=s1", "/sessions?after=s50")),
         (SessionsView(before="x"), 3, ("", "/sessions?after=s2")),
         (SessionsView(after="x"), 0, ("", "")),
     ],
@@ -79,8 +78,8 @@ def test_pages_lead_to_one_another(
     session: StoredSession, view: SessionsView, count: int, ways: tuple[str, str]
 ) -> None:
     page = sessions_page(found(session, count), view, FleetChoices(), saved((), view, ListPage.SESSIONS, EVERYBODY))
-    assert (page.earlier, page.later) == ways
-    assert len(page.lines) == min(count, PAGE_SIZE)
+    assert (page.shown.earlier, page.shown.later) == ways
+    assert len(page.lines) == min(count, SessionsView.PAGE_SIZE)
 
 
 def test_the_list_is_narrowed_by_its_address(flagged: httpx.Client) -> None:

@@ -27,36 +27,36 @@ CONDITION = StandCondition(
     seating=(StandSeating("accelerometer", "axes", 0.1 * ARCSEC),),
     unreadable=(),
 )
-LINE = StandLine(StandUse("S2", 9, 5, NOON), CONDITION, (CERTIFICATE,), 0)
+LINE = StandLine(StandUse("S2", 9, 5, NOON), CONDITION, (CERTIFICATE,), 0, is_pending=False)
 
 
 def test_what_needs_a_hand_comes_first() -> None:
-    ready = StandLine(StandUse("S1", 9, 5, NOON), None, (CERTIFICATE,), 0)
+    ready = StandLine(StandUse("S1", 9, 5, NOON), None, (CERTIFICATE,), 0, is_pending=False)
     page = stands_page([ready, LINE], NOON)
     assert [(row.use.stand, row.word.word) for row in page.rows] == [("S2", "Check before use"), ("S1", "Ready to use")]
 
 
 def test_a_shift_is_told_with_its_size_and_units_and_what_is_steady_too() -> None:
-    page = stand_page(StandReport(LINE, (), (), (), ()), NOON)
+    page = stand_page(StandReport(LINE, (), (), {}, (), ()), NOON)
     shift, steady = page.shifts
     assert (shift.what, shift.when, shift.units, shift.word) == (
         "Turn of every block", "since 1 Mar 2026", "4 of 5", "shifted",
     )  # fmt: skip
     assert shift.size == "12.00\u00a0±\u00a00.40\u202farcsec"
     assert (steady.what, steady.tone) == ("Change of every scale factor", "pass")
-    assert page.seating == (("Turn of every block", "±0.20 arcsec about each axis"),)
+    assert page.seating == (("Turn of every block", "±0.20 arcsec per axis"),)
 
 
 def test_a_shift_that_was_taken_back_says_until_when() -> None:
     back = replace(CONDITION, has_shifted=False, shifts=(replace(SHIFTED, until=NOON),))
-    page = stand_page(StandReport(replace(LINE, condition=back), (), (), (), ()), NOON)
-    assert (page.shifts[0].when, page.shifts[0].word) == ("1 Mar 2026 to before 1 Mar 2026", "back where it was")
+    page = stand_page(StandReport(replace(LINE, condition=back), (), (), {}, (), ()), NOON)
+    assert (page.shifts[0].when, page.shifts[0].word) == ("1 Mar 2026 to before 1 Mar 2026", "shift has ended")
     assert page.word.word == "Ready to use"
 
 
 def test_a_certificate_is_recorded_on_the_stand_s_page(flagged: httpx.Client) -> None:
-    assert "none on record" in flagged.get("/stands").text
-    assert "No certificate on record" in flagged.get("/stands/ODG-1").text
+    assert "none recorded" in flagged.get("/stands").text
+    assert "No certificate recorded" in flagged.get("/stands/ODG-1").text
     origin = str(flagged.base_url).rstrip("/")
     answer = flagged.post("/stands/ODG-1/certificates", data=STAND, headers={"Origin": origin})
     assert (answer.status_code, answer.headers["location"]) == (303, "/stands/ODG-1#certificates")

@@ -54,8 +54,18 @@ def test_an_empty_field_is_not_judged_and_the_interval_holds(typed: httpx.Client
     assert after["maximum_interval_days"] == 200
 
 
+def test_the_share_that_has_a_flag_is_set_for_all_units_at_once_and_kept_in_the_audit_trail(
+    typed: httpx.Client,
+) -> None:
+    assert shown(typed)["share"] == "30"
+    typed.post(f"{TYPE}/tolerances", data=shown(typed) | SAID | {"share": "12,5"})
+    assert (stored(typed)["flag_share"], stored(typed)["revision"]) == (0.125, 1)
+    line = typed.get("/api/v1/audit").json()["lines"][0]
+    assert (line["action"], line["details"]["before"], line["details"]["flag_share"]) == ("flag share", 0.3, 0.125)
+
+
 def test_every_number_that_is_none_is_told(typed: httpx.Client) -> None:
-    wrong = {"accelerometer.bias": "many", "accelerometer.axis": "-3", "interval": "0"}
+    wrong = {"accelerometer.bias": "many", "accelerometer.axis": "-3", "interval": "0", "share": "130"}
     answer = typed.post(f"{TYPE}/tolerances", data=shown(typed) | SAID | wrong)
     assert answer.status_code == 422
     assert {p["field"] for p in answer.json()["problems"]} == set(wrong)

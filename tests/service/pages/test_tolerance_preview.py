@@ -32,7 +32,7 @@ def numbers(client: httpx.Client, address: str = TYPE, response: httpx.Response 
 
 def test_narrower_ones_name_the_unit_that_changes_and_why(typed: httpx.Client) -> None:
     page = typed.post(f"{TYPE}/tolerances/preview", data=numbers(typed) | NARROW).text
-    assert "With these, 1 of 2 units changes" in page
+    assert "With these tolerances, the verdict of 1 of 2 units changes" in page
     (row,) = html.fromstring(page).xpath("//tbody/tr")
     said = " ".join(row.text_content().split())
     assert said.startswith("B-1FitUnfitA3 bias moved")

@@ -37,10 +37,10 @@ def test_a_type_is_listed_with_its_limits_and_the_worst_units_first() -> None:
 
 def test_the_first_tolerances_are_the_service_s_own() -> None:
     revisions = tuple(ToleranceRevision(n, NOON, KIND.tolerances, None) for n in (1, 2))
-    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[:1], {}, (), (), ())
-    assert "the service itself" in type_page(report, NOON).revisions[0].who
-    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[1:], {NOON: "K. Ito"}, (), (), ())
-    assert type_page(report, NOON).revisions[0].who == "K. Ito"
+    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[:1], {}, (), (), {}, ())
+    assert "the service itself" in type_page(report).revisions[0].who
+    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[1:], {NOON: "K. Ito"}, (), (), {}, ())
+    assert type_page(report).revisions[0].who == "K. Ito"
 
 
 def test_a_type_s_page_says_who_changed_its_tolerances(client: httpx.Client) -> None:

@@ -65,8 +65,8 @@ def test_past_due_it_may_not(asked: Asking) -> None:
 def test_a_sound_reference_alone_may_be_used_with_a_reservation(asked: Asking) -> None:
     found = asked(FIT[0])
     assert (found["usable"], found["verdict"], found["session"]) == (True, None, None)
-    assert found["why"].startswith("Its reference was measured on 1 Jan 2026, nothing speaks against it")
-    assert "No session was held against the reference of 1 Jan 2026 yet" in found["reservation"]
+    assert found["why"].startswith("Its reference was measured on 1 Jan 2026, there is no objection")
+    assert "No session has been compared with the reference of 1 Jan 2026 yet" in found["reservation"]
     assert found["until"][:10] == found["next_calibration"] > "2026-02-05"
     assert found["correction"] == f"/api/v1/sessions/{session_id(FIT[0])}/correction"
 

@@ -15,7 +15,7 @@ from estimator.session import Array
 from tests.builders import Document, accelerometer_block, mixed_block, true_sensors
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import send
-from tests.service.made_sessions import session_bytes
+from tests.service.made_sessions import FAILED, session_bytes, session_id
 from tests.service.recordings import recording_bytes
 
 ASKEW = 3e-3
@@ -27,8 +27,8 @@ def block(tilt: float) -> Document:
     return accelerometer_block(sensors=true_sensors(3, bias=0.05, tilt=tilt), positions=24)
 
 
-def text(client: httpx.Client, id: str, system: str) -> str:
-    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": system})
+def text(client: httpx.Client, id: str, system: str, **more: str) -> str:
+    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": system, **more})
     assert answer.status_code == 200, answer.text
     return answer.text
 
@@ -92,12 +92,12 @@ def test_a_flight_controller_s_file_says_what_it_leaves(client: httpx.Client) ->
 
 def test_gyros_go_with_the_accelerometers(client: httpx.Client) -> None:
     id = send(client, mixed_block())
-    imu = yaml.safe_load(text(client, id, "kalibr"))["imu0"]
+    imu = yaml.safe_load(text(client, id, "kalibr", force="true"))["imu0"]
     rotation = np.array(imu["gyroscopes"]["C_gyro_i"])
     assert rotation @ rotation.T == pytest.approx(np.eye(3), abs=1e-12)
-    assert "CAL_GYRO0_XOFF" in text(client, id, "px4")
-    assert "INS_GYROFFS_Z" in text(client, id, "ardupilot")
-    assert "angular_velocity" in text(client, id, "ros2")
+    assert "CAL_GYRO0_XOFF" in text(client, id, "px4", force="true")
+    assert "INS_GYROFFS_Z" in text(client, id, "ardupilot", force="true")
+    assert "angular_velocity" in text(client, id, "ros2", force="true")
 
 
 def test_every_file_says_whose_it_is(client: httpx.Client) -> None:
@@ -119,6 +119,35 @@ def test_exchanged_channels_are_refused_where_only_a_scale_can_be_given(client: 
     first, second, *_ = document["sensors"]
     first["nominal_axis"], second["nominal_axis"] = second["nominal_axis"], first["nominal_axis"]
     id = send(client, document)
-    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": "px4"})
+    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": "px4", "force": "true"})
     assert (answer.status_code, "exchanged" in answer.json()["detail"]) == (409, True)
-    assert "SM" in text(client, id, "ros2")
+    assert "SM" in text(client, id, "ros2", force="true")
+
+
+def test_an_unfit_unit_has_none_unless_it_is_forced_and_then_the_file_says_so(client: httpx.Client) -> None:
+    for content in FAILED:
+        client.post("/api/v1/sessions", content=content).raise_for_status()
+    address = f"/api/v1/sessions/{session_id(FAILED[-1])}/export"
+    refused = client.get(address, params={"system": "px4"})
+    assert (refused.status_code, "must not be used: Not fit" in refused.json()["detail"]) == (409, True)
+    forced = client.get(address, params={"system": "px4", "force": "true"}).raise_for_status().text
+    assert "DO NOT USE: ADJUST, REPAIR OR WITHDRAW IT" in forced
+    assert "# Not fit by its session of 1 Feb 2026: A3 bias moved" in forced
+    assert all(line.startswith("# ") or "CAL_" in line for line in forced.splitlines())
+
+
+def test_what_is_usable_with_a_reservation_says_it_in_every_file(client: httpx.Client) -> None:
+    id = send(client, block(0.0))
+    said = client.get("/api/v1/units/BA-017/usable").json()
+    assert said["use"] == "with-reservation"
+    for system in ("px4", "ardupilot", "kalibr", "ros2"):
+        comments = [line for line in text(client, id, system).splitlines() if line.startswith("# ")]
+        assert any("May be used with reservation" in line for line in comments)
+        assert {f"# {one}" for one in said["reservations"]} <= set(comments)
+
+
+def test_a_session_that_was_withdrawn_is_not_handed_on(client: httpx.Client) -> None:
+    id = send(client, block(0.0))
+    client.post(f"/api/v1/sessions/{id}/withdraw", json={"by": "K. Ito", "why": "wrong unit"}).raise_for_status()
+    refused = client.get(f"/api/v1/sessions/{id}/export", params={"system": "px4"})
+    assert (refused.status_code, "withdrawn" in refused.json()["detail"]) == (409, True)

@@ -8,11 +8,12 @@ import polars as pl
 import pytest
 from lxml import etree
 
-from service.papers.sheets import Column, Kind, Workbook
+from service.papers.sheets import CellKind, Column, Workbook
 
 NOW = datetime(2026, 11, 21, 12, 30, 30, tzinfo=UTC)
 COLUMNS = (
-    Column("Text", is_named=True), Column("Number", Kind.CHANGE), Column("Time", Kind.TIME), Column("Yes or no"),
+    Column("Text", is_named=True), Column("Number", CellKind.CHANGE), Column("Time", CellKind.TIME),
+    Column("Yes or no"),
 )  # fmt: skip
 MAIN = {"m": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 from service.kit.person import Role
-from service.people.changes import Chosen, add_account, make_link, make_token, use_link
+from service.people.changes import LinkForm, add_account, make_link, make_token, use_link
 from service.storage import Storage
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -33,10 +33,10 @@ def staffed(storage: Storage, now: datetime = NOW, signing: Collection[str] = ()
         if role in signing:
             with_password(storage, role, now)
         year = timedelta(days=365)
-        tokens[role] = make_token(storage, role, "bench", role, now, lasts=year, who="test")[1]
+        tokens[role] = make_token(storage, role, "bench", role, now, lifetime=year, who="test")[1]
     return Staff(tokens)
 
 
 def with_password(storage: Storage, login: str, now: datetime = NOW) -> None:
     """Chooses the password of an account."""
-    use_link(storage, make_link(storage, login, now, "test"), Chosen("", "", PASSWORD), now)
+    use_link(storage, make_link(storage, login, now, "test"), LinkForm("", "", PASSWORD), now)

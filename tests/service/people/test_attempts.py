@@ -12,7 +12,14 @@ import pytest
 from service.app import create_app
 from service.errors import SignInError, TooOftenError
 from service.people.admission import browser_of, cookie_of, counted_address
-from service.people.changes import A_DAY, BY_ADDRESS, BY_LOGIN, FROM_EVERYWHERE, Attempt, attempting
+from service.people.changes import (
+    ADDRESS_LIMIT,
+    DAILY_LIMIT,
+    DAILY_LIMIT_OF_ALL,
+    LOGIN_LIMIT,
+    SignInAttempt,
+    attempting,
+)
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine
@@ -20,10 +27,10 @@ from tests.service.people.staff import NOW, PASSWORD, staffed, with_password
 from tests.serving import http_client
 from tests.stock import stores
 
-ATTEMPT = Attempt("k.ito", "203.0.113.9")
+ATTEMPT = SignInAttempt("k.ito", "203.0.113.9")
 
 
-def was_looked_at(storage: Storage, attempt: Attempt = ATTEMPT, *, right: bool = False, later: float = 0) -> bool:
+def was_looked_at(storage: Storage, attempt: SignInAttempt = ATTEMPT, *, right: bool = False, later: float = 0) -> bool:
     """Whether a password got as far as being looked at."""
     try:
         with attempting(storage, attempt, NOW + timedelta(seconds=later)):
@@ -38,13 +45,13 @@ def was_looked_at(storage: Storage, attempt: Attempt = ATTEMPT, *, right: bool =
 
 def test_two_services_on_one_database_count_together(settings: Settings) -> None:
     with stores(settings) as one, stores(settings) as other:
-        looked_at = [was_looked_at(storage) for _ in range(BY_LOGIN) for storage in (one, other)]
-    assert looked_at == [True] * BY_LOGIN + [False] * BY_LOGIN
+        looked_at = [was_looked_at(storage) for _ in range(LOGIN_LIMIT) for storage in (one, other)]
+    assert looked_at == [True] * LOGIN_LIMIT + [False] * LOGIN_LIMIT
 
 
 def test_of_many_at_once_no_more_get_through(storage: Storage) -> None:
     with ThreadPoolExecutor(12) as pool:
-        assert sum(pool.map(lambda _: was_looked_at(storage), range(24))) == BY_LOGIN
+        assert sum(pool.map(lambda _: was_looked_at(storage), range(24))) == LOGIN_LIMIT
 
 
 def test_after_a_minute_one_may_try_again(storage: Storage) -> None:
@@ -52,37 +59,37 @@ def test_after_a_minute_one_may_try_again(storage: Storage) -> None:
 
 
 def test_one_password_tried_on_everybody_ends_by_the_address(storage: Storage) -> None:
-    tried = [was_looked_at(storage, Attempt(f"user{k}", "203.0.113.9")) for k in range(BY_ADDRESS + 5)]
-    assert sum(tried) == BY_ADDRESS
-    assert was_looked_at(storage, Attempt("user99", "203.0.113.10"))
+    tried = [was_looked_at(storage, SignInAttempt(f"user{k}", "203.0.113.9")) for k in range(ADDRESS_LIMIT + 5)]
+    assert sum(tried) == ADDRESS_LIMIT
+    assert was_looked_at(storage, SignInAttempt("user99", "203.0.113.10"))
 
 
 def test_the_right_one_forgets_the_wrong_ones(storage: Storage) -> None:
     for _ in range(3):
-        assert all(was_looked_at(storage) for _ in range(BY_LOGIN - 1))
+        assert all(was_looked_at(storage) for _ in range(LOGIN_LIMIT - 1))
         assert was_looked_at(storage, right=True)
 
 
 def test_what_is_refused_for_another_reason_is_no_wrong_attempt(storage: Storage) -> None:
-    for _ in range(2 * BY_LOGIN):
+    for _ in range(2 * LOGIN_LIMIT):
         with pytest.raises(ValueError, match="too short"), attempting(storage, ATTEMPT, NOW):
             raise ValueError("too short")
 
 
 def test_many_addresses_get_no_further_at_one_account_than_the_day_s_bound(storage: Storage) -> None:
-    addresses = [f"203.0.113.{k}" for k in range(FROM_EVERYWHERE // 4)]
-    tried = [was_looked_at(storage, Attempt("k.ito", one)) for one in addresses for _ in range(BY_LOGIN)]
-    assert sum(tried) == FROM_EVERYWHERE
-    assert not was_looked_at(storage, Attempt("k.ito", "198.51.100.1"), later=3600)
-    assert was_looked_at(storage, Attempt("k.ito", "198.51.100.1", browser="known"), later=3600)
-    assert was_looked_at(storage, Attempt("m.okafor", "198.51.100.1"), later=3600)
-    assert was_looked_at(storage, Attempt("k.ito", "198.51.100.1"), later=24 * 3600 + 61)
+    addresses = [f"203.0.113.{k}" for k in range(DAILY_LIMIT_OF_ALL // 4)]
+    tried = [was_looked_at(storage, SignInAttempt("k.ito", one)) for one in addresses for _ in range(LOGIN_LIMIT)]
+    assert sum(tried) == DAILY_LIMIT_OF_ALL
+    assert not was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1"), later=3600)
+    assert was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1", browser="known"), later=3600)
+    assert was_looked_at(storage, SignInAttempt("m.okafor", "198.51.100.1"), later=3600)
+    assert was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1"), later=24 * 3600 + 61)
 
 
 def test_one_address_does_not_use_up_the_day_of_all(storage: Storage) -> None:
-    tried = [was_looked_at(storage, later=61 * k) for k in range(2 * FROM_EVERYWHERE)]
-    assert sum(tried) == A_DAY
-    assert was_looked_at(storage, Attempt("k.ito", "198.51.100.1"), later=61)
+    tried = [was_looked_at(storage, later=61 * k) for k in range(2 * DAILY_LIMIT_OF_ALL)]
+    assert sum(tried) == DAILY_LIMIT
+    assert was_looked_at(storage, SignInAttempt("k.ito", "198.51.100.1"), later=61)
 
 
 @pytest.fixture
@@ -102,7 +109,7 @@ def entered(client: httpx.Client, address: str, password: str = PASSWORD, login:
     return client.post("/sign-in", data=data, headers=headers).status_code
 
 
-def guess(client: httpx.Client, address: str, times: int = BY_LOGIN + 1) -> int:
+def guess(client: httpx.Client, address: str, times: int = LOGIN_LIMIT + 1) -> int:
     """What the last of some wrong guesses is answered; the browser keeps no cookie."""
     with httpx.Client(base_url=client.base_url) as other:
         return [entered(other, address, f"guess {k} of many") for k in range(times)][-1]
@@ -147,8 +154,8 @@ def test_without_the_setting_nobody_says_where_they_come_from(settings: Settings
     staffed(storage)
     with_password(storage, "engineer")
     with http_client(create_app(settings, clock=lambda: NOW)) as client:
-        tried = [entered(client, f"203.0.113.{k}", f"guess {k} of many") for k in range(BY_LOGIN + 1)]
-    assert tried == [401] * BY_LOGIN + [429]
+        tried = [entered(client, f"203.0.113.{k}", f"guess {k} of many") for k in range(LOGIN_LIMIT + 1)]
+    assert tried == [401] * LOGIN_LIMIT + [429]
 
 
 @one_engine
@@ -157,7 +164,7 @@ def test_without_the_setting_nobody_says_where_they_come_from(settings: Settings
     [("203.0.113.{}", False), ("198.51.100.{}, 203.0.113.9", True), ("198.51.100.{}, 203.0.113.9, 127.0.0.2", True)],
 )
 def test_only_what_a_trusted_proxy_wrote_is_believed(gateway: httpx.Client, forwarded: str, counted: bool) -> None:
-    tried = [entered(gateway, forwarded.format(k), f"guess {k} of many") for k in range(BY_LOGIN + 1)]
+    tried = [entered(gateway, forwarded.format(k), f"guess {k} of many") for k in range(LOGIN_LIMIT + 1)]
     assert (tried[-1] == 429) is counted
 
 

@@ -57,7 +57,7 @@ def role_of(http: httpx.Client, headers: dict[str, str]) -> int:
 def test_a_token_makes_no_token(http: httpx.Client, staff: Staff, path: str) -> None:
     new = {"label": "for ever", "role": "viewer", "days": 366}
     sent = {"data": new} if path.startswith("/account") else {"json": new}
-    refused = http.post(path, headers=staff.headers(Role.ADMIN), **sent)  # type: ignore[arg-type]
+    refused = http.post(path, headers=staff.headers(Role.ADMIN), **sent)
     assert (refused.status_code, "outlive" in refused.text) == (403, True)
 
 

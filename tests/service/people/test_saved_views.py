@@ -67,7 +67,7 @@ def test_a_query_that_no_list_understands_spoils_no_page(client: httpx.Client) -
 
 @one_engine
 def test_there_are_not_more_than_can_be_chosen_from(client: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(keep_view, "MOST", 1)
+    monkeypatch.setattr(keep_view, "MAX_VIEWS", 1)
     assert [client.post(VIEWS, json=NEW | {"name": name}).status_code for name in "aab"] == [201, 201, 409]
 
 

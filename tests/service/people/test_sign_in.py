@@ -10,7 +10,15 @@ import pytest
 from service.app import create_app
 from service.errors import SignInError
 from service.kit.person import Role
-from service.people.changes import AccountChange, Chosen, change_account, change_password, make_link, sign_in, use_link
+from service.people.changes import (
+    AccountChange,
+    LinkForm,
+    change_account,
+    change_password,
+    make_link,
+    sign_in,
+    use_link,
+)
 from service.people.store import Accounts
 from service.settings import Settings
 from service.storage import Storage
@@ -113,7 +121,7 @@ def test_signing_out_ends_it(http: httpx.Client) -> None:
 def test_a_shift_later_one_signs_in_again(settings: Settings, storage: Storage, staff: Staff) -> None:
     secret = sign_in(storage, "engineer", PASSWORD, NOW)
     for later, status in ((timedelta(hours=11), 200), (timedelta(hours=13), 303)):
-        with http_client(create_app(settings, clock=lambda later=later: NOW + later)) as client:
+        with http_client(create_app(settings, clock=lambda later=later: NOW + later)) as client:  # type: ignore[misc]
             assert client.get("/flags", headers=PAGE | {"Cookie": f"imu-health={secret}"}).status_code == status
 
 
@@ -144,19 +152,19 @@ def test_a_link_works_once_and_looking_does_not_use_it_up(http: httpx.Client, st
 
 def test_the_first_link_makes_the_first_account_and_no_second(settings: Settings, storage: Storage) -> None:
     links = [make_link(storage, None, NOW, "start") for _ in range(2)]
-    use_link(storage, links[0], Chosen("K.Ito", "K. Ito", PASSWORD), NOW)
+    use_link(storage, links[0], LinkForm("K.Ito", "K. Ito", PASSWORD), NOW)
     with storage.database.reading() as store:
         (account,) = Accounts(store).every()
     assert (account.login, account.name, account.role, account.has_password) == ("k.ito", "K. Ito", Role.ADMIN, True)
     with pytest.raises(SignInError, match="used already"):
-        use_link(storage, links[1], Chosen("mallory", "", PASSWORD), NOW)
+        use_link(storage, links[1], LinkForm("mallory", "", PASSWORD), NOW)
 
 
 def test_a_password_that_was_chosen_ends_the_other_links(storage: Storage, staff: Staff) -> None:
     links = [make_link(storage, "crew", NOW, "test") for _ in range(2)]
-    use_link(storage, links[0], Chosen("", "", PASSWORD), NOW)
+    use_link(storage, links[0], LinkForm("", "", PASSWORD), NOW)
     with pytest.raises(SignInError, match="used already"):
-        use_link(storage, links[1], Chosen("", "", PASSWORD), NOW)
+        use_link(storage, links[1], LinkForm("", "", PASSWORD), NOW)
 
 
 def test_who_finds_a_browser_open_cannot_guess_its_password(http: httpx.Client) -> None:
@@ -170,7 +178,7 @@ def test_who_finds_a_browser_open_cannot_guess_its_password(http: httpx.Client) 
 def test_a_link_ends_after_an_hour(storage: Storage, staff: Staff) -> None:
     link = make_link(storage, "crew", NOW, "test")
     with pytest.raises(SignInError, match="its hour is over"):
-        use_link(storage, link, Chosen("", "", PASSWORD), NOW + timedelta(hours=2))
+        use_link(storage, link, LinkForm("", "", PASSWORD), NOW + timedelta(hours=2))
 
 
 @one_engine

@@ -31,7 +31,7 @@ def opens(settings: Settings, secret: str, later: timedelta = timedelta(0)) -> i
 
 
 def made(storage: Storage, role: Role = Role.VIEWER, lasts: timedelta = DAY) -> tuple[int, str]:
-    token, secret = make_token(storage, "engineer", "bench", role, NOW, lasts=lasts, who="test")
+    token, secret = make_token(storage, "engineer", "bench", role, NOW, lifetime=lasts, who="test")
     return token.id, secret
 
 

@@ -32,7 +32,7 @@ def test_what_is_not_seen_stands_under_its_reason() -> None:
 
 def test_vibration_that_tells_nothing_is_not_called_missing_where_it_was_recorded() -> None:
     (blind,) = blind_causes([Limit("vibration-rectification", None, (), "the session lacks vibration")])
-    assert blind.reason == "no vibration was recorded, or it was the same everywhere"
+    assert blind.reason == "no vibration was recorded, or it was the same in every row"
 
 
 def test_every_unit_of_the_catalogue_has_a_measure() -> None:

@@ -44,7 +44,7 @@ def test_the_page_says_it_in_one_sentence(client: httpx.Client) -> None:
     sent = {"file": ("first.json", json.dumps(at_rest(drift=1e-5)))}
     page = client.post("/ready", files=sent, data={"minutes": "96"})
     assert page.status_code == 200
-    assert "Not warm: waiting alone will not do" in page.text
+    assert "Not warm: waiting is not enough" in page.text
 
 
 def test_the_form_says_what_it_cannot_use(client: httpx.Client) -> None:

@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.kit.arriving_files import Replaced, Stated
 from service.opening import open_database
 from service.records.changes import accept_session, choose_reference, record_service, withdraw_service, withdraw_session
+from service.sessions.sent import Replaced, Stated
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.storage import Files, Storage

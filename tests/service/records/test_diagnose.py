@@ -54,7 +54,7 @@ def accept(storage: Storage, new: NewModel = ACCEPT) -> ModelRevision:
 def test_a_session_is_diagnosed_once(storage: Storage) -> None:
     id = stored(storage)
     first = diagnose(storage, id, NOW)
-    assert (first.state, first.summary) == (DiagnosisState.NAMED, "The zero of A5 follows the temperature.")
+    assert (first.state, first.summary) == (DiagnosisState.NAMED, "The bias of A5 depends on temperature.")
     assert diagnose(storage, id, NOW + timedelta(days=1)) == first
 
 

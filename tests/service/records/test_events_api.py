@@ -12,7 +12,7 @@ UNIT = "/api/v1/units/BA-017"
 
 def upload(client: httpx.Client, **session: object) -> str:
     """Uploads a session and returns its id."""
-    answer = client.post("/api/v1/sessions", content=session_bytes(**session))  # type: ignore[arg-type]
+    answer = client.post("/api/v1/sessions", content=session_bytes(**session))
     return str(answer.json()["id"])
 
 

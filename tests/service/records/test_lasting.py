@@ -19,6 +19,7 @@ from service.records.models import accept_lasting, withdraw_model
 from service.records.recalibrate import recompute
 from service.records.refresh_group import refresh_group
 from service.sessions.calibrations_store import Calibrations
+from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -88,7 +89,7 @@ def test_every_session_of_the_unit_is_computed_again_with_the_group_s_size(
     with four.database.reading() as store:
         before, after = (scale(Calibrations(store).get(session_id(GROUP[0]), revision)) for revision in (0, None))
         assert {Sessions(store).get(session_id(c)).revision for c in GROUP} == {accepted.id}
-        assert Sessions(store).page("BA-018", 0, 1)[0].revision == 0
+        assert Sessions(store).wanted(SessionQuery(unit="BA-018", limit=1))[0].revision == 0
     sound = scale(calibrate(read_session(json.loads(cubic_session(0, cubic=0.0)))))
     assert abs(after - sound) < 0.1 * abs(before - sound)
 
@@ -128,7 +129,7 @@ def test_withdrawn_it_goes_out_of_every_session_again(four: Storage, accepted: M
 @one_engine
 def test_it_is_accepted_for_the_sessions_of_now_alone(four: Storage) -> None:
     upload(four, cubic_session(12, cubic=LARGE), "b.json", NOW)
-    with pytest.raises(ConflictError, match="being worked out"):
+    with pytest.raises(ConflictError, match="being computed"):
         accept_lasting(four, group(four), NEW, NOW)
 
 

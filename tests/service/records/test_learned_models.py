@@ -54,7 +54,7 @@ def test_it_is_accepted_with_its_equation_and_the_sessions_are_computed_again(st
     recompute_all(storage)
     assert (revision.scope, revision.subject, revision.sensors) == (Scope.UNIT, UNIT, ("A2",))
     assert revision.evidence is not None
-    assert revision.evidence.sentence.startswith("A2 reads more by (")
+    assert revision.evidence.sentence.startswith("A2 reads high by (")
     assert "sin 3β" in revision.evidence.sentence
     assert brought(storage, revision.id)[0].outcome is not None
     assert zero_of_a2(storage, WAVY[0]) != plain

@@ -6,6 +6,7 @@ import signal
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -94,7 +95,7 @@ def test_a_worker_that_is_killed_costs_nothing(storage: Storage, settings: Setti
     ids = fill(storage, *UNITS, more=(binary,))
     killed: list[int] = []
     with by_workers(storage, settings, clock, workers=2) as run:
-        outcomes = []
+        outcomes: list[Any] = []
         for outcome in run(units_behind(storage)):
             if not outcomes:
                 killed.append(kill_one_worker())

@@ -10,12 +10,12 @@ from sqlalchemy.exc import DatabaseError
 from service.errors import ConflictError, NotFoundError
 from service.flags.store import Flags
 from service.fleet.store import Fleet
-from service.kit.arriving_files import Replaced, Stated
 from service.outlook.store import Outlooks
 from service.records.changes import accept_session, choose_reference, record_service, withdraw_service, withdraw_session
 from service.records.supersede import supersede_session
 from service.sessions.decision import Verdict
 from service.sessions.records import Receipt, StoredSession
+from service.sessions.sent import Replaced, Stated
 from service.sessions.states import RecordKind, RecordState
 from service.sessions.states_store import States
 from service.sessions.store import Sessions
@@ -180,7 +180,7 @@ def test_what_does_not_fit_the_state_is_refused(storage: Storage) -> None:
     for act in (withdraw_session, choose_reference):
         with pytest.raises(ConflictError, match="superseded"):
             act(storage, own, first, step())
-    with pytest.raises(ConflictError, match="stands for session"):
+    with pytest.raises(ConflictError, match="replaces session"):
         accept_session(storage, own, first, step())
     with pytest.raises(NotFoundError):
         withdraw_service(storage, own, 99, step())

@@ -5,7 +5,7 @@ import pytest
 from service.errors import ConflictError, RefusedError
 from service.fleet.store import Fleet
 from service.groups.store import Groups
-from service.papers.changes import Rules, Signing, Statement, signature_of
+from service.papers.changes import Signing, SigningRules, Statement, signature_of
 from service.papers.records import Meaning
 from service.records.changes import accept_session, withdraw_session
 from service.stands.health import stand_health
@@ -30,7 +30,7 @@ def test_a_unit_is_measured_or_simulated(storage: Storage, first: dict[str, str]
     with pytest.raises(RefusedError) as refused:
         sent(storage, month=4, **second)
     (problem,) = refused.value.problems
-    assert (problem.field, "a serial number of its own" in problem.message) == ("origin", True)
+    assert (problem.field, "its own serial number" in problem.message) == ("origin", True)
 
 
 def test_a_unit_is_measured_once_what_was_simulated_is_withdrawn(storage: Storage) -> None:
@@ -67,4 +67,4 @@ def test_nobody_signs_for_what_was_simulated(storage: Storage) -> None:
     specimen = Statement("BA-017", sent(storage, **SIMULATED), 0, "", is_specimen=True)
     signing = Signing(specimen.session, "specimen-1", Meaning.REVIEWED, "engineer", "a password")
     with storage.database.reading() as store, pytest.raises(ConflictError, match="a specimen"):
-        signature_of(store, signing, specimen, Rules(), NOW)
+        signature_of(store, signing, specimen, SigningRules(), NOW)

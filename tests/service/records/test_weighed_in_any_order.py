@@ -80,10 +80,11 @@ def test_what_stands_for_an_earlier_session_is_not_compared_with_it(holding: Hol
 
 
 def test_a_questioned_session_is_looked_at_again_once_it_is_accepted(holding: Holding) -> None:
+    """Of three sensors: beside the earlier session all of it seems new, and every sensor more costs seconds."""
     found = []
     for is_looked_at in (True, False):
-        client = holding(REFERENCE)
-        id = sent(client, in_another_unit(jumped(51.0)))
+        client = holding(session_bytes(month=1, m=3))
+        id = sent(client, in_another_unit(jumped(51.0, m=3)))
         if is_looked_at:
             looked_at(client, id)
         done(client, id, "accept")

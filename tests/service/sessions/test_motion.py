@@ -20,7 +20,7 @@ def said(motion: CommonMotion) -> list[str]:
 def test_a_turn_names_size_axis_and_cause() -> None:
     assert said(TURNED) == [
         "The whole block turned by 12.0\u00a0±\u00a01.0\u202farcsec about −Y since the reference: "
-        "it sits otherwise, or the stand has turned. The sensors are judged without it."
+        "it was mounted differently, or the stand has turned. The sensors are judged without this effect."
     ]
 
 
@@ -32,20 +32,20 @@ def test_a_turn_that_noise_explains_is_not_mentioned() -> None:
 
 def test_sensors_that_did_not_turn_with_the_block_are_named() -> None:
     text = said(CommonMotion(**{**vars(TURNED), "left_out": ("A2", "A5")}))[0]
-    assert text.endswith("Beside that, the input axes of A2 and A5 moved on their own.")
+    assert text.endswith("In addition, the input axes of A2 and A5 changed.")
 
 
 def test_a_common_factor_is_gravity_or_stand() -> None:
     scaled = CommonMotion("accelerometer", "scales", "separated", (35e-6,), ((4e-12,),), 1e-9, NAMES, ("A3",))
     assert said(scaled) == [
-        "All scale factors changed together by +35.0\u00a0±\u00a04.0\u202fppm since the reference: "
-        "that is of gravity or the stand's elevation. The sensors are judged without it. "
-        "Beside that, the scale factor of A3 moved on its own."
+        "All scale factors changed together by +35.0\u00a0±\u00a04.0\u202fppm since the reference; "
+        "cause: gravity or the stand's elevation. The sensors are judged without this effect. "
+        "In addition, the scale factor of A3 changed."
     ]
 
 
 def test_too_few_sensors_and_disagreement_are_said() -> None:
     few = CommonMotion("accelerometer", "axes", "too-few-sensors", (), (), None, NAMES[:3], ())
-    assert said(few)[0].startswith("3 sensors are too few to tell a turn of the whole block from a change of one")
+    assert said(few)[0].startswith("3 sensors are too few to separate a turn of the whole block from a change of one")
     unclear = CommonMotion("gyroscope", "scales", "unclear", (), (), None, NAMES, ())
-    assert said(unclear)[0].endswith("which of them moved: every sensor is judged on its whole change.")
+    assert said(unclear)[0].endswith("which of them changed is not known: every sensor is judged by its whole change.")

@@ -24,7 +24,7 @@ def records(rng: np.random.Generator, count: int, *, last: float = 1.0) -> list[
 
 def test_twice_the_noise_is_told_once_for_all_sensors() -> None:
     (sentence,) = grown(records(np.random.default_rng(2), 3, last=2.0))
-    assert sentence.startswith("White noise N is larger in all accelerometers: ")
+    assert sentence.startswith("White noise N has grown in all accelerometers, ")
 
 
 def test_a_single_sensor_is_named() -> None:
@@ -32,7 +32,7 @@ def test_a_single_sensor_is_named() -> None:
     last = points[-1]
     assert last.value is not None
     (sentence,) = grown([*points[:-1], replace(last, value=3 * last.value, u=3 * (last.u or 0.0))])
-    assert sentence.startswith("White noise N of A5 is ")
+    assert sentence.startswith("White noise N of A5 has grown ")
 
 
 def test_what_is_not_decided_is_no_number() -> None:

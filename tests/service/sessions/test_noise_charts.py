@@ -41,9 +41,7 @@ def test_noise_that_is_stated_five_times_too_small_is_drawn_beside_what_is_found
     found = calibrated(0.2)
     times = noise_of(found.residuals, found).times
     assert times == pytest.approx(5.0, rel=0.1)
-    assert "the dashed lines are ±2σ of the noise that the calibration reckons with instead" in bands_in_words(
-        found, times
-    )
+    assert "the dashed lines are ±2σ of the noise that the calibration uses" in bands_in_words(found, times)
     point = residual_charts(found)[0].panels[0].datasets["points"][0]
     assert point["found"] == pytest.approx(times * point["band"], rel=1e-3)
     assert len(residual_charts(found)[0].spec["layer"]) == len(residual_charts(calibrated(1.0))[0].spec["layer"]) + 2

@@ -17,8 +17,8 @@ from service.sessions.words.noise import but_wrong_errors, wrong_errors
         (1.42, "about 1.4 times too small"),
         (1.06, "about 1.06 times too small"),
         (0.0072, "about 140 times too large"),
-        (0.0, "wrong by more than can be told"),
-        (nan, "wrong by more than can be told"),
+        (0.0, "wrong by an unknown factor"),
+        (nan, "wrong by an unknown factor"),
     ],
 )
 def test_how_far_off_they_are_is_said_in_times(factor: float, how: str) -> None:

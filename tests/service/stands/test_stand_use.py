@@ -51,5 +51,5 @@ def test_an_expired_certificate_is_worse_than_a_shift() -> None:
 
 
 def test_a_certificate_that_is_still_to_come_is_told() -> None:
-    assert "10 Dec 2025, which is still to come" in certificate_in_words(OWN, date(2025, 12, 1))
-    assert "No certificate on record" in certificate_in_words((), date(2025, 12, 1))
+    assert "10 Dec 2025, in the future" in certificate_in_words(OWN, date(2025, 12, 1))
+    assert "No certificate recorded" in certificate_in_words((), date(2025, 12, 1))

@@ -5,17 +5,25 @@ from datetime import UTC, datetime
 
 import httpx
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from service.flags.changes import resolve_flag
-from service.flags.records import Matter
+from service.flags.records import Concern, Flag, FlagState, Matter
 from service.flags.store import FlagQuery, Flags
-from service.records.flagging.lasting import flag_shifted_stands
+from service.models.records import Scope
+from service.records.changes import withdraw_session
+from service.records.flagging.acts import Occasion, raise_flag
+from service.records.flagging.stands import OF_STAND, flag_shifted_stands
+from service.sessions.records import SessionQuery
+from service.sessions.store import Sessions
 from service.storage import Storage
+from service.units.store import Units
 from service.uploads.receive import upload
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.databases import one_engine
+from tests.service.made_records import step, way
 
 NOW = datetime(2026, 10, 1, tzinfo=UTC)
 TURN = Rotation.from_rotvec(np.array([5.0, -8.0, 12.0]) * ARCSEC)
@@ -62,35 +70,61 @@ def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storag
     latest = client.get("/api/v1/units/BA-1").json()["sessions"][0]["id"]
     page = client.get(f"/sessions/{latest}", headers={"Accept": "text/html"}).text
     assert "The whole block turned by 15" in page
-    assert "it sits otherwise, or the stand has turned" in page
+    assert "it was mounted differently, or the stand has turned" in page
+
+
+@pytest.fixture
+def shifted(storage: Storage) -> Storage:
+    """Four units on two stands, of which S2 has turned in June; three were measured on it last."""
+    for number in range(4):
+        measure(storage, number, "S1" if number == 3 else "S2")
+    return storage
+
+
+def flagged(storage: Storage) -> list[Flag]:
+    with storage.database.reading() as store:
+        return list(Flags(store).page(FlagQuery(matter=Matter.SHIFTED)))
 
 
 @one_engine
-def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(storage: Storage) -> None:
-    for number in range(4):
-        measure(storage, number, "S1" if number == 3 else "S2")
-
-    def flagged() -> list[tuple[str, str, str]]:
-        with storage.database.reading() as store:
-            found = [flag for flag in Flags(store).page(FlagQuery()) if flag.matter is Matter.SHIFTED]
-        return sorted((flag.unit, flag.place, flag.state.value) for flag in found)
-
-    flag_shifted_stands(storage, NOW)
-    assert flagged() == [(f"BA-{number}", "S2", "raised") for number in range(3)]
-    with storage.database.reading() as store:
-        first = next(flag.id for flag in Flags(store).page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED)
-    resolve_flag(storage, first, "K. Ito", "seat of S2 mended", NOW)
-    flag_shifted_stands(storage, NOW)
-    assert flagged()[0] == ("BA-0", "S2", "resolved")
-    assert len(flagged()) == 3
+def test_a_shifted_stand_has_one_flag_that_names_the_units_it_measured_last(shifted: Storage) -> None:
+    for _ in range(2):
+        flag_shifted_stands(shifted, NOW)
+    [flag] = flagged(shifted)
+    assert (flag.scope, flag.subject, flag.place, flag.state) == (Scope.STAND, "S2", "S2", FlagState.RAISED)
+    assert flag.summary.endswith("Seen with BA-0, BA-1, BA-2.")
+    with shifted.database.reading() as store:
+        assert Flags(store).page(FlagQuery("BA-0")) == ()
+    resolve_flag(shifted, flag.id, "K. Ito", "seat of S2 mended", NOW)
+    flag_shifted_stands(shifted, NOW)
+    assert [flag.state for flag in flagged(shifted)] == [FlagState.RESOLVED]
 
 
-def test_an_open_flag_whose_shift_is_dated_anew_stays_one_flag(storage: Storage) -> None:
+@one_engine
+def test_flags_that_every_unit_had_of_its_own_become_the_stand_s_one(shifted: Storage) -> None:
+    with shifted.database.writing() as store:
+        for number in range(3):
+            concern = Concern(Matter.SHIFTED, "S2", 1, "It turns every block.")
+            raise_flag(store, Occasion(Units(store).key(f"BA-{number}"), None, NOW), concern)
+    flag_shifted_stands(shifted, NOW)
+    states = [(flag.scope, flag.state) for flag in flagged(shifted)]
+    assert states == [(Scope.STAND, FlagState.RAISED), *[(Scope.UNIT, FlagState.RESOLVED)] * 3]
+    assert flagged(shifted)[1].changes[-1].text == OF_STAND
+
+
+def test_an_open_flag_whose_shift_is_dated_anew_stays_one_flag_and_closes_with_it(storage: Storage) -> None:
     """Raised when the shift was dated to before June; by what was measured since it is dated to July."""
     for number in range(4):
         measure(storage, number)
     for day in (datetime(2026, 6, 15, tzinfo=UTC), NOW, NOW):
         flag_shifted_stands(storage, day)
+    assert [flag.state for flag in flagged(storage)] == [FlagState.RAISED]
     with storage.database.reading() as store:
-        found = [flag for flag in Flags(store).page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED]
-    assert [flag.state.value for flag in found] == ["raised"]
+        gone = [(s.unit, s.id) for s in Sessions(store).wanted(SessionQuery(stand="S2")) if s.started_at.month > 6]
+    for _, id in gone:
+        withdraw_session(storage, way(storage), id, step())
+    flag_shifted_stands(storage, NOW)
+    [flag] = flagged(storage)
+    assert (flag.state, flag.changes[-1].text) == (
+        FlagState.RESOLVED, "The units measured on S2 no longer show that it has shifted.",
+    )  # fmt: skip

@@ -36,7 +36,7 @@ class Disk:
 
     root: Path
     names: dict[str, int]
-    bytes: dict[int, bytearray]
+    written: dict[int, bytearray]
     synced_names: dict[str, int] = field(default_factory=dict)
     synced_bytes: dict[int, bytes] = field(default_factory=dict)
 
@@ -63,12 +63,12 @@ class Disk:
 
     def _make(self, call: Call) -> None:
         if call.path not in self.names:
-            self.names[call.path] = max([-1, *self.names.values(), *self.synced_names.values(), *self.bytes]) + 1
+            self.names[call.path] = max([-1, *self.names.values(), *self.synced_names.values(), *self.written]) + 1
             if call.name == "openat":
-                self.bytes[self.names[call.path]] = bytearray()
+                self.written[self.names[call.path]] = bytearray()
 
     def _write(self, call: Call) -> None:
-        content = self.bytes[self.names[call.path]]
+        content = self.written[self.names[call.path]]
         if call.name == "ftruncate":
             content[:] = content[: call.number].ljust(call.number, b"\0")
             return
@@ -78,8 +78,8 @@ class Disk:
 
     def _sync(self, path: str) -> None:
         number = self.names.get(path)
-        if number in self.bytes:
-            self.synced_bytes[number] = bytes(self.bytes[number])
+        if number in self.written:
+            self.synced_bytes[number] = bytes(self.written[number])
             return
         for names in (self.names, self.synced_names):
             for name in [n for n in names if str(Path(n).parent) == path]:
@@ -95,7 +95,7 @@ class Disk:
             place = folder / Path(name).relative_to(self.root)
             if not place.parent.is_dir():
                 continue
-            if names[name] in self.bytes:
+            if names[name] in self.written:
                 place.write_bytes(self.synced_bytes.get(names[name], b""))
             else:
                 place.mkdir()

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator
 from hashlib import sha256
+from typing import Any
 
 from sqlalchemy import Connection, func, select
 
@@ -14,7 +15,7 @@ from tests.service.storage.whole import files
 
 SENSORS = 4
 """Of the sessions that are looked at: the fewest that say enough, so that much is uploaded."""
-WHOLE = {CalibrationRow: 1, ParameterRow: 4 * SENSORS, DecisionRow: 4 * SENSORS}
+WHOLE: dict[Any, int] = {CalibrationRow: 1, ParameterRow: 4 * SENSORS, DecisionRow: 4 * SENSORS}
 """Rows that such a session of `session_bytes` has: one calibration, and four parameters a sensor."""
 
 

@@ -5,12 +5,12 @@ from collections.abc import Callable
 from datetime import datetime
 from uuid import uuid4
 
-from service.kit.arriving_files import SentFile
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.reception import Reception
+from service.sessions.sent import SentFile
 from service.storage import Storage
 from service.uploads.receive import upload
 from service.uploads.take_in import ask_upload, take_in

@@ -20,7 +20,6 @@ from service.app import create_app
 from service.errors import ConflictError, DamagedError, ServiceError
 from service.jobs.records import JobState
 from service.jobs.store import Jobs
-from service.kit.arriving_files import SentFile
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY, Role
 from service.opening import open_database
@@ -28,6 +27,7 @@ from service.people.changes import make_link, sign_in
 from service.records.keep import keep_noise
 from service.records.reception import Reception
 from service.sessions.calibrations_store import Noises
+from service.sessions.sent import SentFile
 from service.settings import Settings
 from service.storage import Files, Storage
 from service.storage.backup import restore, verified, write_backup
@@ -327,7 +327,7 @@ def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
         new = Settings(database_url=other.empty(), data_folder=tmp_path / str(revoke), sign_in="required")
         doors = restore(
             _backup(settings, tmp_path, str(revoke)), new.database, new.files, NOW, revoke_tokens=revoke
-        ).doors
+        ).access
         assert (doors.browsers, doors.tokens, doors.revoked) == (2, 4, revoke)
         with http_client(create_app(new, clock=lambda: NOW)) as client:
             units = "/api/v1/units"

@@ -73,7 +73,7 @@ def answered(client: httpx.Client, change: Change) -> int:
     statuses = list[int]()
 
     def is_answered() -> bool:
-        statuses.append(client.request(method, path, **what).status_code)  # type: ignore[arg-type]
+        statuses.append(client.request(method, path, **what).status_code)
         return statuses[-1] != httpx.codes.SERVICE_UNAVAILABLE
 
     until(is_answered)

@@ -11,7 +11,7 @@ import pytest
 from service.errors import AwayError, DamagedError, NoSpaceError, NotFoundError
 from service.storage.faults import disk_faults
 from service.storage.files import Files
-from service.storage.folders import YOUNG
+from service.storage.folders import LOCK_DELAY
 
 
 def half_written(files: Files, *, age: float) -> Path:
@@ -76,7 +76,7 @@ def test_putting_back_a_whole_file_is_not_told(tmp_path: Path) -> None:
 
 def test_what_dead_processes_left_is_swept(tmp_path: Path) -> None:
     files = Files(tmp_path)
-    part = half_written(files, age=2 * YOUNG)
+    part = half_written(files, age=2 * LOCK_DELAY)
     assert (files.sweep(), part.exists(), files.read(sha256(b"x").hexdigest())) == (1, False, b"x")
 
 
@@ -84,7 +84,7 @@ def test_what_is_being_written_is_not_swept(tmp_path: Path) -> None:
     files = Files(tmp_path)
     half_written(files, age=0)
     assert files.sweep() == 0
-    with half_written(files, age=2 * YOUNG).open("rb") as writer:
+    with half_written(files, age=2 * LOCK_DELAY).open("rb") as writer:
         fcntl.flock(writer, fcntl.LOCK_EX)
         assert files.sweep() == 0
 

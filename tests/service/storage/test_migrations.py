@@ -104,7 +104,7 @@ def test_what_waits_is_carried_over_with_why_it_failed(store_url: str, storage: 
     id = upload(storage, session_bytes(), "a.json", now, is_dated_later=True).id
     with storage.database.writing() as store:
         WorkQueue(store, WorkKind.OUTLOOK).give_up("BA-017", "no numbers")
-        WorkQueue(store, WorkKind.DERIVATION).keep_failed("BA-017", "no reference", now)
+        WorkQueue(store, WorkKind.DERIVATION).add_failed("BA-017", "no reference", now)
         WorkQueue(store, WorkKind.DIAGNOSIS).put_off(id, now)
     with storage.database.reading() as store:
         places = WorkQueue(store, WorkKind.GROUP).waiting(now, 10)
@@ -152,7 +152,7 @@ def test_jobs_messages_and_recomputations_wait_across_a_change_of_the_schema(sto
         Recomputations(store).ask(revision, Scope.UNIT, "BA-017", now)
         for _ in range(2):
             Jobs(store).add(NewJob(JobKind.RECALIBRATION, "K. Ito"), 1, now)
-        WorkQueue(store, WorkKind.JOB).hold_up("1", "no file")
+        WorkQueue(store, WorkKind.JOB).record_failure("1", "no file")
         WorkQueue(store, WorkKind.JOB).put_off("1", now + timedelta(minutes=10))
         Jobs(store).cancel(2, "K. Ito", now)
     before = _work(storage, now)

@@ -12,7 +12,7 @@ from service.storage.columns import PARTS, Sentence, is_made_of
 from service.storage.json_text import STORED
 
 KEPT = Table("kept", MetaData(), Column("id", Integer, primary_key=True), Column("said", Sentence))
-GONE = "The units measured on {stand} no longer show that it has shifted."
+GONE = "The units measured on {stand} no longer show a shift."
 
 
 @pytest.fixture

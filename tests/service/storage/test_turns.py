@@ -6,10 +6,10 @@ from time import sleep
 import pytest
 
 from service.errors import AwayError
-from service.storage.waits import Turns
+from service.storage.waits import FairLock
 
 
-def waiting(turns: Turns, name: int, seen: list[int]) -> Thread:
+def waiting(turns: FairLock, name: int, seen: list[int]) -> Thread:
     """One that waits in line when this returns."""
     before = len(turns)
 
@@ -25,7 +25,7 @@ def waiting(turns: Turns, name: int, seen: list[int]) -> Thread:
 
 
 def test_nobody_overtakes() -> None:
-    turns, seen = Turns(60.0), list[int]()
+    turns, seen = FairLock(60.0), list[int]()
     with turns.taken():
         threads = [waiting(turns, name, seen) for name in range(8)]
     for thread in threads:
@@ -34,7 +34,7 @@ def test_nobody_overtakes() -> None:
 
 
 def test_who_waits_too_long_gives_up_and_the_next_comes_all_the_same() -> None:
-    turns = Turns(0.05)
+    turns = FairLock(0.05)
     with turns.taken(), pytest.raises(AwayError), turns.taken():
         pass
     with turns.taken():
@@ -42,7 +42,7 @@ def test_who_waits_too_long_gives_up_and_the_next_comes_all_the_same() -> None:
 
 
 def test_who_waits_in_a_long_line_that_moves_is_not_refused() -> None:
-    turns, seen = Turns(1.5), list[int]()
+    turns, seen = FairLock(1.5), list[int]()
     ends = [Event() for _ in range(8)]
 
     def take(name: int) -> None:
@@ -62,7 +62,7 @@ def test_who_waits_in_a_long_line_that_moves_is_not_refused() -> None:
 
 
 def test_a_turn_that_ends_in_an_error_is_over() -> None:
-    turns = Turns(0.05)
+    turns = FairLock(0.05)
     with pytest.raises(ZeroDivisionError), turns.taken():
         raise ZeroDivisionError
     with turns.taken():

@@ -15,7 +15,7 @@ BIAS = {"parameter": "bias", "sensor": "A3"}
 
 def upload(client: httpx.Client, **session: object) -> dict[str, object]:
     """Uploads a session and returns the answer."""
-    answer: dict[str, object] = client.post("/api/v1/sessions", content=session_bytes(**session)).json()  # type: ignore[arg-type]
+    answer: dict[str, object] = client.post("/api/v1/sessions", content=session_bytes(**session)).json()
     return answer
 
 

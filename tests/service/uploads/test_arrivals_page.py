@@ -5,7 +5,7 @@ import re
 import httpx
 import pytest
 
-from service.uploads.arrivals_pages import ArrivalsAsked, arrivals_query
+from service.uploads.arrivals_pages import ArrivalsQuery, arrivals_query
 from tests.service.made_sessions import session_bytes, session_id
 
 
@@ -31,5 +31,5 @@ def test_an_upload_is_found_again(client: httpx.Client) -> None:
     [("", None, None), ("r12", None, 12), ("5e55", "5e55", None), ("r", "r", None), ("r\u0661", "r\u0661", None)],
 )
 def test_a_page_goes_on_after_a_session_or_a_refusal(after: str, session: str | None, refusal: int | None) -> None:
-    query = arrivals_query(ArrivalsAsked(after=after))
+    query = arrivals_query(ArrivalsQuery(after=after))
     assert (query.after_session, query.after_refusal) == (session, refusal)

@@ -29,7 +29,7 @@ def test_a_check_leaves_the_due_date_where_it_was(client: httpx.Client) -> None:
     receipt = client.post(SESSIONS, content=CHECK, params={"check": True}).json()
     assert (receipt["is_check"], receipt["verdict"]) == (True, "pass")
     assert outlook(client) == before
-    assert "moves no due date" in client.get(f"/sessions/{receipt['id']}").text
+    assert "does not change the due date" in client.get(f"/sessions/{receipt['id']}").text
 
 
 def test_a_check_that_finds_the_unit_unfit_says_so(client: httpx.Client) -> None:

@@ -65,7 +65,7 @@ def test_a_channel_at_one_huge_value_did_not_answer_to_the_turns(
     case = Case(programme, ("table", "A3"), number, whole=True)
     field, _, message = problem_of(client.post("/api/v1/sessions", content=case.content("EX-1")))
     assert field == "sensors"
-    assert "A3 did not answer to the turns" in message
+    assert "A3 did not respond to the rotation" in message
 
 
 @pytest.mark.parametrize(("programme", "name"), [("two-axis-stand", "A1"), ("pulse gyroscopes", "G1")])
@@ -77,9 +77,11 @@ def test_a_channel_that_reads_the_same_at_every_position_is_questioned(
     case = Case(programme, ("table", name), "1e6", whole=True)
     stored = client.post("/api/v1/sessions", content=case.content("EX-1")).json()
     assert (stored["state"], stored["is_reference"]) == ("questioned", False)
-    assert f"{name} reads the same in every row, although its input changes: it is dead" in stored["reason"]
+    assert (
+        f"{name} has the same reading in every row, although its input changes: the sensor is dead" in stored["reason"]
+    )
     told = client.get(f"/api/v1/sessions/{stored['id']}/diagnosis").json()["detail"]
-    assert f"{name}: reads the same in every row, so that nothing can be estimated of it" in told
+    assert f"{name}: has the same reading in every row, so nothing can be estimated from it" in told
     assert client.get("/api/v1/jobs/failed").json()["failed"] == []
 
 

@@ -10,7 +10,7 @@ from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.made_sessions import session_id
 
-SAID = "Too few positions to give an uncertainty: add 5"
+SAID = "Too few positions for an uncertainty: add 5"
 HTML = {"Accept": "text/html"}
 
 

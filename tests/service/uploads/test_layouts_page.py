@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from service.storage import Storage
-from service.storage.aside import FOLDER, KEPT, MOST, aside, drop_stale, set_aside
+from service.storage.aside import FOLDER, MOST, RETENTION, aside, drop_stale, set_aside
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service import tables
 
@@ -79,7 +79,7 @@ def test_what_was_shown_is_stored(client: httpx.Client) -> None:
 def test_what_was_changed_since_is_shown_first(client: httpx.Client) -> None:
     answer = sent(client, looked_at(client), **{"fact.stand.alpha_deg": "41", "do": "store"})
     assert answer.status_code == 200
-    assert "Something was changed" in answer.text
+    assert "The settings have changed" in answer.text
     assert client.get("/api/v1/sessions").json()["sessions"] == []
 
 
@@ -155,11 +155,11 @@ def test_what_is_set_aside_is_its_owners_alone(client: httpx.Client, storage: St
 
 def test_it_is_kept_for_half_a_day_after_it_was_looked_at(storage: Storage) -> None:
     digest = set_aside(storage.files, "", TABLE, NOW)
-    later = NOW + KEPT - timedelta(minutes=1)
+    later = NOW + RETENTION - timedelta(minutes=1)
     assert aside(storage.files, "", digest, later) == TABLE
-    drop_stale(storage.files, later + KEPT - timedelta(minutes=1))
-    assert aside(storage.files, "", digest, later + KEPT) is None
-    drop_stale(storage.files, later + KEPT)
+    drop_stale(storage.files, later + RETENTION - timedelta(minutes=1))
+    assert aside(storage.files, "", digest, later + RETENTION) is None
+    drop_stale(storage.files, later + RETENTION)
     assert list((storage.files.folder / FOLDER).glob("*")) == []
 
 

@@ -14,21 +14,22 @@ from service.jobs.changes import cancel_job
 from service.jobs.records import Job, JobState
 from service.jobs.store import Jobs
 from service.kit import limits
-from service.kit.arriving_files import Replaced, SentFile
 from service.kit.bell import Bell
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.reception import Reception
+from service.sessions.records import SessionQuery
+from service.sessions.sent import Replaced, SentFile
 from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Files, Storage
-from service.storage.waiting import FOLDER, UNASKED
+from service.storage.waiting import FOLDER, JOB_DELAY
 from service.uploads import take_in as flow
 from service.uploads.take_in import ask_upload, sweep_waiting, take_in
-from service.work.kinds import MOST_TRIES_OF_A_FILE, UPLOADS
-from service.work.loop import Worker, taking_in, work_next
+from service.work.kinds import MOST_ATTEMPTS_OF_FILE, UPLOADS
+from service.work.loop import Worker, upload_maker, work_next
 from tests import builders
 from tests.databases import one_engine
 from tests.estimator.test_reading_csv import csv_of
@@ -62,7 +63,7 @@ def read(storage: Storage, id: int) -> Job:
 
 def sessions(storage: Storage) -> list[str]:
     with storage.database.reading() as store:
-        return [one.id for one in Sessions(store).page(None, 0, 10)]
+        return [one.id for one in Sessions(store).wanted(SessionQuery(limit=10))]
 
 
 def waiting(storage: Storage) -> list[Path]:
@@ -72,7 +73,7 @@ def waiting(storage: Storage) -> list[Path]:
 def uploads(storage: Storage, settings: Settings) -> Callable[[], bool]:
     """What works on the next of them; whether there was one."""
     own = Worker(settings, storage, lambda: NOW, Metrics(), Bell())
-    return lambda: work_next(own, taking_in(own), Event(), UPLOADS)
+    return lambda: work_next(own, upload_maker(own), Event(), UPLOADS)
 
 
 @pytest.fixture
@@ -108,7 +109,7 @@ def test_the_same_sent_twice_is_one_job(storage: Storage) -> None:
 
 STEPS = {
     "before its bytes are kept": (Files, "keep"),
-    "after its bytes are kept": (flow._Following, "stored"),
+    "after its bytes are kept": (flow._JobHooks, "stored"),
     "after it is stored": (flow, "drop_waiting"),
 }
 
@@ -184,7 +185,7 @@ def test_one_at_which_the_program_fails_is_given_up(
     job, work = asked(storage), uploads(storage, settings)
     with monkeypatch.context() as patch:
         patch.setattr(Files, "keep", fails)
-        assert [work() for _ in range(MOST_TRIES_OF_A_FILE + 2)] == [True] * (MOST_TRIES_OF_A_FILE + 1) + [False]
+        assert [work() for _ in range(MOST_ATTEMPTS_OF_FILE + 2)] == [True] * (MOST_ATTEMPTS_OF_FILE + 1) + [False]
     assert (read(storage, job.id).state, waiting(storage)) == (JobState.FAILED, [])
 
 
@@ -202,7 +203,7 @@ def test_what_no_job_waits_for_is_swept_after_an_hour(storage: Storage) -> None:
     asked(storage)
     lost = storage.files.folder / FOLDER / "lost"
     lost.write_bytes(b"1")
-    later = datetime.now(UTC) + UNASKED
+    later = datetime.now(UTC) + JOB_DELAY
     for now in (later - timedelta(minutes=1), later + timedelta(minutes=1)):
         sweep_waiting(storage, now)
         assert lost.exists() == (now < later)

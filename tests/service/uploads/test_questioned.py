@@ -73,10 +73,10 @@ def noisy(document: dict[str, Any]) -> None:
 SWAPPED = accelerometer_block(6, seed=3, unit="BA-017", sensors=true_sensors(6, bias=1e-3, tilt=1e-4), positions=24)
 """With both runs under one another's name."""
 SLIPS: dict[str, tuple[Slip, str]] = {
-    "mV for V": (times(1000.0), "such as mV for V"),
+    "mV for V": (times(1000.0), "such as mV instead of V"),
     "one channel in mV": (times(1000.0, A1), "The scale factor of A1 is 1"),
-    "per g": (per_g, "g and m/s² were taken for one another"),
-    "degrees": (times(57.2958), "degrees stand for radians"),
+    "per g": (per_g, "g and m/s² were confused"),
+    "degrees": (times(57.2958), "degrees were given instead of radians"),
     "sign": (times(-1.0, A1), "its sign is reversed"),
     "exchange": (exchanged, "their channels are exchanged"),
     "noise": (noisy, "times less than their standard errors: another unit is stated"),
@@ -146,7 +146,7 @@ def test_a_date_before_the_unit_existed_is_questioned(storage: Storage, date: st
     """2006: a GPS receiver whose weeks began anew."""
     upload(storage, session_bytes(), "a.json", NOW)
     receipt = upload(storage, session_bytes(seed=2, started_at=date), "b.json", NOW)
-    assert (receipt.state, "the clock had lost its time" in receipt.reason) == (RecordState.QUESTIONED, True)
+    assert (receipt.state, "the clock was wrong" in receipt.reason) == (RecordState.QUESTIONED, True)
 
 
 def test_a_unit_that_is_merely_out_of_tolerance_is_judged(storage: Storage) -> None:

@@ -14,13 +14,13 @@ from sqlalchemy import Connection, event, func, select, text
 from estimator.errors import Problem
 from service.diagnosis.store import Diagnoses
 from service.errors import AwayError, NoSpaceError, RefusedError
-from service.kit.arriving_files import SentFile
 from service.kit.metrics import Metrics
 from service.opening import open_database
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.reception import Reception
 from service.sessions.records import Receipt
+from service.sessions.sent import SentFile
 from service.sessions.store import Sessions
 from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 from service.settings import Settings
@@ -145,7 +145,7 @@ def test_a_reference_that_leaves_something_open_says_what_to_add(storage: Storag
     document = arbitrary_orientations(orientations=7)
     receipt = upload(storage, json.dumps(document).encode(), "seven.json", NOW)
     assert receipt.is_reference
-    assert "It does not show scale, bias, axis of every accelerometer: add 2 still orientations" in receipt.reason
+    assert "It does not observe scale, bias, axis of every accelerometer: add 2 still orientations" in receipt.reason
 
 
 def test_a_reference_that_shows_everything_says_no_more(storage: Storage) -> None:

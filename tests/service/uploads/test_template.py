@@ -22,7 +22,7 @@ def sheet(content: bytes, name: str) -> list[tuple[str, ...]]:
 def test_a_template_has_the_sensors_stand_and_schedule_of_its_type(flagged: httpx.Client) -> None:
     name = flagged.get("/api/v1/unit-types").json()["unit_types"][0]["name"]
     content = flagged.get(TEMPLATE, params={"unit_type": name}).content
-    keys = dict(row[:2] for row in sheet(content, "session"))
+    keys = {row[0]: row[1] for row in sheet(content, "session")}
     readings = sheet(content, "readings")
     assert (keys["sensors[1].name"], keys["stand.id"], keys["unit"]) == ("A1", "ODG-1", "")
     assert readings[0][:2] == ("run", "beta_deg")
@@ -86,7 +86,7 @@ def test_a_type_that_is_not_there_has_no_template(client: httpx.Client) -> None:
 def test_a_template_made_after_a_simulated_session_is_for_a_measured_one(client: httpx.Client) -> None:
     client.post("/api/v1/sessions", content=session_bytes(origin="simulated")).raise_for_status()
     rows = sheet(client.get(TEMPLATE, params={"unit": "BA-017"}).content, "session")
-    assert "origin" not in dict(row[:2] for row in rows)
+    assert "origin" not in {row[0] for row in rows}
 
 
 @SQLITE

@@ -8,8 +8,8 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.kit.arriving_files import SentFile
 from service.kit.person import EVERYBODY
+from service.sessions.sent import SentFile
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.schema import upgrade
@@ -98,7 +98,7 @@ def test_the_page_shows_card_job_and_problems(client: httpx.Client) -> None:
 def test_what_still_waits_is_found_among_the_uploads(client: httpx.Client, waiting: None) -> None:
     assert 'href="/jobs/1"' in client.get("/uploads").text
     card = client.get("/jobs/1/outcome").text
-    assert ("<progress" in card, "is safe here" in card) == (True, True)
+    assert ("<progress" in card, "is received and being read" in card) == (True, True)
     told = client.get("/api/v1/uploads/j1").json()
     assert (told["stored"], told["job"], told["filename"]) == (False, "/api/v1/jobs/1", "a.json")
     cancelled = client.post("/jobs/1/cancel", data={"by": "K. Ito"}, follow_redirects=True).text

@@ -86,9 +86,9 @@ def test_a_service_that_others_reach_takes_addresses_but_no_names(at: At) -> Non
 
 def test_a_service_that_knows_its_name_takes_its_own_address_but_no_other() -> None:
     hosts = hosts_of(Settings(host="0.0.0.0", public_url="https://imu.example.org"))
-    assert hosts.allow("10.0.0.5:8000", own="10.0.0.5")
-    assert hosts.allow("10.0.0.5:8000", own="::ffff:10.0.0.5")
-    assert not hosts.allow("10.0.0.6:8000", own="10.0.0.5")
+    assert hosts.allow("10.0.0.5:8000", local_address="10.0.0.5")
+    assert hosts.allow("10.0.0.5:8000", local_address="::ffff:10.0.0.5")
+    assert not hosts.allow("10.0.0.6:8000", local_address="10.0.0.5")
 
 
 @pytest.mark.parametrize("url", ["https://[", "https://:80", "https:///x"])

@@ -21,9 +21,9 @@ from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
-from service.work.helper import DIED, Helper, Still
+from service.work.helper import DIED, Helper, KeepGoing
 from service.work.kinds import DIAGNOSES, LEASE, MOST_ATTEMPTS, PUT_OFF, Kind
-from service.work.loop import EXTEND, Worker, work_next
+from service.work.loop import LEASE_EXTENSION, Worker, work_next
 from service.work.readers import Reader
 from service.work.watch import ask_for_missing
 from tests.databases import one_engine
@@ -226,10 +226,10 @@ def test_two_services_on_one_database_make_each_diagnosis_once(settings: Setting
 def test_whoever_is_long_at_it_says_so(own: Worker, monkeypatch: pytest.MonkeyPatch) -> None:
     id = stored(own.storage)
 
-    def slow(kind: Kind, id: str, now: datetime, still: Still) -> None:
-        own.clock.now = NOW + 2 * EXTEND  # type: ignore[attr-defined]
+    def slow(kind: Kind, id: str, now: datetime, still: KeepGoing) -> None:
+        own.clock.now = NOW + 2 * LEASE_EXTENSION  # type: ignore[attr-defined]
         assert still()
         assert waiting(own.storage, NOW + LEASE) == ()
 
     assert work_next(own, slow, Event(), DIAGNOSES)
-    assert waiting(own.storage, NOW + 2 * EXTEND + LEASE) == (id,)
+    assert waiting(own.storage, NOW + 2 * LEASE_EXTENSION + LEASE) == (id,)

@@ -8,9 +8,9 @@ import httpx
 import pytest
 from sqlalchemy import text
 
+from service.judging.usable_words import DATES_PENDING
 from service.kit.failure import AT_FAULT
 from service.opening import open_database
-from service.pages.unit.usable_words import DATES_PENDING
 from service.settings import Settings
 from tests.databases import one_engine
 from tests.service.made_sessions import session_bytes, session_id
@@ -73,7 +73,7 @@ def test_a_forecast_that_fails_is_told_everywhere(settings: Settings, workers: i
     assert "The administrator must act" in outlook["failed"]
     assert outlook["failed"] in usable["reservations"]
     assert AT_FAULT in page
-    assert "being worked out" not in page
+    assert "being computed" not in page
     assert "Нужен администратор" in in_russian
     assert (ready.status_code, ready.json()["status"]) == (200, "ready")
     assert ready.json()["failed"] == {"outlook": 1}
@@ -86,7 +86,7 @@ def test_a_forecast_that_fails_is_told_everywhere(settings: Settings, workers: i
 @one_engine
 def test_work_that_takes_too_long_is_ended_and_says_so(settings: Settings) -> None:
     """Whatever it is at: nothing keeps a process beside the requests for ever."""
-    id, late = session_id(FIRST), "it was not done within 0.001 s, the longest that it may take"
+    id, late = session_id(FIRST), "it was not finished within the limit of 0.001 s"
     with served(settings, 1, work=0.001) as client:
         assert send(client, FIRST) == 201
         diagnosis = client.get(f"/api/v1/sessions/{id}/diagnosis").json()
@@ -95,7 +95,7 @@ def test_work_that_takes_too_long_is_ended_and_says_so(settings: Settings) -> No
         figures = client.get("/metrics").text
     assert diagnosis["detail"].endswith(f"The last try: {late}.")
     assert late in outlook["failed"]
-    assert "не сделано за 0.001 с" in in_russian
+    assert "не закончено за предельное время 0,001 с" in in_russian
     assert 'fault="TookTooLong",work="pending diagnoses"} 3.0' in figures
     with served(settings, 1) as client:
         assert client.post("/api/v1/jobs/failed/retry").json()["retried"] > 0

@@ -12,7 +12,7 @@ from service.queue.store import WorkQueue
 from service.settings import Settings
 from service.uploads.receive import upload
 from service.web.render import LATEST, SOONEST, follow_seconds
-from service.work.loop import LEASE
+from service.work.kinds import LEASE
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.made_sessions import session_bytes, session_id

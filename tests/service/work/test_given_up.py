@@ -13,14 +13,14 @@ from service.groups.store import Groups
 from service.groups.words import FAILED
 from service.jobs.changes import retry_failed
 from service.jobs.store import Failures
+from service.judging.usable_reading import usable_unit as usable
 from service.kit.bell import Bell
-from service.kit.failure import unit_failed, with_last_try
-from service.kit.guard import AT_FAULT, Failure
+from service.kit.failure import AT_FAULT, unit_failed, with_last_try
+from service.kit.guard import Failure
 from service.kit.metrics import Metrics
 from service.models.records import Evidence, ModelRevision, Progress, Scope
 from service.models.store import Models, Recomputations
 from service.models.words import GIVEN_UP, left_in_words
-from service.pages.unit.usable import usable
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.refresh_group import current
@@ -28,7 +28,7 @@ from service.sessions.store import Sessions
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
-from service.work.helper import Helper, Still
+from service.work.helper import Helper, KeepGoing
 from service.work.kinds import GROUPS, MODELS, MOST_ATTEMPTS, OUTLOOKS, Kind
 from service.work.loop import Worker, work_next
 from tests.databases import one_engine
@@ -55,7 +55,7 @@ def two(storage: Storage) -> Storage:
     return storage
 
 
-def killed(helper: Helper, now: datetime, still: Still) -> Failure | None:
+def killed(helper: Helper, now: datetime, still: KeepGoing) -> Failure | None:
     """The process dies at its work, as when the machine has no memory left."""
     helper.start()
     process = helper._process
@@ -83,7 +83,7 @@ def test_an_outlook_is_given_up_until_its_unit_s_history_changes(
 ) -> None:
     assert tries(diagnosing(settings, two), helper, OUTLOOKS) == MOST_ATTEMPTS + 1
     with two.database.reading() as store:
-        assert not WorkQueue(store, WorkKind.OUTLOOK).is_coming(UNIT)
+        assert not WorkQueue(store, WorkKind.OUTLOOK).is_pending(UNIT)
         assert unit_failed("The process died at the outlook of BA-017.") in usable(store, UNIT, NOW).reservations
     upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
     with two.database.reading() as store:
@@ -145,13 +145,13 @@ def test_a_session_at_fault_is_not_blamed_on_its_group(storage: Storage, two: St
         group = Groups(store).find(Level.UNIT, UNIT)
         for _ in range(2):
             WorkQueue(store, WorkKind.GROUP).claim(group.place, NOW, NOW)
-        WorkQueue(store, WorkKind.GROUP).forgive(group.place)
+        WorkQueue(store, WorkKind.GROUP).reset_attempts(group.place)
         assert WorkQueue(store, WorkKind.GROUP).claim(group.place, NOW, NOW) == 1
 
 
 @one_engine
 def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings, two: Storage) -> None:
-    def fails(kind: Kind, one: str, now: datetime, still: Still) -> Failure | None:
+    def fails(kind: Kind, one: str, now: datetime, still: KeepGoing) -> Failure | None:
         return Failure("ValueError", "no")
 
     own = diagnosing(settings, two)
@@ -161,7 +161,7 @@ def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings
 
 @one_engine
 def test_what_the_program_fails_at_is_given_up_too(settings: Settings, two: Storage) -> None:
-    def fails(kind: Kind, one: str, now: datetime, still: Still) -> Failure | None:
+    def fails(kind: Kind, one: str, now: datetime, still: KeepGoing) -> Failure | None:
         return Failure("KeyError", AT_FAULT, is_foreseen=False)
 
     begun = 0

@@ -6,7 +6,8 @@ import zlib
 import pytest
 
 from service.errors import NotFoundError
-from service.kit.guard import AT_FAULT, Failure, Guard, ending_here, unforeseen
+from service.kit.failure import AT_FAULT
+from service.kit.guard import Failure, Guard, ending_here, unforeseen
 from service.kit.metrics import Metrics
 from tests.service.kit.test_log import lines
 
@@ -29,7 +30,7 @@ def test_what_is_foreseen_is_told_in_its_own_words_and_passes() -> None:
 
 def test_a_fault_is_never_told_in_python_s_words() -> None:
     with ending_here("group", "ODG-1") as met:
-        {}["document"]
+        dict[str, str]()["document"]
     assert met.failure == Failure("KeyError", AT_FAULT, is_foreseen=False)
 
 

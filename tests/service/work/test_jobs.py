@@ -7,11 +7,12 @@ from threading import Event
 import pytest
 
 from service.errors import ConflictError
-from service.jobs.changes import ask_job, cancel_job, drop_outlived, file_of, tell_job
-from service.jobs.records import KEPT, Job, JobKind, JobState, NewJob, Piece
+from service.jobs.changes import add_model_job, ask_job, cancel_job, drop_expired, file_of
+from service.jobs.records import KEPT, Job, JobKind, JobState, NewJob, RecalibrationPiece
 from service.jobs.store import Jobs
 from service.kit.bell import Bell
-from service.kit.guard import AT_FAULT, Failure
+from service.kit.failure import AT_FAULT
+from service.kit.guard import Failure
 from service.kit.metrics import Metrics
 from service.kit.person import EVERYBODY
 from service.models.records import ModelRevision, Progress, Task
@@ -22,7 +23,7 @@ from service.records.recalibrate import recompute
 from service.settings import Settings
 from service.storage import Storage
 from service.uploads.receive import upload
-from service.work.helper import Helper, Still
+from service.work.helper import Helper, KeepGoing
 from service.work.kinds import JOBS, LEASE, MOST_ATTEMPTS, Kind, work_piece
 from service.work.loop import Worker, work_next
 from tests.databases import one_engine
@@ -55,7 +56,7 @@ def change_model(storage: Storage) -> tuple[ModelRevision, Job]:
     """A revision of the unit's model, with the job that it brings."""
     with storage.database.writing() as store:
         changed = Models(store).add(accepted())
-        tell_job(store, changed, Recomputations(store).ask(changed.id, changed.scope, changed.subject, NOW), NOW)
+        add_model_job(store, changed, Recomputations(store).ask(changed.id, changed.scope, changed.subject, NOW), NOW)
         return changed, Jobs(store).page(1)[0]
 
 
@@ -111,7 +112,7 @@ def test_a_piece_that_two_were_at_is_counted_once(three: Storage) -> None:
     with three.database.writing() as store:
         unit = Jobs(store).next_unit(before)
         assert unit is not None
-        Jobs(store).advance(before, unit[0], Piece(), NOW)
+        Jobs(store).advance(before, unit[0], RecalibrationPiece(), NOW)
     assert read(three, id).done == 1
 
 
@@ -162,14 +163,14 @@ def test_a_process_of_its_own_does_it(settings: Settings, three: Storage, helper
         pass
     assert [read(three, id).state for id in (again, report)] == [JobState.DONE] * 2
     assert file_of(three.files, read(three, report)).startswith(b"PK")
-    drop_outlived(three, NOW + KEPT)
+    drop_expired(three, NOW + KEPT)
     with pytest.raises(ConflictError):
         file_of(three.files, read(three, report))
 
 
 @one_engine
 def test_a_unit_at_which_the_program_fails_is_listed_and_the_others_follow(settings: Settings, three: Storage) -> None:
-    def fails(kind: Kind, id: str, now: datetime, still: Still) -> Failure | None:
+    def fails(kind: Kind, id: str, now: datetime, still: KeepGoing) -> Failure | None:
         return Failure("KeyError", AT_FAULT, is_foreseen=False)
 
     id = ask_job(three, AGAIN, NOW).id

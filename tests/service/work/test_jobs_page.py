@@ -11,7 +11,7 @@ from service.jobs.records import Job, JobFailure, JobKind, JobState, NewJob
 from service.kit.person import EVERYBODY, LOOKING
 from service.models.records import Scope
 from service.storage import Storage
-from service.work.pages import LATEST, job_page
+from service.work.pages import MAX_REFRESH_SECONDS, job_page
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -41,7 +41,7 @@ def test_an_open_one_is_cancelled_by_a_form(client: httpx.Client, job: Job) -> N
 
 def test_a_page_follows_ever_more_slowly_until_the_end(job: Job) -> None:
     follows = [job_page(job, EVERYBODY, NOW + timedelta(seconds=s), 1).follow for s in (0, 10, 1000)]
-    assert follows == [2, 5, LATEST]
+    assert follows == [2, 5, MAX_REFRESH_SECONDS]
     ended = replace(job, state=JobState.DONE)
     assert [job_page(one, EVERYBODY, NOW, workers).follow for one, workers in ((ended, 1), (job, 0))] == [None, None]
 

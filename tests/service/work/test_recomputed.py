@@ -28,7 +28,7 @@ def test_a_form_that_computes_again_says_what_it_did(holding: Holding) -> None:
     form = {"scope": "unit", "subject": "BA-017", "by": "K. Ito"}
     page = client.post("/jobs/recalibration", data=form, headers={"Accept": "text/html"}, follow_redirects=True).text
     assert "Unit BA-017 computed again" in page
-    assert "No session needed it: all rest on the models in force already." in page
+    assert "No session needed it: all use the models in force." in page
 
 
 def test_a_session_s_page_has_both_certificates_and_its_model(flagged: httpx.Client) -> None:

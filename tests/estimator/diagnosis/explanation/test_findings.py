@@ -33,5 +33,5 @@ def test_findings_of_one_cause_become_one() -> None:
     one, other = merged([(ramp, first), (cubic, named_cause(cubic, ("A1",), 1e-5, 9.0)), (ramp, second)])
     assert (one.cause, one.sensors, one.p_value, one.strength) == ("bias-ramp", ("A1", "A2"), 1e-6, 5.0)
     assert (one.alternatives, one.new, len(one.nonlinear_each)) == (("bias-jump",), None, 2)
-    assert one.sentence == "The zero of each of A1 and A2 drifts steadily through the session."
+    assert one.sentence == "The bias of each of A1 and A2 drifts steadily during the session."
     assert other.cause == "cubic-nonlinearity"

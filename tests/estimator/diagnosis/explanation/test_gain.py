@@ -9,6 +9,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.prediction import FOLDS, predicted, predicted_without_effects
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import change, found, scene, with_readings
+from tests.estimator.causes.physics import SENSOR
 
 
 @pytest.mark.parametrize("cause", ["cubic-nonlinearity", "hysteresis", "beta-eccentricity", "stand-drift"])
@@ -52,3 +53,20 @@ def test_an_effect_of_one_position_does_not_predict_the_others() -> None:
     spoilt = with_readings(where.measured(1), change("reading-outlier", where) * where.world.truth.scale)
     gain = diagnose(spoilt).gain
     assert gain.after.log_score > gain.before.log_score
+
+
+def test_the_error_of_each_sensor_is_that_of_its_held_out_readings() -> None:
+    where = scene(ACCELEROMETER, 0)
+    baseline = baseline_of(where.measured(1))
+    rows = predicted_without_effects(baseline)
+    each = score(baseline, rows).rms_by_sensor
+    assert each is not None
+    names = [sensor.name for sensor in baseline.session.sensors]
+    assert list(each[ACCELEROMETER]) == names
+    assert np.allclose(list(each[ACCELEROMETER].values()), np.sqrt((rows.error**2).mean(axis=0)))
+    gain = found("cubic-nonlinearity").gain
+    fall = {
+        name: gain.before.rms_by_sensor[ACCELEROMETER][name] / error
+        for name, error in gain.after.rms_by_sensor[ACCELEROMETER].items()
+    }
+    assert max(fall, key=fall.__getitem__) == names[SENSOR]

@@ -8,7 +8,7 @@ from estimator.calibration.calibrate import averaged
 from estimator.causes import CATALOGUE
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.record.expected import unexplained_in_halves
-from tests.builders import Array, Document, arbitrary_orientations, raw_log, true_sensors
+from tests.builders import Array, Document, TrueSensor, arbitrary_orientations, raw_log, true_sensors
 
 SCALE = 0.12
 """V per m/s², of every sensor."""
@@ -125,3 +125,14 @@ def test_where_neither_half_fits_no_single_sensor_is_at_fault() -> None:
 @pytest.mark.parametrize("m", [6, 12])
 def test_sensors_that_fit_are_unexplained_in_no_half(m: int) -> None:
     assert not unexplained_in_halves(read_session(measured(m, 5)))
+
+
+@pytest.mark.parametrize("second", ["yxz", "xyx"])
+def test_a_board_of_triads_is_halved_whether_or_not_its_halves_span_space(second: str) -> None:
+    """Of the board of eight IMUs every second sensor lies in a plane, whose shape is singular."""
+    axes = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+    board = [TrueSensor(f"A{k + 1}", axes[letter], bias=0.05) for k, letter in enumerate(2 * ("xyz" + second))]
+    document = arbitrary_orientations(sensors=board)
+    for sensor, true in zip(document["sensors"], board, strict=True):
+        sensor["nominal_axis"] = list(true.axis)
+    assert not unexplained_in_halves(read_session(document))

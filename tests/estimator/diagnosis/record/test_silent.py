@@ -29,7 +29,7 @@ def test_a_channel_that_does_not_answer_is_dead_whatever_it_reads(
 ) -> None:
     session = constant(read_session(block(3, positions=4)), value)
     assert dead_channels(session) == (session.sensors[0].name,)
-    with pytest.raises(ScheduleError, match="reads the same in every row"):
+    with pytest.raises(ScheduleError, match="has the same reading in every row"):
         diagnose(session)
 
 

@@ -73,7 +73,7 @@ def test_a_turned_block_answers_to_a_little_more_turn_as_its_derivative_says(tur
     rise = [[n @ matrix(turn + s * k) @ TRUTH.axis.T for k in np.eye(3)] for s in (step, -step)]
     now = TRUTH.axis @ matrix(turn).T
     told = np.einsum("mk,rmkq->rmq", now, np.broadcast_to(RemountRotation().change(setting), (20, 6, 3, 3)))
-    assert told == pytest.approx(np.moveaxis(np.subtract(*rise) / (2 * step), 0, -1), abs=1e-6)
+    assert told == pytest.approx(np.moveaxis(np.subtract(rise[0], rise[1]) / (2 * step), 0, -1), abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(1, 5))

@@ -9,9 +9,9 @@ from estimator.causes import cause
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.selection.acceptance import fitting_causes
+from estimator.diagnosis.selection.backward import penalised_log_evidence
 from estimator.diagnosis.selection.common_or_own import (
     in_parity_space,
-    penalised_log_evidence,
     with_likelier_vector_course,
     with_residual_noise,
 )

@@ -12,10 +12,11 @@ from scipy.special import polygamma
 
 from benchmarks.study.other_noise import Hidden, Wish, beside_gyros, in_logs, in_orientations
 from estimator import diagnose, read_session
-from estimator.causes import cause
+from estimator.causes import CATALOGUE, cause
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.acceptance import under_free_scale
+from estimator.diagnosis.selection.acceptance import leaves_stated_noise, under_free_scale
 from estimator.diagnosis.selection.noise_claim import doubted, pure_error, without_names_in_no_noise
+from estimator.diagnosis.selection.shared_event import shared_event
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import ACCELEROMETER, CalibrationSession
@@ -166,6 +167,15 @@ def test_where_repeats_agree_with_the_stated_noise_misfit_is_no_noise() -> None:
 def test_a_course_of_the_applied_vector_is_no_wrong_claim() -> None:
     assert diagnose(measured(swaying(2e-4))).noise == ()
     assert diagnose(stated(measured(swaying(2e-4)), 0.3)).noise[0].factor == pytest.approx(1 / 0.3, rel=0.25)
+
+
+def test_what_passes_for_a_shared_course_in_far_too_small_errors_is_not_searched_beside() -> None:
+    """Scatter that is taken ten times too seriously looks alike on some sensors by chance."""
+    sound = measured(seed=3)
+    right, wrong = (begin(baseline_of(session), [], CATALOGUE) for session in (sound, stated(sound, 0.1)))
+    event = shared_event(wrong)
+    assert event
+    assert (leaves_stated_noise(right, event), leaves_stated_noise(wrong, event)) == (True, False)
 
 
 def test_readings_without_noise_leave_the_diagnosis_standing() -> None:

@@ -33,6 +33,13 @@ def moved(traces: Traces) -> np.ndarray:
     return np.linalg.norm(traces.columns[:, RESIDUALS.rows :, 0], axis=1)
 
 
+def signature(identifier: str) -> Signature:
+    """A cause of the catalogue that has one."""
+    found = cause(identifier)
+    assert isinstance(found, Signature)
+    return found
+
+
 def test_a_sensor_s_cause_is_tried_as_lasting_as_new_and_with_its_change_left_open() -> None:
     lasting, new, open_change = hypotheses("bias-temperature")
     assert (set(lasting.lasting), set(new.lasting)) == ({True}, {False})
@@ -73,7 +80,7 @@ def test_without_history_there_is_one_hypothesis_and_no_change_to_explain() -> N
 
 
 def test_what_acts_from_some_row_on_is_not_foretold_in_other_sessions() -> None:
-    jump = cause("bias-jump")
+    jump = signature("bias-jump")
     assert absorbed_before(RESIDUALS, jump, [next(jump.shapes(NOW.setting))]) is None
 
 
@@ -92,7 +99,7 @@ def test_a_lasting_effect_that_another_schedule_absorbed_otherwise_is_foretold()
     """In order around the circle a ramp passes for a tilt of the axis; in a random order it does not."""
     plain = WHERE.measured(1)
     around = np.lexsort((plain.beta, plain.flipped))
-    ramp = cause("bias-ramp")
+    ramp = signature("bias-ramp")
     added = 0.12 * 3e-6 * (plain.time - plain.time.mean())[:, None] * np.eye(6)[2]
     now = baseline_of(with_readings(reordered(plain, around), added))
     past = [baseline_of(with_readings(h, added)) for h in WHERE.earlier(1)]
@@ -107,7 +114,7 @@ def test_a_lasting_effect_that_another_schedule_absorbed_otherwise_is_foretold()
 @pytest.mark.parametrize("identifier", ["bias-temperature", "cubic-nonlinearity"])
 def test_what_the_history_absorbed_is_the_sum_over_its_sessions(identifier: str) -> None:
     """At other temperatures each; those in which the cause is the same signature are worked out together."""
-    known, settings = cause(identifier), [one.setting for one in CHANGE.earlier]
+    known, settings = signature(identifier), [one.setting for one in CHANGE.earlier]
     warmer = [replace(s, temperature=(k + 1) * s.temperature) for k, s in enumerate(settings)]
     earlier = [replace(one, setting=s) for one, s in zip(CHANGE.earlier, warmer, strict=True)]
     shapes = list(known.shapes(NOW.setting))

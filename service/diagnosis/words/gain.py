@@ -1,0 +1,88 @@
+"""What naming causes gains: one sentence with one number for every sensor."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import floor, isfinite, log10
+from statistics import median
+
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Gain
+from estimator.message import joined, say
+from service.kit.measures import THIN, decimals, deviation_measure, number
+
+NAMED = 3
+"""Sensors that are named; of the others it is said how many they are."""
+SHARES = (
+    (0.22, 0.28, "of {sensor} falls to a quarter: {before} → {after}"),
+    (0.30, 0.37, "of {sensor} falls to a third: {before} → {after}"),
+    (0.45, 0.55, "of {sensor} halves: {before} → {after}"),
+    (0.63, 0.70, "of {sensor} falls by a third: {before} → {after}"),
+    (0.72, 0.78, "of {sensor} falls by a quarter: {before} → {after}"),
+    (0.98, 1.02, "of {sensor} does not fall: {before} → {after}"),
+)
+"""From which share of the error before to which, and what is said of it."""
+FALLS = "of {sensor} falls from {before} to {after}"
+RISES = "of {sensor} rises from {before} to {after}"
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Root mean square error of one sensor's readings that took no part in the fit, m/s² (rad/s)."""
+
+    sensor: str
+    kind: str
+    before: float
+    after: float
+    typical: float
+    """Of its kind, before."""
+
+
+Errors = Mapping[str, Mapping[str, float]]
+"""Root mean square of every sensor, m/s² (rad/s), by kind and name."""
+
+
+def gain_in_words(gain: Gain, sensors: Sequence[str] = ()) -> str:
+    """``Held-out error of A2 halves: 14 → 7 µg (readings that took no part).``
+
+    Of some sensors, or of all where none is named; empty where a version that stated none made it.
+    """
+    parts = errors_in_words(gain.before.rms_by_sensor or {}, gain.after.rms_by_sensor or {}, sensors)
+    return say("Held-out error {parts} (readings that took no part).", parts=parts) if parts else ""
+
+
+def errors_in_words(before: Errors, after: Errors, sensors: Sequence[str] = ()) -> str:
+    """``of A2 halves: 14 → 7 µg; of A5 falls from 9 to 8 µg``: the worst first, the rest counted; empty without any."""
+    known = [one for one in _errors(before, after) if not sensors or one.sensor in sensors]
+    worst = sorted(known, key=lambda one: -one.before / one.typical)
+    parts = [_of_sensor(one) for one in worst[:NAMED]]
+    if len(worst) > NAMED:
+        parts.append(say("and {number} more", number=len(worst) - NAMED))
+    return joined("; ", parts) if parts else ""
+
+
+def concerned(findings: Iterable[Finding]) -> tuple[str, ...]:
+    """The sensors that some findings name; none where one of them acts on all."""
+    each = [finding.sensors for finding in findings]
+    return tuple(dict.fromkeys(sensor for sensors in each for sensor in sensors)) if all(each) else ()
+
+
+def _errors(before: Errors, after: Errors) -> Iterator[HeldOut]:
+    """Of every sensor of which both errors are known."""
+    for kind, own in before.items():
+        typical = median(own.values())
+        for sensor, error in own.items():
+            since = after.get(kind, {}).get(sensor, 0.0)
+            if error > 0 and since > 0 and isfinite(error) and isfinite(since):
+                yield HeldOut(sensor, kind, error, since, typical)
+
+
+def _of_sensor(one: HeldOut) -> str:
+    share = one.after / one.before
+    otherwise = FALLS if share < 1 else RISES
+    words = next((said for low, high, said in SHARES if low <= share <= high), otherwise)
+    measure = deviation_measure(one.kind, "bias", max(one.before, one.after))
+    before, after = one.before * measure.factor, one.after * measure.factor
+    digits = max(decimals(before) or 0, -floor(log10(after)))
+    return say(
+        words, sensor=one.sensor, before=number(before, digits), after=number(after, digits) + THIN + measure.label
+    )

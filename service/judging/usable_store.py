@@ -1,0 +1,143 @@
+"""Everything that decides what units may be used for, in one query for however many units."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ScalarSelect, Select, exists, func, or_, select
+from sqlalchemy.orm import aliased
+
+from estimator.session import CALIBRATIONS
+from service.flags.records import Matter
+from service.flags.tables import FlagRow
+from service.fleet.condition import UnitSummary
+from service.fleet.tables import ConditionRow
+from service.judging.records import OpenFlag, UseFacts
+from service.judging.reference import left_uncertain
+from service.kit.measures import COVERAGE
+from service.models.records import Scope
+from service.outlook.records import Action
+from service.outlook.tables import OutlookRow
+from service.queue.records import WorkKind
+from service.queue.tables import WorkRow
+from service.sessions.calibrations_store import calibration_of
+from service.sessions.states import RecordState
+from service.sessions.states_store import IS_BREAK
+from service.sessions.store import is_waiting
+from service.sessions.tables import CalibrationRow, SessionRow
+from service.stands.store import certificate_record
+from service.stands.tables import StandCertificateRow, StandRow
+from service.storage.columns import RESOLVED
+from service.storage.queries import Queries
+from service.types.rules import tolerances_of
+from service.types.store import unit_type_of
+from service.types.tables import ToleranceRow, UnitTypeRow
+from service.units.tables import ServiceRow, UnitRow
+
+Other = aliased(SessionRow)
+"""A session of the unit, beside its latest one."""
+MATTERS = tuple(Matter)
+Renewed = aliased(StandCertificateRow)
+"""The same certificate as it was recorded again."""
+
+
+class UseStore(Queries):
+    """What is known of units beside their summaries."""
+
+    def facts(self, units: Sequence[UnitSummary], now: datetime) -> tuple[UseFacts, ...]:
+        """Of units, in their order."""
+        query = _facts(now).where(UnitRow.serial.in_([unit.serial for unit in units]))
+        rows: dict[str, list[Sequence[Any]]] = {}
+        for row in self._session.execute(query):
+            rows.setdefault(row[0], []).append(row)
+        return tuple(_record(unit, rows[unit.serial]) for unit in units)
+
+
+def _gravity(flag: OpenFlag) -> tuple[int, int, str]:
+    """The gravest first, whichever was raised first."""
+    return MATTERS.index(flag.matter), -flag.severity, flag.place
+
+
+def _facts(now: datetime) -> Select[*tuple[Any, ...]]:
+    """A row for each open flag of a unit, or one; the calibration of a session only where it is a reference, which may
+    stand alone."""
+    in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
+    own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
+    diagnosis = (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id)
+    flags = (FlagRow.unit_id == UnitRow.id) & (FlagRow.scope == Scope.UNIT) & (FlagRow.state != RESOLVED)
+    serviced = _serviced(now)
+    return (
+        select(
+            UnitRow.serial, FlagRow, SessionRow.programme, SessionRow.started_at, StandRow.name, StandCertificateRow,
+            is_waiting(SessionRow.basis), WorkRow.failed, serviced, _correction(serviced), _questioned(),
+            OutlookRow.document["action"].as_string(), CalibrationRow.document, UnitTypeRow, ToleranceRow,
+        )
+        .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        .join(ToleranceRow, in_force)
+        .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
+        .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
+        .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+        .outerjoin(StandCertificateRow, StandCertificateRow.id == _certificate())
+        .outerjoin(FlagRow, flags)
+        .outerjoin(WorkRow, diagnosis)
+        .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
+        .outerjoin(CalibrationRow, own & SessionRow.is_reference)
+    )  # fmt: skip
+
+
+def _serviced(now: datetime) -> ScalarSelect[datetime]:
+    """When a unit was last serviced, up to now."""
+    own = (ServiceRow.unit_id == UnitRow.id, IS_BREAK, ServiceRow.at <= now)
+    return select(func.max(ServiceRow.at)).where(*own).correlate(UnitRow).scalar_subquery()
+
+
+def _correction(serviced: ScalarSelect[datetime]) -> ScalarSelect[str]:
+    """The latest calibration of every sensor since then."""
+    own = (Other.unit_id == UnitRow.id, Other.state == RecordState.ACCEPTED, Other.programme.in_(CALIBRATIONS))
+    query = select(Other.id).where(*own, or_(serviced.is_(None), Other.started_at >= serviced))
+    return query.order_by(Other.started_at.desc(), Other.id.desc()).limit(1).correlate(UnitRow).scalar_subquery()
+
+
+def _questioned() -> ScalarSelect[datetime]:
+    """When the latest session after the one that counts was measured that waits for an engineer."""
+    later = or_(SessionRow.started_at.is_(None), Other.started_at > SessionRow.started_at)
+    own = (Other.unit_id == UnitRow.id, Other.state == RecordState.QUESTIONED, later)
+    return select(func.max(Other.started_at)).where(*own).correlate(UnitRow, SessionRow).scalar_subquery()
+
+
+def _certificate() -> ScalarSelect[int]:
+    """The latest certificate of the stand that was issued by the day of measurement."""
+    row = StandCertificateRow
+    renewed = exists().where(Renewed.stand_id == row.stand_id, Renewed.number == row.number, Renewed.id > row.id)
+    own = (row.stand_id == SessionRow.stand_id, row.issued_on <= SessionRow.started_at, ~renewed)
+    query = select(row.id).where(*own).order_by(row.issued_on.desc(), row.id.desc()).limit(1)
+    return query.correlate(SessionRow).scalar_subquery()
+
+
+def _record(unit: UnitSummary, rows: Sequence[Sequence[Any]]) -> UseFacts:
+    programme, at, stand, held, waiting, failed, serviced, correction, questioned, action, document, *types = rows[0][
+        2:
+    ]
+    return UseFacts(
+        unit=unit,
+        is_calibration=programme in CALIBRATIONS,
+        serviced_at=serviced,
+        action=None if action is None else Action(action),
+        flags=tuple(sorted((_flag(row[1]) for row in rows if row[1] is not None), key=_gravity)),
+        questioned_at=questioned,
+        uncertain=() if document is None else _uncertain(document, *types),
+        expired=None if held is None or held.valid_until >= at.date() else certificate_record(stand, held),
+        not_diagnosed=failed or "",
+        is_waiting=bool(waiting),
+        correction=correction,
+    )
+
+
+def _flag(row: FlagRow) -> OpenFlag:
+    return OpenFlag(row.id, Matter(row.matter), row.severity, row.place, row.summary)
+
+
+def _uncertain(document: bytes, unit_type: UnitTypeRow, tolerances: ToleranceRow) -> tuple[str, ...]:
+    """What a reference tells too little of to be used by itself."""
+    allowed = tolerances_of(unit_type_of(unit_type, tolerances))
+    return tuple(left_uncertain(calibration_of(document), allowed, COVERAGE))

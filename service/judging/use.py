@@ -1,0 +1,29 @@
+"""May a unit be used: the four answers, each said alike wherever it stands."""
+
+from enum import StrEnum
+
+from estimator.message import say
+
+
+class Use(StrEnum):
+    """What a unit may be used for now."""
+
+    YES = "yes"
+    RESERVED = "with-reservation"
+    """It may, and something must be known or done."""
+    NO = "no"
+    PENDING = "not-known-yet"
+    """Its verdict or its dates are being worked out; until then it may not."""
+
+
+WORDS = {
+    Use.YES: "May be used",
+    Use.RESERVED: "May be used with reservation",
+    Use.NO: "Do not use",
+    Use.PENDING: "Do not use yet",
+}
+
+
+def in_words(use: Use, action: str) -> str:
+    """``Do not use: repeat the session``."""
+    return say("{word}: {action}", word=WORDS[use], action=action) if action else WORDS[use]

@@ -1,0 +1,114 @@
+"""Step: what a diagnosis gives to the stand, to the record, to temperature or to a course that sensors share is no
+change of a sensor: it is taken off before histories, dates and flags are made of the changes.
+
+What is left of a session's change is that of its calibration with the named causes in the model, whose covariance holds
+how well they are known. The part that was taken off, δ, is the named cause's with a probability p; where others are
+possible it need not be there, so that u² = u'² + (1 − p)·δ² for what is left. A sensor with a cause of its own keeps
+its whole change. Of a reference the part is taken off what all later changes are counted from.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.causes import cause
+from estimator.diagnosis import Finding
+from estimator.diagnosis.explanation.temperature import OF_TEMPERATURE
+from estimator.health import ParameterJudgement, judge
+from estimator.results import Calibration
+from estimator.session import comparable
+from service.diagnosis.records import Diagnosed
+from service.diagnosis.store import Diagnoses
+from service.diagnosis.words.causes import UNKNOWN_CAUSE
+from service.kit.lock_order import outside_writing
+from service.outlook.rules.histories import Left, Place
+from service.outlook.store import ChangeRow, ReferenceRow
+from service.sessions.calibrations_store import Calibrations
+from service.storage.queries import Store
+from service.types.rules import tolerances_of
+from service.types.store import UnitTypes
+
+SHARED_SCOPES = ("stand", "fixture", "record")
+"""Of causes that act on no sensor."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Explained:
+    """One session whose diagnosis explains a part of its changes."""
+
+    session: str
+    found: Diagnosed
+    own: Calibration
+    """In force."""
+    reference: Calibration
+    """That its changes are counted from."""
+
+
+def left_of(
+    store: Store, serial: str, changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]
+) -> dict[Place, Left]:
+    """What is left of a unit's changes, where a diagnosis explains a part of them."""
+    rows: tuple[ChangeRow | ReferenceRow, ...] = (*references, *changes)
+    sessions = {one.session: (one.block, comparable(one.programme)) for one in rows}
+    found = {id: one for id, one in Diagnoses(store).with_findings(sessions).items() if explains(one)}
+    if not found:
+        return {}
+    first = {(one.block, comparable(one.programme)): one.session for one in reversed(references)}
+    against = {id: first[sessions[id]] for id in found if sessions[id] in first}
+    known = Calibrations(store).in_force({*against, *against.values()})
+    tolerances = tolerances_of(UnitTypes(store).of_unit(serial))
+    each = (_Explained(id, found[id], known[id], known[reference]) for id, reference in against.items())
+    return {place: left for one in each for place, left in _left(one, tolerances).items()}
+
+
+@outside_writing
+def _left(one: _Explained, tolerances: Mapping[tuple[str, str], float]) -> dict[Place, Left]:
+    whole = {(own.sensor, own.parameter): own for own in judge(one.own, one.reference, tolerances)}
+    rest = {(own.sensor, own.parameter): own for own in judge(one.found.calibration, one.reference, tolerances)}
+    doubt, apart = _doubt(one.found.findings), _with_causes_of_their_own(one.found.findings)
+    pairs = {key: (whole[key], rest[key]) for key in whole.keys() & rest.keys() if key[0] not in apart}
+    found = {(one.session, *key): _beside(*pair, doubt) for key, pair in pairs.items()}
+    return {place: left for place, left in found.items() if left is not None}
+
+
+def _beside(whole: ParameterJudgement, rest: ParameterJudgement, doubt: float) -> Left | None:
+    """What is left of one change; None where either is not known."""
+    if whole.change is None or rest.change is None or rest.change_own is None:
+        return None
+    part = np.subtract(whole.change, rest.change)
+    own = np.sqrt(np.square(rest.change_own) + doubt * part**2)
+    return Left(change=list(rest.change), own=own.tolist(), dof=rest.dof, part=part.tolist())
+
+
+def explains(found: Diagnosed) -> bool:
+    """Whether any of what was named is no sensor's own, and every sensor that has a cause of its own is known."""
+    own = [finding for finding in found.findings if not _is_shared(finding)]
+    return len(own) < len(found.findings) and all(finding.sensors for finding in own)
+
+
+def _is_shared(finding: Finding) -> bool:
+    """Whether it is no sensor's own, whichever of the possible causes it is."""
+    possible = (finding.cause, *finding.alternatives)
+    if UNKNOWN_CAUSE in possible:
+        return False
+    each = (name in OF_TEMPERATURE or cause(name).scope in SHARED_SCOPES for name in possible)
+    return finding.shared is not None or all(each)
+
+
+def _with_causes_of_their_own(findings: Iterable[Finding]) -> set[str]:
+    return {sensor for finding in findings if not _is_shared(finding) for sensor in finding.sensors}
+
+
+def _doubt(findings: Iterable[Finding]) -> float:
+    """Chance that one of the named causes at least is another one of those that are possible."""
+    return float(1 - np.prod([_probability(finding) for finding in findings]))
+
+
+def _probability(finding: Finding) -> float:
+    """Of the named cause among those that are possible; of one that the ranking does not know, as likely as any."""
+    if not finding.alternatives:
+        return 1.0
+    ranked = {rival.cause: rival.probability for rival in reversed(finding.ranking)}
+    possible = [ranked.get(name, 0.0) for name in (finding.cause, *finding.alternatives)]
+    return possible[0] / sum(possible) if possible[0] > 0 else 1 / len(possible)

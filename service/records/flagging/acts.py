@@ -1,0 +1,57 @@
+"""What the service does to a flag: raises it, sees its matter again, resolves it."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.flags.records import Concern, Flag, FlagState, NoticeKind
+from service.flags.store import Flags, Notices
+from service.fleet.store import Fleet
+from service.storage.queries import Store
+
+SERVICE = "imu-health"
+"""Who raises flags."""
+
+
+@dataclass(frozen=True)
+class Occasion:
+    """On which unit, by what and when flags are settled."""
+
+    unit: int
+    session: str | None
+    """That was looked at; None where the clock or the other units tell."""
+    at: datetime
+
+
+def raise_flag(store: Store, occasion: Occasion, concern: Concern) -> None:
+    """Opens a flag on a matter that the clock or the other units tell of, and that has none open."""
+    number = Flags(store).add(occasion.unit, concern, occasion.session, occasion.at)
+    tell(store, occasion, NoticeKind.RAISED, concern.summary, number)
+    Fleet(store).count_flags(occasion.unit)
+
+
+def see_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -> None:
+    """The open flag speaks of the latest session; one that was acknowledged is raised again where it got worse."""
+    worse = concern.severity > known.severity and known.state is FlagState.ACKNOWLEDGED
+    Flags(store).put(
+        known.id,
+        occasion.at,
+        summary=concern.summary,
+        severity=concern.severity,
+        session_id=occasion.session,
+        proposal="",
+        state=FlagState.RAISED if worse else known.state,
+    )
+    kind = NoticeKind.RAISED if worse else NoticeKind.SEEN
+    tell(store, occasion, kind, concern.summary, known.id)
+
+
+def resolve_as_done(store: Store, occasion: Occasion, flag: Flag, why: str) -> None:
+    """Resolves a flag by the service itself."""
+    Flags(store).put(flag.id, occasion.at, state=FlagState.RESOLVED, proposal="")
+    tell(store, occasion, NoticeKind.RESOLVED, why, flag.id)
+    Fleet(store).count_flags(occasion.unit)
+
+
+def tell(store: Store, occasion: Occasion, kind: NoticeKind, text: str, flag: int) -> None:
+    """Keeps what happened to a flag, for people and for programs that are told."""
+    Notices(store).add(occasion.unit, kind, occasion.at, SERVICE, text, flag=flag, session=occasion.session)

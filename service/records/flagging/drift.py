@@ -1,0 +1,120 @@
+"""Step: what the history of a unit's sensors shows means a flag: one a sensor, of its worst kind of change.
+
+It has one where somebody must act (`service.outlook.rules.worth`); a smaller change is a remark. A sensor that is, or
+is flagged, out of tolerance has no second one for how it came there, nor one whose drift has made the calibration due
+that is overdue. What a person resolved stays resolved until a later session.
+"""
+
+from collections.abc import Iterator
+from datetime import datetime
+
+from estimator.message import joined
+from service.flags.records import Concern, Flag, Matter
+from service.flags.store import Flags
+from service.judging.records import Key, Moment
+from service.judging.store import Derivations
+from service.outlook.records import FoundChange, ParameterTrend, UnitOutlook
+from service.outlook.rules.worth import GOES_ON, is_worth_a_flag
+from service.outlook.words import change_in_words
+from service.records.flagging.acts import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
+from service.sessions.decision import Verdict
+from service.sessions.store import Sessions
+from service.storage.queries import Store
+from service.types.records import UnitType
+from service.types.store import UnitTypes
+
+MATTERS = (Matter.JUMP, Matter.DRIFT)
+FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+"""Verdicts that have a flag of their own."""
+NOT_SHOWN = "The history of the unit's accepted sessions does not show it any more."
+SMALL = "What is found is too small for a flag; the unit's page tells of it."
+TOLD = "The sensor is out of tolerance."
+WORSE = "Another flag tells of it."
+LATE = "The flag on the overdue calibration tells of it."
+Found = tuple[ParameterTrend, FoundChange]
+
+
+def flag_drift(store: Store, occasion: Occasion, outlook: UnitOutlook | None) -> None:
+    """Brings the flags of changes through time in line with the outlook."""
+    every = Flags(store).open_of(occasion.unit)
+    opened = {flag.key: flag for flag in every if flag.matter in MATTERS}
+    found = {} if outlook is None else _by_sensor(outlook)
+    settled = Derivations(store).settled(occasion.unit, SERVICE) if found else {}
+    told = _told_elsewhere(store, occasion, every, outlook)
+    concerns = () if outlook is None else _concerns(_unknown(found, settled), outlook, _type(store, outlook))
+    wanted = {concern.key: concern for concern in concerns if concern.place not in told}
+    sensors = {sensor for _, sensor in wanted}
+    for key in sorted(opened.keys() - wanted.keys()):
+        why = told.get(key[1]) or (WORSE if key[1] in sensors else SMALL if key[1] in found else NOT_SHOWN)
+        resolve_as_done(store, occasion, opened[key], why)
+    for key, concern in wanted.items():
+        if key in opened:
+            _show_again(store, occasion, opened[key], concern)
+        elif not _is_settled(store, occasion, settled.get(key)):
+            raise_flag(store, occasion, concern)
+
+
+def _told_elsewhere(
+    store: Store, occasion: Occasion, every: tuple[Flag, ...], outlook: UnitOutlook | None
+) -> dict[str, str]:
+    """Sensors whose changes another flag tells of, and why."""
+    late = any(flag.matter is Matter.OVERDUE for flag in every)
+    basis = None if outlook is None or not late else outlook.basis
+    told = {} if basis is None or basis.sensor is None else {basis.sensor: LATE}
+    out = {flag.place for flag in every if flag.matter is Matter.TOLERANCE} | _failed(store, occasion)
+    return told | dict.fromkeys(out, TOLD)
+
+
+def _failed(store: Store, occasion: Occasion) -> set[str]:
+    """Sensors that the latest session found out of tolerance."""
+    decisions = () if occasion.session is None else Sessions(store).decisions(occasion.session)
+    return {decision.sensor for decision in decisions if decision.verdict in FAILS}
+
+
+def _show_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -> None:
+    if (known.summary, known.session) != (concern.summary, occasion.session):
+        see_again(store, occasion, known, concern)
+
+
+def _is_settled(store: Store, occasion: Occasion, settled: Moment | None) -> bool:
+    """Whether a person resolved it when the latest session was there already."""
+    if settled is None or occasion.session is None:
+        return False
+    latest = Sessions(store).get(occasion.session)
+    return settled >= (latest.started_at, latest.id)
+
+
+def _by_sensor(outlook: UnitOutlook) -> dict[str, list[Found]]:
+    """What chance does not explain, the most evident first."""
+    found: dict[str, list[Found]] = {}
+    for trend in outlook.trends:
+        for change in trend.changes:
+            found.setdefault(trend.sensor, []).append((trend, change))
+    return {sensor: sorted(own, key=lambda pair: pair[1].p_value) for sensor, own in found.items()}
+
+
+def _unknown(found: dict[str, list[Found]], settled: dict[Key, Moment]) -> dict[str, list[Found]]:
+    """Without jumps that a person knew of when the sensor's flag was resolved: they are over."""
+    known = {sensor: at for (matter, sensor), (at, _) in settled.items() if matter == Matter.JUMP}
+    return {
+        sensor: [pair for pair in own if pair[1].kind in GOES_ON or not _is_before(pair[1], known.get(sensor))]
+        for sensor, own in found.items()
+    }
+
+
+def _is_before(change: FoundChange, at: datetime | None) -> bool:
+    return at is not None and change.before <= at
+
+
+def _type(store: Store, outlook: UnitOutlook) -> UnitType:
+    return UnitTypes(store).of_unit(outlook.serial)
+
+
+def _concerns(found: dict[str, list[Found]], outlook: UnitOutlook, of: UnitType) -> Iterator[Concern]:
+    """One a sensor: a change that goes on is worse than one that is over."""
+    for sensor, own in found.items():
+        worth = [pair for pair in own if is_worth_a_flag(*pair, outlook, of)]
+        if worth:
+            goes_on = any(change.kind in GOES_ON for _, change in worth)
+            matter = Matter.DRIFT if goes_on else Matter.JUMP
+            yield Concern(matter, sensor, 1, joined(" ", (change_in_words(*pair) for pair in worth)))

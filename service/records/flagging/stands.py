@@ -1,0 +1,156 @@
+"""Step: what sessions and units show of a stand means a flag of the stand, one a matter, that names the units.
+
+Sessions on it tell one after another in the order of time, whatever unit they measure: one finds the stand at fault, a
+later one of a block of the same kind no longer does. That it has shifted the common motions of its units tell, looked
+at now and then. What is no longer found is closed with its reason; what a person resolved stays resolved until a later
+session shows it again.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from estimator.message import joined, say
+from service.errors import ServiceError
+from service.flags.records import Concern, Flag, FlagState, Matter
+from service.flags.store import FlagQuery, Flags
+from service.judging.records import Moment, ToldSession
+from service.judging.store import Derivations
+from service.kit.guard import Alone, plainly
+from service.models.records import Scope
+from service.records.flagging.acts import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
+from service.stands.health import stand_health
+from service.stands.records import StandCondition
+from service.stands.store import Stands
+from service.storage import Storage
+from service.storage.queries import Store
+from service.units.store import Units
+
+OF_STAND = "The flag of the stand tells of it."
+"""Of a flag on one unit, as an earlier version raised them."""
+NOT_SHOWN = "No accepted session shows it any more."
+SEEN_WITH = "Seen with {units}."
+MOST_NAMED = 12
+"""Units of a stand that a flag names."""
+
+
+@dataclass(frozen=True)
+class _Fault:
+    """A stand that sessions find at fault."""
+
+    concern: Concern
+    at: Moment
+    """Of the last session that shows it."""
+    units: tuple[str, ...]
+    """That showed it since it was last found in order."""
+
+
+def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
+    """Brings the flag on what sessions find on a stand in line with all accepted sessions on it."""
+    Stands(store).hold(stand)
+    found, why = _fault(Derivations(store).told_of_stand(stand), stand)
+    opened = _open(store, Matter.STAND, stand)
+    settled = None if found is None else Derivations(store).settled_of_stand(stand, SERVICE)
+    if found is None or (settled is not None and settled >= found.at):
+        for flag in opened:
+            resolve_as_done(store, occasion, flag, why)
+        return
+    _bring(store, replace(occasion, session=found.at[1]), opened, _of_stand(found.concern, stand, found.units))
+
+
+def _fault(told: Iterable[ToldSession], stand: str) -> tuple[_Fault | None, str]:
+    """What is open, and else why nothing is."""
+    by_block: dict[str, _Fault] = {}
+    why = NOT_SHOWN
+    for one in told:
+        if one.diagnosis is None:
+            continue
+        shown = next((c for c in one.diagnosis.concerns if c.key == (Matter.STAND, stand)), None)
+        if shown is not None:
+            known = by_block.get(one.block)
+            units = (*(() if known is None else known.units), one.unit)
+            by_block[one.block] = _Fault(shown, one.at, tuple(dict.fromkeys(units)))
+        else:
+            gone = next((w for m, p, w in one.diagnosis.clear if (m, p) == (Matter.STAND, stand)), None)
+            why = gone if gone and by_block.pop(one.block, None) else why
+    return max(by_block.values(), key=lambda fault: fault.at, default=None), why
+
+
+def _of_stand(concern: Concern, stand: str, units: Iterable[str]) -> Concern:
+    """A flag of the stand that names its units."""
+    names = sorted(units)
+    more = [say("{number} more", number=len(names) - MOST_NAMED)] if len(names) > MOST_NAMED else []
+    seen = say(SEEN_WITH, units=joined(", ", [*names[:MOST_NAMED], *more]))
+    summary = joined(" ", (concern.summary, seen)) if names else concern.summary
+    return replace(concern, summary=summary, scope=Scope.STAND, subject=stand)
+
+
+def _open(store: Store, matter: Matter, stand: str) -> tuple[Flag, ...]:
+    found = Flags(store).page(FlagQuery(matter=matter, stand=stand, unresolved=True))
+    return tuple(flag for flag in found if flag.scope is Scope.STAND)
+
+
+def _bring(store: Store, occasion: Occasion, opened: tuple[Flag, ...], concern: Concern) -> None:
+    """Raises the flag, or says in the open one what is known now."""
+    if not opened:
+        raise_flag(store, occasion, concern)
+    for flag in opened:
+        if (flag.summary, flag.session, flag.proposal) != (concern.summary, occasion.session, ""):
+            see_again(store, occasion, flag, concern)
+
+
+NO_LONGER_SHIFTED = "The units measured on {stand} no longer show that it has shifted."
+
+
+def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
+    """One flag a stand; a shift whose flag somebody resolved after it began is known and raises no other."""
+    with storage.database.reading() as store:
+        conditions = stand_health(store)
+        opened = Flags(store).open_about(Matter.SHIFTED)
+    shifted = {one.stand for one in conditions if one.has_shifted}
+    for flag in opened:
+        if flag.scope is not Scope.STAND or flag.place not in shifted:
+            with alone("stands", flag.place):
+                _close(storage, flag, now)
+    for one in conditions:
+        with alone("stands", one.stand):
+            if one.has_shifted:
+                _flag_shift(storage, one, now)
+            _require_whole(one)
+
+
+def _flag_shift(storage: Storage, one: StandCondition, now: datetime) -> None:
+    """An open flag says what is known now, also where the shift is dated anew. It is of the unit that comes first."""
+    since = min(shift.since for shift in one.shifts if shift.until is None)
+    with storage.database.writing() as store:
+        Stands(store).hold(one.stand)
+        units = Stands(store).last_measured(one.stand, since)
+        concern = _of_stand(Concern(Matter.SHIFTED, one.stand, 1, one.reason), one.stand, units)
+        opened = _open(store, Matter.SHIFTED, one.stand)
+        if opened or (units and not _is_known(store, one.stand, since)):
+            first = opened[0].unit if opened else units[0]
+            _bring(store, Occasion(Units(store).key(first), None, now), opened, concern)
+
+
+def _is_known(store: Store, stand: str, since: datetime) -> bool:
+    """Whether somebody settled the matter after the shift began."""
+    query = FlagQuery(matter=Matter.SHIFTED, stand=stand, state=FlagState.RESOLVED)
+    resolved = (flag for flag in Flags(store).page(query) if flag.changes[-1].who != SERVICE)
+    return any(flag.changed_at >= since for flag in resolved)
+
+
+def _close(storage: Storage, flag: Flag, now: datetime) -> None:
+    """A flag that no unit speaks for any more, or that one unit had of its own."""
+    why = say(NO_LONGER_SHIFTED, stand=flag.place) if flag.scope is Scope.STAND else OF_STAND
+    with storage.database.writing() as store:
+        unit = Units(store).hold(flag.unit)
+        if Flags(store).get(flag.id).state is not FlagState.RESOLVED:
+            resolve_as_done(store, Occasion(unit, None, now), flag, why)
+
+
+def _require_whole(one: StandCondition) -> None:
+    """Tells of sessions whose common motion cannot be used; without them the stand is still judged."""
+    if one.unreadable:
+        raise ServiceError(
+            say("What is stored of these sessions cannot be used: {reason}.", reason=", ".join(one.unreadable))
+        )

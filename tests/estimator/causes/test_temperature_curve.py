@@ -1,0 +1,39 @@
+"""A zero over temperature: a parabola is named as one, a line as a line, and one is no rival of the other."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from estimator import diagnose
+from estimator.causes import cause
+from estimator.diagnosis import Finding
+from tests.estimator.causes.hiding import change, scene_for, spoilt, with_readings
+from tests.estimator.causes.test_every_cause import SETTING
+
+CURVE, LINE = "bias-temperature-curve", "bias-temperature"
+
+
+def found(identifier: str) -> Finding:
+    where = scene_for(identifier)
+    (finding,) = diagnose(spoilt(identifier, where.measured(1), where, np.random.default_rng(0))).findings
+    return finding
+
+
+@pytest.mark.parametrize("identifier", [CURVE, LINE])
+def test_each_is_named_alone(identifier: str) -> None:
+    finding = found(identifier)
+    assert (finding.cause, finding.alternatives) == (identifier, ())
+
+
+def test_a_bend_that_hardly_shows_leaves_the_line_its_name() -> None:
+    where = scene_for(LINE)
+    hidden = change(LINE, where) + 0.02 * change(CURVE, where)
+    (finding,) = diagnose(with_readings(where.measured(2), hidden * where.world.truth.scale)).findings
+    assert (finding.cause, finding.alternatives) == (LINE, ())
+
+
+@pytest.mark.parametrize(("temperatures", "shown"), [(3, False), (4, True)])
+def test_a_parabola_goes_through_any_three_temperatures(temperatures: int, shown: bool) -> None:
+    rows = np.arange(SETTING.rows) % temperatures + 20.0
+    assert cause(CURVE).available(replace(SETTING, temperature=rows)) is shown

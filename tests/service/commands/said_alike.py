@@ -1,0 +1,89 @@
+"""What a service says of one unit's use, wherever it says it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import httpx
+from icalendar import Calendar
+
+from service.judging.use import Use, in_words
+from service.kit.measures import day_of
+from tests.service.papers.documents import text_of
+
+HTML = {"Accept": "text/html"}
+SYSTEM = {"system": "px4"}
+
+
+@dataclass(frozen=True)
+class FleetSaid:
+    """What is said of all units at once."""
+
+    page: str
+    paper: str
+    events: dict[str, Any]
+    """Of the calendar, by serial number."""
+
+
+def plain(text: str) -> str:
+    """Words alone, without marks of where a line may break."""
+    return " ".join(text.replace("\u200b", "").split())
+
+
+def fleet_of(client: httpx.Client) -> FleetSaid:
+    """Of a service."""
+    calendar = Calendar.from_ical(client.get("/api/v1/feeds/due.ics").raise_for_status().content)
+    return FleetSaid(
+        plain(client.get("/", headers=HTML).raise_for_status().text),
+        plain(text_of(client.get("/api/v1/fleet/report", params={"format": "pdf"}).raise_for_status().content)),
+        {str(event["SUMMARY"]).split(":")[0]: event for event in calendar.events},
+    )
+
+
+def check_unit(client: httpx.Client, serial: str, fleet: FleetSaid) -> dict[str, Any]:
+    """Holds everything that is said of a unit against the API's answer, which it returns."""
+    answer: dict[str, Any] = client.get(f"/api/v1/units/{serial}/usable").raise_for_status().json()
+    said = in_words(Use(answer["use"]), answer["action"])
+    page = plain(client.get(f"/units/{serial}", headers=HTML).raise_for_status().text)
+    assert f"<b>{said}.</b>" in page
+    row = fleet.page.split(f'href="/units/{serial}"')[0].rpartition("<tr")[2]
+    assert (said in row) is (answer["use"] != Use.YES)
+    assert said in fleet.paper
+    _check_date(answer, page, _label(client, serial), fleet.events.get(serial))
+    if answer["correction"]:
+        _check_export(client, answer, said)
+    return answer
+
+
+def _label(client: httpx.Client, serial: str) -> str:
+    return plain(text_of(client.get(f"/api/v1/units/{serial}/label.pdf").raise_for_status().content))
+
+
+def _check_date(answer: dict[str, Any], page: str, label: str, event: Any) -> None:
+    """A date stands where it counts, and else what to do in its place."""
+    use = Use(answer["use"])
+    is_overdue = answer["until"] is not None and answer["until"] < answer["as_of"]
+    assert (event is None) is (answer["until"] is None)
+    if event is not None:
+        assert (use is Use.YES) is ("use" not in str(event["DESCRIPTION"]))
+    if answer["until"] is None or not (answer["usable"] or is_overdue):
+        assert in_words(use, "").upper() in label
+        assert "Calibration due" not in label
+        return
+    day = day_of(event.start)
+    assert day in page
+    assert f"Calibration {'overdue since' if is_overdue else 'due'} {day}" in label
+    word = in_words(use, "")
+    assert ((word.upper() if is_overdue else word) in label) is (use is not Use.YES)
+
+
+def _check_export(client: httpx.Client, answer: dict[str, Any], said: str) -> None:
+    """Refused where the unit must not be used; its comments say what else is to be known."""
+    address = answer["correction"].replace("/correction", "/export")
+    found = client.get(address, params=SYSTEM)
+    assert found.status_code == (200 if answer["usable"] else 409)
+    if not answer["usable"]:
+        assert answer["why"] in found.json()["detail"]
+        found = client.get(address, params=SYSTEM | {"force": "true"}).raise_for_status()
+        said = said.upper()
+    assert (said in found.text) is (answer["use"] != Use.YES)
+    assert all(plain(one) in found.text for one in answer["reservations"])
