@@ -91,7 +91,7 @@ def test_a_log_that_never_rests_is_refused_with_advice():
 
 
 def test_a_log_shorter_than_a_window_is_refused():
-    with pytest.raises(ScheduleError, match="still for .* fewer than 4 times"):
+    with pytest.raises(ScheduleError, match=r"still for .* fewer than 4 times"):
         average(raw(np.zeros((5, 3))), residual_per_freedom)
 
 
