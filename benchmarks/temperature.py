@@ -146,7 +146,7 @@ def tracks(made: Sequence[Calibration], years: Array, warm: Array) -> dict[tuple
     for one in made[1:]:
         for found in judge(one, first, TOLERANCES):
             whole = deviation(one.sensor(found.sensor), first.sensor(found.sensor), found.parameter)
-            own = (found.change, found.change_own, found.change_origin)
+            own: tuple[tuple[float, ...], ...] = (found.change, found.change_own, found.change_origin)
             if whole is not None and found.parameter != "axis":
                 sigmas = (float(np.sqrt(part[0, 0])) for part in (whole.current, whole.origin))
                 own = ((float(whole.vector[0]),), *((sigma,) for sigma in sigmas))
@@ -233,13 +233,13 @@ def rows(answers: Answers) -> Iterator[tuple[str, str, object]]:
         yield f"{head}: without temperature beside it", "0", rate([one.alone for one in seen])
         yield f"{head}: adjustment or replacement advised", "0", rate([one.replaced for one in seen])
     for kind in (LINE, PARABOLA):
-        seen = answers.lived[kind]
-        yield f"seasons, {kind}: units flagged", "≤ 1 %", rate([one.flagged for one in seen])
+        units = answers.lived[kind]
+        yield f"seasons, {kind}: units flagged", "≤ 1 %", rate([one.flagged for one in units])
         words = f"seasons, {kind}: laws worth {SHOWN:g} T found"
-        yield words, "≥ 95 %", rate([mark for one in seen for mark in one.found])
-    seen = answers.lived[NONE]
-    yield "seasons, nothing follows them: units flagged", "≤ 1 %", rate([one.flagged for one in seen])
-    yield "the same: laws claimed, of parameters", "≤ 1 %", rate([mark for one in seen for mark in one.claimed])
+        yield words, "≥ 95 %", rate([mark for one in units for mark in one.found])
+    units = answers.lived[NONE]
+    yield "seasons, nothing follows them: units flagged", "≤ 1 %", rate([one.flagged for one in units])
+    yield "the same: laws claimed, of parameters", "≤ 1 %", rate([mark for one in units for mark in one.claimed])
     for cause in (CURVE, STRAIGHT):
         apart = [one for one in answers.named[cause] if one.apart]
         yield f"`{cause}`, {APART:g} from every rival: named first", "≥ 95 %", rate([one.first for one in apart])

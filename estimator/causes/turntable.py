@@ -27,7 +27,7 @@ class LeverArm(Cause):
     """What to do where the turns contradict a stated position."""
 
     def lever_sentence(self, sensor: str, distance: str) -> str:
-        """The sentence with the size: ``A2 stands 4.1 ± 0.4 cm from the turn axis and feels the turns.``"""
+        """The sentence with the size: ``A2 is 4.1 ± 0.4 cm from the turn axis and measures the rotation.``"""
         return say(
             "{sensor} is {distance} from the turn axis and measures the rotation.", sensor=sensor, distance=distance
         )

@@ -13,7 +13,8 @@ UNPROVEN = (
     "No session has been compared with the reference of {day} yet: the next one shows whether the unit is stable."
 )
 TOO_COARSE = (
-    "In its reference of {day}, {what} is more uncertain than the tolerance, or not observed: measure more positions."
+    "In its reference of {day} these are more uncertain than the tolerance, or not observed: {what}. Measure more "
+    "positions."
 )
 NOTHING_JUDGED = "None of its sessions counts as a calibration: calibrate the unit."
 SINCE_SERVICE = "Nothing was measured since the service of {day}: calibrate the unit, which sets its new reference."
@@ -39,7 +40,7 @@ REPEAT = "repeat the session"
 MEASURE_AGAIN = "measure it again"
 MORE_POSITIONS = "measure more positions"
 DATE = "put the date of its session right"
-ASK_AGAIN = "ask again in some seconds"
+ASK_AGAIN = "ask again in a few seconds"
 ADMINISTRATOR = "tell the administrator"
 ENGINEER = "accept, correct or withdraw the session that waits"
 CERTIFY = "have the stand calibrated"

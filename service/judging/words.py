@@ -38,7 +38,7 @@ REPORT = "see its diagnosis"
 ADVICE = {"record": CORRECT, "stand": STAND, "fixture": FIXTURE}
 """By what a cause is of; of a sensor, a session is repeated first."""
 TOO_FEW = "causes were not checked because of too few positions"
-AGAIN = "ask again in some seconds"
+AGAIN = "ask again in a few seconds"
 FAILED = "causes were not checked"
 
 

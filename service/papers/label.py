@@ -9,6 +9,7 @@ import segno
 from estimator.message import capitalised, say
 from service.fleet.condition import UnitSummary
 from service.judging.records import Usable
+from service.judging.usable_words import ASK_AGAIN
 from service.judging.use import Use, in_words
 from service.kit.measures import HARD, day_of
 from service.languages.language import Language
@@ -72,7 +73,7 @@ def _due(use: Usable) -> str:
 
 
 def _why(use: Usable) -> str:
-    if use.use is Use.RESERVED and use.action:
+    if use.use is Use.RESERVED and use.action not in ("", ASK_AGAIN):
         return say("{action}.", action=capitalised(use.action))
     if use.usable:
         return use.due_reason

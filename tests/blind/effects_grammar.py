@@ -64,7 +64,7 @@ FACTORS: dict[str, Callable[[Drawn], Array]] = {
 }
 
 SPANNED = {
-    *(("1", x) for x in ("a", "|a|", "sign a", "a²", "p", "o", "T", "dT/dt", "lag T", "t", "sin β")),
+    *(("1", x) for x in ("a", "|a|", "sign a", "a²", "p", "o", "T", "T²", "dT/dt", "lag T", "t", "sin β")),
     *(("a", x) for x in ("|a|", "sign a", "a²", "p", "o", "T", "t")),
     *(("|a|", x) for x in ("sign a",)),
     *(("sign a", x) for x in ("a²",)),

@@ -79,4 +79,4 @@ def test_a_session_that_never_turned_a_sensor_over_is_refused(service: httpx.Cli
 
 
 def test_the_session_has_its_page(service: httpx.Client, answers: list[dict[str, Any]]) -> None:
-    assert "A1 bias moved" in service.get(f"/sessions/{answers[2]['id']}").text
+    assert "A1 bias changed" in service.get(f"/sessions/{answers[2]['id']}").text

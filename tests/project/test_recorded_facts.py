@@ -45,7 +45,7 @@ def test_a_zero_that_wanders_at_random_is_unexplained_and_has_no_name(factor: fl
     assert {sensor for s in diagnosis.structures for sensor in s.sensors} == GYROS
 
 
-def test_a_zero_on_a_parabola_over_temperature_is_neither_lag_nor_warm_up() -> None:
+def test_a_bias_on_a_parabola_over_temperature_is_neither_lag_nor_warm_up() -> None:
     diagnosis = with_errors(mpu6050(), 1.0)
-    assert not [f for f in diagnosis.findings if "Gy" in f.sensors]
-    assert [s for s in diagnosis.structures if "Gy" in s.sensors and "temperature" in s.where]
+    assert [f.cause for f in diagnosis.findings if "Gy" in f.sensors] == ["bias-temperature-curve"]
+    assert not [s for s in diagnosis.structures if "Gy" in s.sensors]

@@ -191,7 +191,10 @@ def _track(
     fewest = min((row.dof for row in rows if row.dof is not None), default=None)
     still = ([0.0] * len(rows[-1].change), rows[-1].origin)
     judged: tuple[Measured, ...] = (still, *((row.change, row.own) for row in rows))
-    sessions = ((reference, fewest), *((row, row.dof) for row in rows))
+    sessions: tuple[tuple[ChangeRow | ReferenceRow, float | None], ...] = (
+        (reference, fewest),
+        *((row, row.dof) for row in rows),
+    )
     explained = (left.get((of.session, key.sensor, key.parameter)) for of, _ in sessions)
     changes = zip(sessions, _as_measured(rows, reference) or judged, explained, strict=True)
     points = sorted((_point(of, change, dof, part) for (of, dof), change, part in changes), key=_date)

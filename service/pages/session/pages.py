@@ -152,7 +152,7 @@ def session_page(
         rule=decisions[0].rule if decisions else "",
         coverage=coverage_in_words(calibration, coverage),
         size=size_in_words(report.session.size),
-        switched_on=switched_on(report.session),
+        switched_on=switched_on(report.session.time_since_power_on),
         diagnosis=diagnosis_line(diagnosis, failed),
         gives_correction=report.session.programme in CALIBRATIONS,
         motions=motions_in_words(report.motions, coverage),

@@ -96,7 +96,7 @@ def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
         Fact("Judged against", _judged_against(found)),
         Fact("State of the unit", _state(found)),
         Fact("Temperature", _temperature(source)),
-        *([Fact("Switched on", on)] if (on := switched_on(session)) else ()),
+        *([Fact("Switched on", on)] if (on := switched_on(session.time_since_power_on)) else ()),
     )
 
 

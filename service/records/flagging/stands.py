@@ -99,7 +99,7 @@ def _bring(store: Store, occasion: Occasion, opened: tuple[Flag, ...], concern: 
             see_again(store, occasion, flag, concern)
 
 
-NO_LONGER_SHIFTED = "The units measured on {stand} no longer show that it has shifted."
+NO_LONGER_SHIFTED = "The units measured on {stand} no longer show a shift."
 
 
 def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly) -> None:

@@ -15,7 +15,6 @@ from service.kit.measures import (
     scale_measure,
     value_measure,
 )
-from service.sessions.records import StoredSession
 from service.sessions.words.advice import too_few, what_to_add
 
 UNLIKELY = 0.001
@@ -183,7 +182,6 @@ def _product(share: float, name: str) -> str:
     return say("{share} × {name}", share=f"{share:.6f}".rstrip("0").rstrip("."), name=name)
 
 
-def switched_on(session: StoredSession) -> str:
-    """``40 min before the first reading``; empty where the file does not say."""
-    begun = session.time_since_power_on
+def switched_on(begun: float | None) -> str:
+    """``40 min before the first reading``, from seconds; empty where the file does not say."""
     return "" if begun is None else say("{begun} before the first reading", begun=duration(begun))

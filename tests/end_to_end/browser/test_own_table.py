@@ -31,7 +31,7 @@ def test_a_workbook_of_ones_own_becomes_a_session(chromium: Browser, site: Site,
             page.get_by_label(f"A{k}: unit of readings").fill("V")
         page.get_by_label("Axes").select_option("cone")
         page.get_by_role("button", name="Look again").click()
-        page.get_by_text("felt 9.8").wait_for()
+        page.get_by_text("measured 9.8").wait_for()
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         page.get_by_role("button", name="Store it", exact=True).click()
         page.get_by_role("heading", name="Reference set").wait_for()

@@ -76,7 +76,7 @@ def test_stated_standard_errors_are_tested() -> None:
         (((0.2, 130.0),), "no whole turn at a negative rate"),
         (((0.2, 20.0), (-0.2, 20.0)), r"rows 1 to 200 at 11.4592 °/s cover 0.64 of a turn"),
         (((0.0, 100.0),), "the table never turns"),
-        (((0.2, 40.0), (-0.2, 40.0)), "holds 2 whole turns; give 6 or more"),
+        (((0.2, 40.0), (-0.2, 40.0)), "contains 2 whole turns; at least 6 are needed"),
     ],
 )
 def test_what_cannot_be_used_is_said(runs: tuple[tuple[float, float], ...], message: str) -> None:

@@ -86,7 +86,7 @@ def turning(seconds=120.0, period=40.0):
 
 def test_a_slow_turn_is_not_taken_for_rest():
     (problem,) = refused(turning())
-    assert "stands still" in problem.message
+    assert "the block is still" in problem.message
 
 
 def test_a_moving_record_given_as_still_is_refused_with_its_rows():

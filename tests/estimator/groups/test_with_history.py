@@ -73,9 +73,7 @@ def test_what_has_ended_is_not_named(cause: str) -> None:
 
 
 def test_that_it_has_ended_is_said() -> None:
-    assert (
-        "11 earlier sessions show it together, and this one does not" in told("cubic-nonlinearity", ended=True).notes[0]
-    )
+    assert "11 earlier sessions together show it; this one does not" in told("cubic-nonlinearity", ended=True).notes[0]
 
 
 def test_records_that_were_kept_tell_as_much_as_the_sessions() -> None:

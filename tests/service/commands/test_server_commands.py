@@ -79,7 +79,7 @@ def test_the_fleet_is_shown_worst_first(run: Run, address: str, two_sessions: li
     other = write(tmp_path, "other.json", accelerometer_block(unit="BA-100"))
     run("upload", *two_sessions, other, "--server", address)
     lines = run("fleet", "--format", "table", "--server", address).out.splitlines()
-    assert lines[0] == "2 units: 1 Undecided, 1 Fit"
+    assert lines[0] == "2 units: 1 Fit, 1 Reference set"
     assert [line.split()[0] for line in lines if line.startswith("BA-")] == ["BA-100", "BA-017"]
 
 

@@ -97,7 +97,7 @@ def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -
     accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML, follow_redirects=True)
     assert "K. Ito" in accepted.text
     assert "Held-out error of A5" in accepted.text
-    assert "when somebody has them computed again" in accepted.text
+    assert "when they are computed again" in accepted.text
     assert "calibrated before it" in page(client, id)
     unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
     again = {"scope": "unit", "subject": unit, "by": "K. Ito"}

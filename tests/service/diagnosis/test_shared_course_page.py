@@ -51,5 +51,5 @@ def test_the_page_says_it_in_one_sentence_and_draws_one_chart(holding: Holding) 
 
 def test_the_page_says_it_in_russian(holding: Holding) -> None:
     text = page(*held(holding), "ru")
-    assert "Нули вместе устанавливаются после включения: все датчики блока." in text
-    assert "Их общий ход" in text
+    assert "Смещения нуля всех датчиков блока вместе устанавливаются после включения." in text
+    assert "Общий ход" in text

@@ -108,7 +108,7 @@ def test_a_unit_that_cannot_be_turned_is_named_with_its_column():
     content = tables.text_table(tables.own_document()).encode()
     mapping = mapping_for(content)
     mapping["columns"][3]["unit"] = "count"
-    with pytest.raises(FormatError, match="cannot be turned into V") as caught:
+    with pytest.raises(FormatError, match="cannot be converted to V") as caught:
         read_upload(wrapped(mapping, content), "own")
     assert caught.value.problems[0].field == "A1"
 

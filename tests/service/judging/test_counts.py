@@ -17,7 +17,7 @@ def test_positions_that_are_done(done: int, said: str) -> None:
     assert missing_in_words(found)[0].startswith(said)
 
 
-@pytest.mark.parametrize(("days", "said"), [(1.0, "every 1 day at least"), (90.0, "every 90 days at least")])
+@pytest.mark.parametrize(("days", "said"), [(1.0, "at least every 1 day"), (90.0, "at least every 90 days")])
 def test_days_between_calibrations(days: float, said: str) -> None:
     basis = DueBasis(DueRule.INTERVAL, datetime(2026, 1, 1, tzinfo=UTC), interval_days=days)
     assert said in reason_of(basis, None)

@@ -65,7 +65,7 @@ def test_a_unit_without_a_calibration_is_told_to_calibrate(storage: Storage) -> 
 def test_a_service_asks_for_a_new_calibration(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
     record_service(storage, "BA-017", NewService("repair", datetime(2026, 4, 1, tzinfo=UTC)), NOW)
-    assert "no calibration yet since its service of 2026-04-01" in refusal(storage, recording_bytes())
+    assert "no calibration since its service of 2026-04-01" in refusal(storage, recording_bytes())
 
 
 def test_a_recording_never_becomes_a_reference(storage: Storage) -> None:

@@ -59,6 +59,6 @@ def test_a_unit_that_is_used_elsewhere_says_so(holding: Holding) -> None:
     (found,) = away
     assert found["kind"] == "temperature"
     assert plain(found["text"]) == (
-        "it was measured at −4 °C, 24 °C below its reference and earlier sessions (20 °C), "
-        "and the temperature alone can make or hide a change of unknown size"
+        "it was measured at −4 °C, 24 °C below its reference and earlier sessions (20 °C); "
+        "temperature alone can cause or hide a change of unknown size"
     )

@@ -63,16 +63,16 @@ CASES: dict[str, tuple[UseFacts, Use, str]] = {
     ),
     "no date for another reason": (of_unit(due=None), Use.NO, "calibrate it"),
     "dates being worked out, none known": (
-        of_unit(due=None, is_undated=True), Use.PENDING, "ask again in some seconds",
+        of_unit(due=None, is_undated=True), Use.PENDING, "ask again in a few seconds",
     ),
-    "dates being worked out, one known": (of_unit(is_undated=True), Use.RESERVED, "ask again in some seconds"),
-    "verdict being worked out": (replace(PLAIN, is_waiting=True), Use.PENDING, "ask again in some seconds"),
+    "dates being worked out, one known": (of_unit(is_undated=True), Use.RESERVED, "ask again in a few seconds"),
+    "verdict being worked out": (replace(PLAIN, is_waiting=True), Use.PENDING, "ask again in a few seconds"),
     "unfit, dates being worked out": (
         of_unit(verdict=Verdict.FAIL, due=None, is_undated=True), Use.NO, "adjust, repair or withdraw it",
     ),
     "dates failed, none known": (of_unit(due=None, failed="it broke"), Use.NO, "tell the administrator"),
     "dates failed, one known": (of_unit(failed="it broke"), Use.RESERVED, "tell the administrator"),
-    "not diagnosed yet": (of_unit(reservations=None), Use.RESERVED, "ask again in some seconds"),
+    "not diagnosed yet": (of_unit(reservations=None), Use.RESERVED, "ask again in a few seconds"),
     "diagnosis failed": (
         replace(of_unit(reservations=None), not_diagnosed="it broke"), Use.RESERVED, "tell the administrator",
     ),

@@ -24,7 +24,7 @@ def change(temperatures: tuple[float, ...]) -> np.ndarray:
         )
         for k, (whole, warm) in enumerate(zip(WHOLE, temperatures, strict=True))
     ]  # fmt: skip
-    reference = ReferenceRow(START, "accelerometer", "two-axis-stand", 20.0, {("A1", "scale"): 4.8e-7})
+    reference = ReferenceRow(START, "accelerometer", "two-axis-stand", 20.0, u={("A1", "scale"): 4.8e-7})
     (track,) = histories(rows, [reference]).tracks
     return np.hstack([track.change, track.sigma])
 

@@ -95,7 +95,10 @@ def test_sessions_on_two_stands_have_no_stand_in_common() -> None:
     assert "its constant errors cancel" in in_common(first, first, ())[0]
     assert "Not both were measured on a stand" in in_common(first, session_report(stand=None).session, ())[0]
     said = in_common(first, session_report(revision=3).session, (Service(1, "BA-017", NOON, "repair", ""),))
-    assert ["serviced (1 Mar 2026)" in " ".join(said), "revisions 0 and 3" in " ".join(said)] == [True, True]
+    assert ["serviced between them (1 Mar 2026)" in " ".join(said), "revisions 0 and 3" in " ".join(said)] == [
+        True,
+        True,
+    ]
 
 
 @pytest.mark.parametrize(("a", "b", "status"), [(FIRST, FIRST, 409), (FIRST, "none", 404)])

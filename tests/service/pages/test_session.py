@@ -73,7 +73,7 @@ def test_one_degree_of_freedom_is_said_as_one(dof: int, says: str) -> None:
 def test_enlarged_uncertainties_are_a_warning() -> None:
     known = session_report().calibration
     calibration = replace(known, fit=replace(known.fit, covariance_factor=4.0))
-    assert any("2.00 times" in w for w in fit_in_words(calibration).warnings)
+    assert any("multiplied by 2.00" in w for w in fit_in_words(calibration).warnings)
 
 
 def test_orientations_that_are_missing_are_a_warning() -> None:

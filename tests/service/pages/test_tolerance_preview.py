@@ -35,7 +35,7 @@ def test_narrower_ones_name_the_unit_that_changes_and_why(typed: httpx.Client) -
     assert "With these tolerances, the verdict of 1 of 2 units changes" in page
     (row,) = html.fromstring(page).xpath("//tbody/tr")
     said = " ".join(row.text_content().split())
-    assert said.startswith("B-1FitUnfitA3 bias moved")
+    assert said.startswith("B-1FitUnfitA3 bias changed")
     assert "1 unit not counted: the latest session is a reference" in page
     assert typed.get(f"/api/v1{TYPE}").json()["revision"] == 1
 

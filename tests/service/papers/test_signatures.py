@@ -169,7 +169,7 @@ def test_what_changes_after_the_signature_is_noticed(http: httpx.Client, staff: 
     http.put("/api/v1/units/BA-017/customer", json=customer, headers=staff.headers(Role.CREW)).raise_for_status()
     found = listed(http, staff)
     assert found["is_current"] is False
-    assert "has changed since it was approved" in found["concerns"][0]
+    assert "have changed since it was approved" in found["concerns"][0]
     assert signed(http, staff, Role.ENGINEER, "reviewed").status_code == 409
     assert f"No. {ID}-0-2" in text_of(paper(http, staff))
     assert listed(http, staff)["certificates"][1]["signatures"] == []

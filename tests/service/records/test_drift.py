@@ -67,7 +67,7 @@ def test_a_jump_below_the_share_that_the_type_says_is_a_remark(storage: Storage)
         known = UnitTypes(store).of_unit("BA-017")
     for share in (0.6, 0.4):
         set_tolerances(storage, known.name, known.tolerances, None, NOW, watch=Watch(flag_share=share))
-        assert any(line.startswith("A3 bias has jumped") for line in next_calibration(outlook(storage), NOW).moving)
+        assert any(line.startswith("A3 bias jumped") for line in next_calibration(outlook(storage), NOW).moving)
     with storage.database.reading() as store:
         again, first = Flags(store).page(FlagQuery("BA-017"))
     assert (again.matter, again.state) == (Matter.JUMP, FlagState.RAISED)

@@ -126,5 +126,5 @@ def test_an_open_flag_whose_shift_is_dated_anew_stays_one_flag_and_closes_with_i
     flag_shifted_stands(storage, NOW)
     [flag] = flagged(storage)
     assert (flag.state, flag.changes[-1].text) == (
-        FlagState.RESOLVED, "The units measured on S2 no longer show that it has shifted.",
+        FlagState.RESOLVED, "The units measured on S2 no longer show a shift.",
     )  # fmt: skip

@@ -72,7 +72,7 @@ def test_a_lever_arm_is_said_on_the_pages_and_by_the_api(holding: Holding) -> No
     content = alignment_bytes(a2_stands=(0.04, -0.03))
     client, id = holding(content, diagnosed=True), session_id(content)
     for page in (f"/sessions/{id}", f"/sessions/{id}/diagnosis"):
-        assert re.search(r"A2 stands [45]\.\d ± 0\.\d cm from the turn axis", client.get(page).text)
+        assert re.search(r"A2 is [45]\.\d ± 0\.\d cm from the turn axis", client.get(page).text)
     document = client.get(f"/api/v1/sessions/{id}/diagnosis").json()
     assert [finding["cause"] for finding in document["findings"]] == ["lever-arm"]
     assert "Parts of the turn held out" in client.get(f"/sessions/{id}/diagnosis").text

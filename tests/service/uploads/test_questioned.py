@@ -76,7 +76,7 @@ SLIPS: dict[str, tuple[Slip, str]] = {
     "mV for V": (times(1000.0), "such as mV instead of V"),
     "one channel in mV": (times(1000.0, A1), "The scale factor of A1 is 1"),
     "per g": (per_g, "g and m/s² were confused"),
-    "degrees": (times(57.2958), "degrees were given instead of radians"),
+    "degrees": (times(57.2958), "degrees instead of radians"),
     "sign": (times(-1.0, A1), "its sign is reversed"),
     "exchange": (exchanged, "their channels are exchanged"),
     "noise": (noisy, "times less than their standard errors: another unit is stated"),
@@ -176,5 +176,5 @@ def test_what_is_not_questioned_is_not_corrected(reception: Reception) -> None:
 def test_where_no_correction_is_known_that_is_said(reception: Reception) -> None:
     document = json.loads(session_bytes()) | {"started_at": "1970-01-01T00:00:00Z"}
     asked = upload(reception.storage, json.dumps(document).encode(), "old.json", NOW)
-    with pytest.raises(ConflictError, match="Nothing is known"):
+    with pytest.raises(ConflictError, match="No correction is known"):
         correct_session(reception, asked.id, "K. Ito", NOW)

@@ -149,7 +149,7 @@ def test_a_reference_that_leaves_something_open_says_what_to_add(storage: Storag
 
 
 def test_a_reference_that_shows_everything_says_no_more(storage: Storage) -> None:
-    assert upload(storage, session_bytes(), "a.json", NOW).reason.endswith("judged against.")
+    assert upload(storage, session_bytes(), "a.json", NOW).reason.endswith("judged against it.")
 
 
 def reception(storage: Storage, rung: list[None]) -> Reception:
