@@ -20,8 +20,10 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Protocol
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -186,12 +188,21 @@ def energy(state: SearchState) -> float:
     return float((z @ z - freedom) / np.sqrt(2 * freedom))
 
 
-METHODS: tuple[tuple[str, Callable[[Look, float], float]], ...] = (
-    ("exhaustive Bayes with the generator's prior: the limit", lambda look, s: look.limit[s]),
-    ("matched subspaces of the whole catalogue", lambda look, s: look.whole),
-    ("parity space: likelihood ratio of one step of one sensor", lambda look, s: look.told.get("bias-jump", 0.0)),
-    ("sparse regression (STLSQ) over all shapes", lambda look, s: look.sparse),
-    ("χ² of the residuals", lambda look, s: look.energy),
+class Method(Protocol):
+    """What a method says of a session, where effects have a strength."""
+
+    def __call__(self, look: Look, strength: float) -> float: ...
+
+
+METHODS: tuple[tuple[str, Method], ...] = (
+    ("exhaustive Bayes with the generator's prior: the limit", lambda look, strength: look.limit[strength]),
+    ("matched subspaces of the whole catalogue", lambda look, strength: look.whole),
+    (
+        "parity space: likelihood ratio of one step of one sensor",
+        lambda look, strength: look.told.get("bias-jump", 0.0),
+    ),
+    ("sparse regression (STLSQ) over all shapes", lambda look, strength: look.sparse),
+    ("χ² of the residuals", lambda look, strength: look.energy),
 )
 
 
@@ -208,7 +219,7 @@ def page(looks: list[Look], command: str) -> str:
         ("the diagnosis: the right name, first or listed", "", *(rate([k.listed for k in h]) for h in hidden.values())),
     ]
     for name, method in METHODS:
-        cells = [_passed(sound, seen, lambda look, m=method, s=s: m(look, s)) for s, seen in hidden.items()]
+        cells = [_passed(sound, seen, partial(method, strength=s)) for s, seen in hidden.items()]
         rows.append((name, "1 %", *cells))
     rows.append(("matched subspace that is *told the cause*", "1 %", *(_told(sound, h) for h in hidden.values())))
     head = ("method", "sound sessions", *(f"strength {s:g}" for s in STRENGTHS))
