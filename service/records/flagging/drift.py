@@ -26,11 +26,11 @@ from service.types.store import UnitTypes
 MATTERS = (Matter.JUMP, Matter.DRIFT)
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 """Verdicts that have a flag of their own."""
-NOT_SHOWN = "The history of the unit's accepted sessions does not show it any more."
-SMALL = "What is found is too small for a flag; the unit's page tells of it."
-TOLD = "The sensor is out of tolerance."
-WORSE = "Another flag tells of it."
-LATE = "The flag on the overdue calibration tells of it."
+NOT_SHOWN = "The history of the unit's accepted sessions no longer shows it."
+SMALL = "The change is too small for a flag; it is listed on the unit's page."
+OUT = "The sensor is out of tolerance."
+WORSE = "Another flag covers it."
+LATE = "The flag on the overdue calibration covers it."
 Found = tuple[ParameterTrend, FoundChange]
 
 
@@ -40,12 +40,12 @@ def flag_drift(store: Store, occasion: Occasion, outlook: UnitOutlook | None) ->
     opened = {flag.key: flag for flag in every if flag.matter in MATTERS}
     found = {} if outlook is None else _by_sensor(outlook)
     settled = Derivations(store).settled(occasion.unit, SERVICE) if found else {}
-    told = _told_elsewhere(store, occasion, every, outlook)
+    covered = _covered_elsewhere(store, occasion, every, outlook)
     concerns = () if outlook is None else _concerns(_unknown(found, settled), outlook, _type(store, outlook))
-    wanted = {concern.key: concern for concern in concerns if concern.place not in told}
+    wanted = {concern.key: concern for concern in concerns if concern.place not in covered}
     sensors = {sensor for _, sensor in wanted}
     for key in sorted(opened.keys() - wanted.keys()):
-        why = told.get(key[1]) or (WORSE if key[1] in sensors else SMALL if key[1] in found else NOT_SHOWN)
+        why = covered.get(key[1]) or (WORSE if key[1] in sensors else SMALL if key[1] in found else NOT_SHOWN)
         resolve_as_done(store, occasion, opened[key], why)
     for key, concern in wanted.items():
         if key in opened:
@@ -54,15 +54,15 @@ def flag_drift(store: Store, occasion: Occasion, outlook: UnitOutlook | None) ->
             raise_flag(store, occasion, concern)
 
 
-def _told_elsewhere(
+def _covered_elsewhere(
     store: Store, occasion: Occasion, every: tuple[Flag, ...], outlook: UnitOutlook | None
 ) -> dict[str, str]:
-    """Sensors whose changes another flag tells of, and why."""
+    """Sensors whose changes another flag covers, and why."""
     late = any(flag.matter is Matter.OVERDUE for flag in every)
     basis = None if outlook is None or not late else outlook.basis
-    told = {} if basis is None or basis.sensor is None else {basis.sensor: LATE}
+    covered = {} if basis is None or basis.sensor is None else {basis.sensor: LATE}
     out = {flag.place for flag in every if flag.matter is Matter.TOLERANCE} | _failed(store, occasion)
-    return told | dict.fromkeys(out, TOLD)
+    return covered | dict.fromkeys(out, OUT)
 
 
 def _failed(store: Store, occasion: Occasion) -> set[str]:

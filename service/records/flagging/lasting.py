@@ -57,7 +57,7 @@ def overdue_by(outlook: UnitOutlook | None, now: datetime) -> Concern | None:
 
 
 NO_LONGER_SHOWN = "The sessions together no longer show it."
-TOLD = "Another flag tells of it."
+COVERED = "Another flag covers it."
 OF_SENSORS = (Matter.TOLERANCE, Matter.CAUSE, Matter.JUMP, Matter.DRIFT)
 """Of flags whose place is a sensor."""
 ACCEPTED = "Accepted into the model of {whose}, revision {revision}."
@@ -74,11 +74,11 @@ def flag_lasting(
     accepted = in_force(Models(store).of_subject(scope, group.name))
     known = {flag.place: flag for flag in Flags(store).of_group(Matter.LASTING, lasting_place(scope, group.name))}
     own = [one for one in found if (one.level, one.subject) == (group.level.value, group.name)]
-    told = {lasting_place(scope, group.name, one) for one in own if _is_told(store, group, one)}
+    covered = {lasting_place(scope, group.name, one) for one in own if _is_covered(store, group, one)}
     shown: set[str] = set()
     for finding in own:
         place = lasting_place(scope, group.name, finding)
-        if place not in told:
+        if place not in covered:
             shown.add(place)
             subject = "" if scope is Scope.UNIT else group.name
             concern = Concern(Matter.LASTING, place, 1, lasting_summary(scope, finding), scope, subject)
@@ -86,11 +86,11 @@ def flag_lasting(
     for place, flag in known.items():
         if place not in shown and flag.state is not FlagState.RESOLVED:
             occasion = Occasion(Units(store).hold(flag.unit), flag.session, at)
-            resolve_as_done(store, occasion, flag, TOLD if place in told else NO_LONGER_SHOWN)
+            resolve_as_done(store, occasion, flag, COVERED if place in covered else NO_LONGER_SHOWN)
 
 
-def _is_told(store: Store, group: Group, finding: GroupFinding) -> bool:
-    """Whether a worse flag tells of it: of every sensor that has it, or of the stand."""
+def _is_covered(store: Store, group: Group, finding: GroupFinding) -> bool:
+    """Whether a worse flag covers it: of every sensor that has it, or of the stand."""
     if group.level is Level.STAND:
         query = FlagQuery(matter=Matter.STAND, stand=group.name, unresolved=True, limit=1)
         return bool(Flags(store).page(query))

@@ -26,9 +26,9 @@ from service.storage import Storage
 from service.storage.queries import Store
 from service.units.store import Units
 
-OF_STAND = "The flag of the stand tells of it."
+OF_STAND = "The flag of the stand covers it."
 """Of a flag on one unit, as an earlier version raised them."""
-NOT_SHOWN = "No accepted session shows it any more."
+NOT_SHOWN = "No accepted session still shows it."
 SEEN_WITH = "Seen with {units}."
 MOST_NAMED = 12
 """Units of a stand that a flag names."""

@@ -17,7 +17,7 @@ from service.groups.store import Groups, read_group
 from service.models.records import NewLasting, Scope
 from service.records.changes import withdraw_session
 from service.records.flagging.acts import Occasion, raise_flag
-from service.records.flagging.lasting import TOLD, flag_lasting
+from service.records.flagging.lasting import COVERED, flag_lasting
 from service.records.models import accept_lasting, withdraw_model
 from service.records.refresh_group import current, members_of, refresh_group
 from service.storage import Storage
@@ -99,7 +99,7 @@ def test_an_effect_that_a_flag_of_the_sensor_tells_of_has_none(flagged: Storage)
         concern = Concern(Matter.CAUSE, "A2", 1, "A2 bends.")
         raise_flag(store, Occasion(Units(store).key("BA-017"), None, NOW), concern)
     (flag,) = refreshed(flagged)
-    assert (flag.state, flag.changes[-1].text) == (FlagState.RESOLVED, TOLD)
+    assert (flag.state, flag.changes[-1].text) == (FlagState.RESOLVED, COVERED)
     with flagged.database.reading() as store:
         (own,) = Flags(store).page(FlagQuery(matter=Matter.CAUSE))
     resolve_flag(flagged, own.id, "K. Ito", "by design", NOW)
