@@ -11,7 +11,7 @@ an effect whose strength is s and whose direction nobody knows, the likelihood r
     Λ(T; s) = exp(−s²/2) ₀F₁(; q/2; s²T/4)
 
 and its mean over the generator's own prior (causes alike, the places and shapes of each alike) is the most powerful
-test there is on average over that prior (Neyman and Pearson): no method that is not told the cause can find more.
+test there is on average over that prior (Neyman and Pearson): no method that is not given the cause can find more.
 """
 
 import argparse
@@ -78,8 +78,8 @@ class Look:
     """The diagnosis gives a name."""
     listed: bool
     """The right one, first or among the alternatives."""
-    told: dict[str, float]
-    """−ln p of the family of each cause: a matched subspace that is told the cause, not the sensor."""
+    families: dict[str, float]
+    """−ln p of the family of each cause: a matched subspace that is given the cause, not the sensor."""
     whole: float
     """−ln p of the whole catalogue, Bonferroni."""
     limit: dict[float, float]
@@ -199,7 +199,7 @@ METHODS: tuple[tuple[str, Method], ...] = (
     ("matched subspaces of the whole catalogue", lambda look, strength: look.whole),
     (
         "parity space: likelihood ratio of one step of one sensor",
-        lambda look, strength: look.told.get("bias-jump", 0.0),
+        lambda look, strength: look.families.get("bias-jump", 0.0),
     ),
     ("sparse regression (STLSQ) over all shapes", lambda look, strength: look.sparse),
     ("χ² of the residuals", lambda look, strength: look.energy),
@@ -221,14 +221,14 @@ def page(looks: list[Look], command: str) -> str:
     for name, method in METHODS:
         cells = [_passed(sound, seen, partial(method, strength=s)) for s, seen in hidden.items()]
         rows.append((name, "1 %", *cells))
-    rows.append(("matched subspace that is *told the cause*", "1 %", *(_told(sound, h) for h in hidden.values())))
+    rows.append(("matched subspace that is *given the cause*", "1 %", *(_given(sound, h) for h in hidden.values())))
     head = ("method", "sound sessions", *(f"strength {s:g}" for s in STRENGTHS))
     return (
         f"# How faint an effect is still found\n\n{len(looks)} simulated sessions, made by `{command}`. "
         "Every method sees the same sessions; each rival has the threshold that 1 % of the same sound sessions pass. "
         "Strength: see [the study](study.md). Intervals: 95 % (Wilson).\n\n"
         f"{table(head, rows)}\n\n"
-        "The last line is told which cause acts, so that it looks for one family of shapes where all others look for "
+        "The last line is given the cause that acts, so that it looks for one family of shapes where all others look for "
         f"{len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody who "
         "measures can avoid.\n"
     )
@@ -239,11 +239,11 @@ def _passed(sound: list[Look], hidden: list[Look], statistic: Callable[[Look], f
     return str(rate([statistic(look) > threshold for look in hidden]))
 
 
-def _told(sound: list[Look], hidden: list[Look]) -> str:
-    """The threshold is of all causes' families in all sound sessions: each is told one of them."""
-    every = [value for look in sound for value in look.told.values()]
+def _given(sound: list[Look], hidden: list[Look]) -> str:
+    """The threshold is of all causes' families in all sound sessions: each is given one of them."""
+    every = [value for look in sound for value in look.families.values()]
     threshold = float(np.quantile(every, 1 - ALARMS, method="higher"))
-    return str(rate([look.told.get(look.cause, 0.0) > threshold for look in hidden]))
+    return str(rate([look.families.get(look.cause, 0.0) > threshold for look in hidden]))
 
 
 def main() -> None:
