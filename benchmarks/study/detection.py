@@ -228,9 +228,9 @@ def page(looks: list[Look], command: str) -> str:
         "Every method sees the same sessions; each rival has the threshold that 1 % of the same sound sessions pass. "
         "Strength: see [the study](study.md). Intervals: 95 % (Wilson).\n\n"
         f"{table(head, rows)}\n\n"
-        "The last line is given the cause that acts, so that it looks for one family of shapes where all others look for "
-        f"{len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody who "
-        "measures can avoid.\n"
+        "The last line is given the cause that acts, so that it looks for one family of shapes where all others look "
+        f"for {len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody "
+        "who measures can avoid.\n"
     )
 
 
