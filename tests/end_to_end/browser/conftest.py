@@ -137,8 +137,12 @@ def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[t
 
 
 def draw_all(page: Page) -> None:
-    """Brings every chart near the screen, waits until it is drawn, and goes back to the top."""
-    for chart in page.locator(".chart").all():
-        chart.scroll_into_view_if_needed()
-    page.wait_for_function("[...document.querySelectorAll('.chart')].every((c) => c.classList.contains('drawn'))")
-    page.evaluate("scrollTo(0, 0)")
+    """Draws every chart, as before a page is printed, and waits for it.
+
+    Nothing here waits for a frame: on a busy machine a headless browser may stop to paint for minutes.
+    """
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.wait_for_function(DRAWN, polling=100)
+
+
+DRAWN = "[...document.querySelectorAll('.chart')].every((c) => c.classList.contains('drawn'))"

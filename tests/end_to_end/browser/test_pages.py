@@ -216,6 +216,15 @@ def test_reading_needs_no_script(chromium: Browser, site: Site) -> None:
         assert "µg" in page.locator("#bias-accelerometer table tbody tr").first.inner_text()
 
 
+def test_a_chart_is_drawn_when_it_comes_near(chromium: Browser, site: Site) -> None:
+    last = "[...document.querySelectorAll('.chart')].at(-1)"
+    with opened(chromium) as (_, page):
+        page.goto(address(site, "/units/BA-017"))
+        assert not page.evaluate(f"{last}.classList.contains('drawn')")
+        page.evaluate(f"{last}.scrollIntoView({{ behavior: 'instant' }})")
+        page.wait_for_function(f"{last}.classList.contains('drawn')", polling=100)
+
+
 def test_every_page_names_its_json_twin(chromium: Browser, site: Site) -> None:
     with opened(chromium) as (context, page):
         for path in ("/", "/units/BA-017", "/sessions/{unfit}"):
