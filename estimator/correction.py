@@ -168,7 +168,7 @@ def _sensor(session: CalibrationSession, calibration: SensorCalibration) -> Sens
 
 
 def _covariance(calibration: Calibration, sensors: Sequence[SensorCorrection]) -> Array:
-    """(5 m, 5 m) of the sensors' parameters, SI; 0 for what is taken as known, NaN where nothing tells the noise."""
+    """(5 m, 5 m) of the sensors' parameters, SI; 0 for what is taken as known, NaN where the noise is unknown."""
     places = [calibration.names.index(f"{s.name}.{element}") for s in sensors for element in ELEMENTS]
     assumed = np.array([element == "quadratic" and not s.quadratic_known for s in sensors for element in ELEMENTS])
     return np.where(assumed | assumed[:, None], 0.0, calibration.covariance[np.ix_(places, places)])

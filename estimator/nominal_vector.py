@@ -34,7 +34,7 @@ class NominalVector:
     offset: Array
     """(3,) d, m/s² (rad/s)."""
     covariance: Array
-    """(12, 12) of S row by row and then o; NaN where nothing tells the noise."""
+    """(12, 12) of S row by row and then o; NaN where the noise cannot be estimated."""
     curvature: float
     """Largest |c| of the sensors, s²/m (s/rad): c·a² is what the matrix cannot hold."""
 

@@ -27,7 +27,7 @@ PARAMETERS = ("scale", "bias", "quadratic", "axis")
 class Estimate(Document, order=("value", "sigma", "repeatability", "dof", "coverage_factor")):
     """A value with its total one-sigma uncertainty.
 
-    Both None when the session does not observe it; ``sigma`` None alone when nothing tells the noise.
+    Both None when the session does not observe it; ``sigma`` None alone when the noise cannot be estimated.
     """
 
     value: float | None
@@ -54,7 +54,7 @@ class KnownCombination:
     coefficients: dict[str, float]
     value: float
     sigma: float | None
-    """None when nothing tells the noise."""
+    """None when the noise cannot be estimated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +95,7 @@ class SensorCalibration(
 
     @property
     def axis_sigma(self) -> float | None:
-        """Root of the trace of the axis' covariance, rad; None when it is not observable or nothing tells the noise."""
+        """Root of the trace of the axis' covariance, rad; None when not observable or the noise is unknown."""
         if self.axis is None or not np.isfinite(self.axis_covariance).all():
             return None
         return float(np.sqrt(np.trace(self.axis_covariance)))

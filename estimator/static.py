@@ -358,7 +358,7 @@ def mean_errors(readings: Array, intervals: Intervals) -> Array:
 
 
 def errors_of_kinds(session: CalibrationSession, errors: Callable[[list[int]], Array]) -> Array:
-    """(n, m) standard errors, reading units: those of the channels of every kind, told by their numbers."""
+    """(n, m) standard errors, reading units: those of the channels of every kind, identified by their numbers."""
     kinds = [s.kind for s in session.sensors]
     alike = [[i for i, other in enumerate(kinds) if other == kind] for kind in sorted(set(kinds))]
     return np.concatenate([errors(channels) for channels in alike], axis=1)[

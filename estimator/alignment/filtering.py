@@ -1,4 +1,4 @@
-"""The alignment filter run over a path: prior, measurements, and what the session tells beyond the prior."""
+"""The alignment filter run over a path: prior, measurements, and what the session adds to the prior."""
 
 from dataclasses import dataclass, field
 

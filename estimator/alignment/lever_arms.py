@@ -27,7 +27,7 @@ LEVEL = 0.003
 DECISIVE = 9.0
 """Difference of χ² from which a rival is distinguished: three standard errors."""
 FEWEST = 3
-"""Sensors of which one that contradicts the others can be told."""
+"""Fewest sensors among which one that contradicts the others can be identified."""
 
 
 @dataclass(frozen=True, eq=False)

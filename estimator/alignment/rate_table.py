@@ -30,7 +30,7 @@ from estimator.wording import counted
 
 NAMES = ("E_xz", "E_yz", "kappa_z", "eps_x", "eps_y", "eps_z")
 UNITS = ("rad", "rad", "1", "rad/s", "rad/s", "rad/s")
-"""Of what a rate table tells, in the order of its covariance."""
+"""What a rate table determines, in the order of its covariance."""
 FEWEST_TURNS = 6
 """Whole turns in all; fewer leave no scatter to take the uncertainty from."""
 WHOLE = 1e-6

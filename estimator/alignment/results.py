@@ -67,7 +67,7 @@ class AlignmentResult(
     covariance: Array
     """(n, n) SI."""
     observable: dict[str, bool]
-    """Of φ, ε, ∇, E, κ: whether the session tells it well enough to be of use."""
+    """Of φ, ε, ∇, E, κ: whether the session determines it well enough to be of use."""
     attitude: Array
     """(3, 3) C, block → east-north-up, at the end, corrected by φ."""
     positions: tuple[float, ...]
@@ -84,7 +84,7 @@ class AlignmentResult(
 
     @property
     def parameters(self) -> tuple[Listed, ...]:
-        """Those of which it is asked whether the session tells them."""
+        """Those for which observability is reported."""
         return tuple(
             Listed(**vars(self.parameter(name)), name=name, unit=unit, observable=self.observable[name])
             for name, unit in zip(self.names, self.units, strict=True)

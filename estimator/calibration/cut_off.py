@@ -1,4 +1,4 @@
-"""A channel that stood at the end of its range: told from the readings of the other sensors, before anything is fitted.
+"""A channel that stood at the end of its range: recognised by the other sensors' readings, before any fit.
 
 On a stand, and where a few readings are clipped, that is a cause which the diagnosis names. In arbitrary orientations
 a channel that is cut off in a good part of the rows spoils every applied vector, so such a session is refused.

@@ -146,7 +146,7 @@ def freedom_of(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
 
     Satterthwaite, as for arbitrary orientations (`estimator.calibration.free.noise`), T taken as the diagonal of the f:
     on a stand the sensors' residuals have little in common. Infinite where no estimated noise has a part; NaN of a
-    sensor whose noise nothing tells, its own rows or others of its kind.
+    sensor whose noise cannot be estimated, its own rows or others of its kind.
 
     variance, y : (S, R, m) as in `with_estimated`, but all variances known; unstated : (S, R, m) bool.
     """

@@ -16,7 +16,7 @@ ROUNDING = 1e-14
 """Eigenvalues of the information below this part of the largest are rounding of doubles, not knowledge."""
 
 DEPENDENT = 1e-4
-"""Relative singular value below which a combination of readings tells nothing: its sigma is 10⁴ of the best one's."""
+"""Relative singular value below which a combination counts as unobservable: its sigma is 10⁴ times the best one's."""
 
 LINEAR = ("zero_reading", "sensitivity_x", "sensitivity_y", "sensitivity_z", "quadratic_reading")
 """K·b, K·e (block axes) and K·c: what a reading is linear in."""

@@ -40,7 +40,7 @@ class Solved:
     factor: Array
     """(S,) by which the stated row noise was enlarged."""
     freedom: Array
-    """(S, P) degrees of freedom of the variances: infinite where the noise is known, NaN where nothing tells it."""
+    """(S, P) degrees of freedom of the variances: infinite where the noise is known, NaN where not determined."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,7 @@ class Reports:
 
 
 def more_rows(k: int, solved: Solved) -> int:
-    """Positions to add to session k so that each sensor whose noise nothing tells knows it to `WANTED` freedom."""
+    """Positions to add to session k so that each sensor whose noise cannot be estimated has it to `WANTED` freedom."""
     untold = np.isnan(solved.freedom[k]).reshape(-1, 5).any(axis=1)
     missing = 5 * int(untold.sum()) - int(solved.spectrum.observed[k][untold].sum())
     return positions_to_add(-missing, int(untold.sum()))
@@ -171,7 +171,7 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
 
 
 def estimate(value: float, sigma: float, repeatability: float, dof: float) -> Estimate:
-    """A value with its one sigmas, of one unit, and their degrees of freedom, NaN where nothing tells the noise."""
+    """A value with its one sigmas, of one unit, and their degrees of freedom, NaN where the noise is unknown."""
     return Estimate(value, None) if isnan(dof) else Estimate(value, sigma, repeatability, finite(dof))
 
 

@@ -20,7 +20,7 @@ from estimator.causes.contract import SensorCause, Setting, Shape, column
 from estimator.session import Array
 
 STEP = 1e-3
-"""Of ln τ for the derivative: its square is far below what any reading tells, rounding far below that."""
+"""Of ln τ for the derivative: its square is far below what any reading resolves, rounding far below that."""
 
 
 def lagging(temperature: Array, time: Array, tau: float) -> Array:

@@ -101,7 +101,7 @@ LARGEST = 700.0
 
 @dataclass(frozen=True, eq=False)
 class Estimated:
-    """One finding with what the pool tells of it. n sessions, w amplitudes."""
+    """One finding with the pool's evidence on it. n sessions, w amplitudes."""
 
     found: Found
     mean: Mean
@@ -114,7 +114,7 @@ class Estimated:
 
 
 def estimated(selection: GroupSelection, found: Found) -> Estimated:
-    """What the pool tells of one finding, given the others."""
+    """The pool's evidence on one finding, given the others."""
     scale = selection.weighed(without=found)
     w, k = found.place
     m = scale.pool.moments[w]

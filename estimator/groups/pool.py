@@ -108,10 +108,10 @@ def columns_in(part: Part, place: Place) -> Array | None:
     return part.columns[width][own[0]] if len(own) else None
 
 
-def without(U: Array, E: Array, tells: Among, columns: Sequence[int]) -> tuple[Array, Array, Array]:
+def without(U: Array, E: Array, information: Among, columns: Sequence[int]) -> tuple[Array, Array, Array]:
     """U (E,), evidence (E,) and F (E, E) given some columns left free."""
     every = range(len(U))
-    F = tells(*np.ix_(every, every))
+    F = information(*np.ix_(every, every))
     scores, left = given(np.stack([U, E], axis=1), F, columns, LEFT)
     return scores[:, 0], scores[:, 1], left
 

@@ -2,7 +2,7 @@
 
 Theory
 ------
-Session s tells a_s with information F_s; a_s = a + δ_s, cov δ = τ²·I. With V_s = F_s⁻¹ + τ²·I the mean is
+Session s estimates a_s with information F_s; a_s = a + δ_s, cov δ = τ²·I. With V_s = F_s⁻¹ + τ²·I the mean is
 â = (Σ V_s⁻¹)⁻¹ Σ V_s⁻¹ a_s; V_s⁻¹ = F_s (I + τ² F_s)⁻¹ and V_s⁻¹ a_s = (I + τ² F_s)⁻¹ U_s, so that no session needs
 to see every amplitude. The τ² reported is that of Mandel and Paule: Q(τ²) = Σ (a_s − â)ᵀ V_s⁻¹ (a_s − â) equals its
 degrees of freedom (Paule & Mandel 1982, J. Res. NBS 87, 377); Q(0) is Cochran's test (1954, Biometrics 10, 101). Of

@@ -52,7 +52,7 @@ def _packed(kind: str) -> Form:
 
 @lru_cache(maxsize=LISTS)
 def shared(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
-    """One list of candidates for all sessions that have the same, so that these are told at a glance."""
+    """One list of candidates for all sessions that have the same, so that these are compared by identity."""
     return blocks
 
 

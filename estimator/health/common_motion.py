@@ -85,7 +85,7 @@ class CommonMotion:
     sensors: tuple[str, ...]
     """That the common change rests on."""
     left_out: tuple[str, ...]
-    """That moved on their own, or cannot be told from one that did; the most evident first."""
+    """That moved on their own, or cannot be distinguished from one that did; the most evident first."""
 
     @property
     def size(self) -> float:
@@ -196,7 +196,7 @@ def _is_separable(quantity: str, changes: Changes) -> bool:
 
 
 def _agreed(changes: Changes, tolerance: float) -> _Agreed | None:
-    """Who moved, by the smallest scatter with which a majority agrees; None where that cannot be told."""
+    """Who moved, by the smallest scatter with which a majority agrees; None where that cannot be decided."""
     tried = (replace(changes, scatter=share * tolerance) for share in SCATTERS)
     agreement = next(((some, excluded) for some in tried if (excluded := moved(some)) is not None), None)
     if agreement is None:

@@ -80,7 +80,7 @@ def _solved(a: Array, c: Array) -> tuple[Array, Array]:
 
 
 def moved(changes: Changes) -> list[int] | None:
-    """The sensors that moved on their own; None when that cannot be told."""
+    """The sensors that moved on their own; None when that cannot be decided."""
     m, excluded = len(changes.names), list[int]()
     limit = _limit(changes)
     while is_majority(changes, excluded):

@@ -62,7 +62,7 @@ class Odds:
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """Everything of B that the schedule alone tells; k components, G hypotheses that have a shape."""
+    """Everything of B that depends on the schedule alone; k components, G hypotheses that have a shape."""
 
     unit: Array
     """(k, n, H) whitened shapes of length one; 0 where a shape leaves no trace."""

@@ -119,14 +119,14 @@ def general_prior() -> Prior:
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """What one history of a parameter tells of its type: enough to learn from, without its readings."""
+    """What one history of a parameter contributes to its type: enough to learn from, without its readings."""
 
     span: float
     """Years."""
     log_evidence: Array
     """(Q, P) of `Fits.log_evidence`."""
     log_tails: Array = field(default_factory=lambda: np.zeros(len(FREEDOMS)))
-    """(4,) of `tails.log_tails`; zero where it tells nothing."""
+    """(4,) of `tails.log_tails`; zero where it contributes nothing."""
 
 
 def learn(histories: Sequence[Evidence]) -> Prior:

@@ -148,7 +148,7 @@ class Prognosis:
 
 
 def evidence(track: Track) -> Evidence:
-    """What a track tells of its type, whatever else is known of the type."""
+    """What a track contributes to its type, whatever else is known of the type."""
     readings, (dof, temperature) = _readings(track), _conditions(track)
     warmth = None
     if shows_temperature(temperature):

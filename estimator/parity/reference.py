@@ -33,7 +33,7 @@ class ParityReference:
     bias: Array
     """(m,) b, m/s² (rad/s)."""
     quadratic: Array
-    """(m,) c, s²/m; zero where the reference does not know it, and of gyros: what the Earth's rate tells of it is far
+    """(m,) c, s²/m; zero where the reference does not know it, and of gyros: what the Earth's rate shows of it is far
     too little at the rates of a recording."""
     offset: Array
     """(m,) reading that stands for zero, reading units."""

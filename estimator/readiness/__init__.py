@@ -1,4 +1,4 @@
-"""Readiness: whether a unit is warm and still enough for a long measurement, told from the first minutes of it.
+"""Readiness: whether a unit is warm and still enough for a long measurement, judged by its first minutes.
 
 `readiness` answers, with what a calibration would lose and what to do; derivation: `docs/methods/readiness.md`.
 """

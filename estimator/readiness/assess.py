@@ -212,7 +212,7 @@ def _stated(base: Readiness, creep: Disturbance | None) -> Readiness:
 
 
 def _unread(session: CalibrationSession, question: Question, faults: tuple[RecordFault, ...]) -> Readiness:
-    """Nothing can be told."""
+    """No judgement is possible."""
     names = tuple(sensor.name for sensor in session.sensors)
     none = np.zeros((0, len(names)))
     fields = (

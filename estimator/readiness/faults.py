@@ -1,4 +1,4 @@
-"""What is wrong with a record, so that nothing can be told from it, or less."""
+"""What is wrong with a record, so that it supports no judgement, or a weaker one."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -55,7 +55,7 @@ class RecordFault(Document, order=("kind", "sensors", "amount", "blocks")):
 
     @property
     def blocks(self) -> bool:
-        """Whether nothing can be told."""
+        """Whether no judgement is possible."""
         return self.kind not in HARMLESS
 
 

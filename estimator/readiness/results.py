@@ -76,7 +76,7 @@ class DriftOutlook(
     """s more until the drift to come is allowed, 5 %, 50 % and 95 % quantile; None where it is, or waiting is no
     help."""
     needed: float | None
-    """s more of record until it can be told; None where it can, or no length of it would do."""
+    """s more of record until it can be judged; None where it can, or no length of it would do."""
     wander: float
     """One sigma of what its own slow noise does during the programme, m/s² or rad/s (K)."""
     bias_share: float | None = None
@@ -105,7 +105,7 @@ class Readiness(
     outlooks: tuple[DriftOutlook, ...]
     disturbances: tuple[Disturbance, ...]
     faults: tuple[RecordFault, ...]
-    """Why nothing can be told, or what is odd about the record."""
+    """Why no judgement is possible, or what is odd about the record."""
     duration: float
     """s of the planned programme."""
     recorded: float
@@ -135,7 +135,7 @@ class Readiness(
 
     @property
     def needed(self) -> float | None:
-        """s more of record until it can be told; None where it can, or no length would do."""
+        """s more of record until it can be judged; None where it can, or no length would do."""
         lengths = [outlook.needed for outlook in self._judged if outlook.needed is not None]
         return max(lengths) if lengths and self.state is ReadinessState.TOO_EARLY else None
 

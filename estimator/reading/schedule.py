@@ -19,7 +19,7 @@ Rows = Table | CalibrationSession
 """The table of a file, or the positions that were averaged of a log."""
 
 FEWEST_POSITIONS = 2
-"""A single one tells nothing of any programme; whether more are enough is a result."""
+"""A single one shows nothing about any programme; whether more are enough is a result."""
 
 NEEDED_KINDS = {ROTATION_ALIGNMENT: (ACCELEROMETER, GYROSCOPE), RATE_TABLE: (GYROSCOPE,)}
 """Sensors that a programme on a turntable works with."""

@@ -1,8 +1,8 @@
-"""Which still orientations to add to a set so that it identifies everything, told from the block's nominal axes.
+"""Which still orientations to add to a set so that it identifies everything, from the block's nominal axes.
 
 An orientation's share of the information is the Schur complement of its own two unknown turns; shares add up.
 Orientations are taken one by one from a fine grid of directions, each the one that raises ln|information + plausible
-range| most: a direction nothing tells of yet counts for most. What a set lacks does not depend on the number of sensors
+range| most: a direction not yet determined counts for most. What a set lacks does not depend on the number of sensors
 (the readings lie on an ellipsoid), so of a large block a few sensors are asked.
 """
 
@@ -15,7 +15,7 @@ from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
 GRID = 120
-"""Directions to choose from: 18° apart. A neighbour of the best one tells nearly as much; more would only cost
+"""Directions to choose from: 18° apart. A neighbour of the best one adds nearly as much; more would only cost
 time."""
 
 LEAST = 9

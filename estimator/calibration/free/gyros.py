@@ -31,7 +31,7 @@ class GyroBiases:
     stated: bool
     """Whether the noise was stated."""
     freedom: Array
-    """(k,) degrees of freedom of sigma: infinite where it is the stated one, NaN where one row tells none."""
+    """(k,) degrees of freedom of sigma: infinite where it is the stated one, NaN where a single row gives none."""
 
     @property
     def chi2(self) -> float:

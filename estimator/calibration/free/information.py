@@ -1,4 +1,4 @@
-"""What a set of orientations tells: rank, weakest direction, covariance. Needs no readings, so planning can ask too.
+"""What orientations determine: rank, weakest direction, covariance. Needs no readings, so planning uses it too.
 
 Without stated directions every common turn of axes and orientations fits the same, so the frame is held by the nominal
 axes: the estimated axes show no net turn against them, Σ e_nominal,i × e_i = 0 (the condition under which the Kabsch

@@ -31,9 +31,9 @@ class Knowledge:
     residual: Array
     """(R, m) at the input, m/s² (rad/s)."""
     noise: Array
-    """(R, m) one sigma at the input, m/s² (rad/s); NaN where nothing tells it."""
+    """(R, m) one sigma at the input, m/s² (rad/s); NaN where the session does not determine it."""
     freedom: Array
-    """(P,) degrees of freedom of the variances: infinite where the noise is known, NaN where nothing tells it."""
+    """(P,) degrees of freedom of the variances: infinite where the noise is known, NaN where not determined."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class Determined:
     covariance: Array
     """(P, P) dimensionless, of the part that is seen."""
     unseen: Array
-    """(P, k) directions that nothing tells of, dimensionless."""
+    """(P, k) directions that the session does not determine, dimensionless."""
     observable: Array
     """(P,) bool."""
     certain: bool

@@ -28,7 +28,7 @@ from estimator.session import Array
 
 LEAST_TURN = 1e-13
 """Part of an orientation's information that is added to it, so that sensors that agree on one plane leave no hole: some
-hundred roundings, far below what any reading tells."""
+hundred roundings, far below what any reading resolves."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -133,7 +133,7 @@ class FreeNoise:
 def search_with_noise(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Solution:
     """The search with the noise estimated on the way; ``rows.sigma`` gives the relative weights to begin with.
 
-    Without a degree of freedom nothing tells the noise, and the first guess stays.
+    Without a degree of freedom the noise cannot be estimated, and the first guess stays.
     """
     solution, m = search(rows, unknowns, quadratic), rows.y.shape[1]
     iterations, noise = solution.iterations, FreeNoise(np.ones(m), np.ones(m, dtype=bool))
@@ -153,7 +153,7 @@ def search_with_noise(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> S
 def freedom_of(solution: Solution, change: Array) -> Array:
     """(P,) degrees of freedom of the variances of change·elements; change (P, 5 m), without unit.
 
-    Infinite where no noise that was estimated has a part, NaN where nothing tells the noise.
+    Infinite where no noise that was estimated has a part, NaN where the noise cannot be estimated.
     """
     if not solution.knows_noise:
         return np.full(len(change), np.nan)

@@ -109,7 +109,7 @@ def sensor_result(
 
 
 def estimate(value: float, sigma: float, freedom: float) -> Estimate:
-    """A value with its one sigma, of one unit, NaN where nothing tells the noise; its degrees of freedom."""
+    """A value with its one sigma, of one unit, NaN where the noise cannot be estimated; its degrees of freedom."""
     return Estimate(value, sigma, sigma, finite(freedom)) if isfinite(sigma) else Estimate(value, None)
 
 

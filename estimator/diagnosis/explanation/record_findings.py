@@ -86,7 +86,7 @@ def record_error_finding(error: RecordError, session: CalibrationSession) -> Fin
 
 
 def record_ranking(error: RecordError, session: CalibrationSession, strength: float) -> tuple[Rival, ...]:
-    """What may be wrong with the record, most likely first: rows are not told, so that one line is of all of them."""
+    """What may be wrong with the record, most likely first: without rows, so that one line covers all of them."""
     shares: dict[tuple[str, tuple[str, ...]], float] = {}
     for attempt, share in error.posterior():
         place = attempt.cause.identifier, concerned(attempt.places, session, of_rows=attempt.cause.of_rows)

@@ -1,1 +1,1 @@
-"""Record errors and clipped channels: told against the nominal axes and the history, and put right first."""
+"""Record errors and clipped channels: recognised by the nominal axes and the history, and corrected first."""

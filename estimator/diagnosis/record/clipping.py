@@ -1,4 +1,4 @@
-"""Channels at the end of their range: told by readings that are the same to the last digit, and put right.
+"""Channels at the end of their range: recognised by readings that are the same to the last digit, and corrected.
 
 A clipped sensor reads exactly its limit in every row whose input lies beyond it. So readings that are all one and the
 same extreme are suspected, and of a raw log rows in which a good part of the samples is: everything else in the session

@@ -1,4 +1,4 @@
-"""A wrong elevation told from the nominal axes, where a unit has no history.
+"""A wrong elevation recognised by the nominal axes, where a unit has no history.
 
 The axes of a block stray from nominal, nobody knows how far; a wrong α moves them all in one pattern. Their deviations
 are regressed on that pattern and judged by F: the strays themselves are the noise.

@@ -1,6 +1,6 @@
 """Record errors that turn axes: signs, channels, runs or angles written down wrong.
 
-Such an error leaves nothing, or far too much, within the session; what tells it is that the fitted axes are far from
+Such an error leaves nothing, or far too much, within the session; what shows it is that the fitted axes are far from
 those of the unit's history (or the nominal ones), and that putting the record right brings them back.
 """
 

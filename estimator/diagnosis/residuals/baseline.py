@@ -134,7 +134,7 @@ class Baseline:
     turn: Array = field(default_factory=lambda: np.zeros(3))
     """(3,) rotation vector, rad, of an earlier session: it was turned by this into the frame of the one diagnosed."""
     sits_otherwise: bool = False
-    """Whether the block sat otherwise than in the latest earlier session, so that its frame tells of no common turn."""
+    """Whether the block sat otherwise than in the latest earlier session, so that its frame shows no common turn."""
 
     @property
     def parameters(self) -> SensorParameters:

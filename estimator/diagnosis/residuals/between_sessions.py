@@ -66,7 +66,7 @@ def inverse_root(matrix: Array) -> Array:
 def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterChange | None:
     """The whitened change of all parameters since the history, in the frame of now; None without a usable history.
 
-    The reference is the information-weighted mean of the history's parameters. What tells nothing of the common turn
+    The reference is the information-weighted mean of the history's parameters. What does not depend on the common turn
     because the block sat otherwise enters without it.
     """
     p, observable = now.parameters, observable_directions(now.gauge_free, now.parameters)

@@ -99,7 +99,7 @@ DISTINCT = 5.3
 """ln evidence by which a set of names must beat a course for the course to be no alternative: odds of 200."""
 
 LEAST_FREEDOM = 3.0
-"""Degrees of freedom of a sensor's residual from which on it tells what noise is left."""
+"""Degrees of freedom of a sensor's residual from which on the noise that is left can be estimated."""
 
 LEAST = 5.0
 """ln evidence of a course that is believed at all: odds of 150."""

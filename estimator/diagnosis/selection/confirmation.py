@@ -44,8 +44,7 @@ STRONG = float(np.log(10))
 much pull what all share of a row to themselves, and the fit must be made again."""
 
 FEWEST = 2.0
-"""Degrees of freedom below which a sensor's residual tells nothing of its noise: what the file states is all there is.
-"""
+"""Degrees of freedom below which a sensor's residual does not estimate its noise: the file's figure is all there is."""
 
 
 def doubtful_claims(state: SearchState) -> tuple[NoiseClaim, ...]:
@@ -87,7 +86,7 @@ def p_value_in_unknown_noise(state: SearchState, detection: Detection, sensor: i
 
 def evidence_of_larger_noise(state: SearchState) -> tuple[Array, Array]:
     """(m,) variance over the stated one, and (m,) ln B(E) of noise larger than stated; −∞ where none is stated or
-    nothing tells it."""
+    it cannot be estimated."""
     energy, freedom = sensor_scatter(state)
     f = np.maximum(freedom, FEWEST)
     ratio = energy / f

@@ -37,10 +37,10 @@ what they share of a row's β error lets it be seen faintly in others."""
 
 QUIET = 1e-4
 """p-value, over the sensors of a kind, of one that scatters less than stated: no effect makes a sensor quieter, so that
-one tells enough."""
+one sensor is evidence enough."""
 
 MORE = 1
-"""The sense in which an effect makes readings scatter, where one sensor tells nothing of the claim."""
+"""The sense in which an effect makes readings scatter, where one sensor is no evidence about the claim."""
 
 AGREES = 0.01
 """p-value above which differences of repeated rows agree with the stated noise."""
@@ -172,7 +172,7 @@ def of_its_kind(state: SearchState, claim: NoiseClaim) -> NoiseClaim:
 def with_quieter_kinds_whole(state: SearchState, claims: tuple[NoiseClaim, ...]) -> tuple[NoiseClaim, ...]:
     """The claims; of a kind of which nothing else is claimed than that it scatters less, its whole is claimed.
 
-    What is claimed of one kind tells nothing of another: that one is believed again, though this is not.
+    What is claimed of one kind is no evidence about another: that one is believed again, though this is not.
     """
     alone = {claim.kind for claim in claims if is_quieter(state, [c for c in claims if c.kind == claim.kind])}
     return tuple(of_its_kind(state, claim) if claim.kind in alone else claim for claim in claims)
@@ -190,7 +190,7 @@ def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:
 
 
 def without_names_in_no_noise(state: SearchState) -> SearchState:
-    """The state without names of sensors, or common to all, that scatter as no noise does: it tells no cause."""
+    """The state without names of sensors, or common to all, that scatter as no noise does: it points to no cause."""
     lost = {i for claim in state.noise_claims if claim.ratio > BEYOND_NOISE**2 for i in claim.sensors}
     detections = tuple(f for f in state.detections if not lost or (f.best.sensors and lost.isdisjoint(f.best.sensors)))
     return replace(state, detections=detections)

@@ -53,7 +53,7 @@ def _traces(
 ) -> Traces:
     """Traces of all shapes of a cause, `whitened` to (N, S·q), that either lasts since the history or is new.
 
-    What lasts and this session does not show is not told from how differently the sessions absorbed it.
+    What lasts and this session does not show cannot be inferred from how differently the sessions absorbed it.
     """
     trace = residuals.remaining_of(white, absorbed_before(residuals, cause, shapes) if lasting else 0.0)
     raw = lengths(white)
