@@ -22,5 +22,5 @@ def open_database(url: str, waits: Waits | None = None) -> Database:
 
 
 def open_storage(settings: Settings, count: Callable[[str], None] = no_op) -> Storage:
-    """The stores that the settings name; ``count`` is told of faults of files."""
+    """The stores that the settings name; ``count`` is called for faults of files."""
     return Storage(open_database(settings.database, waits_of(settings.database_seconds)), Files(settings.files, count))

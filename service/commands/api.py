@@ -254,7 +254,7 @@ COMMANDS: dict[str, Row] = {
         "POST /sessions/{id}/withdraw",
         ON_SESSION,
         _show_session,
-        "Take a session back: it stays readable, and tells nothing of its unit any more.",
+        "Withdraw a session: it stays readable, and no longer counts for its unit.",
     ),
     "session accept": Call(
         "POST /sessions/{id}/accept",

@@ -23,7 +23,7 @@ from service.commands.speech import translated
 from service.diagnosis.records import state_of
 from service.diagnosis.store import inapplicable_to_dict
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE, blind_causes, errors_of, nothing_of, what_to_do
-from service.diagnosis.words.findings import FindingView, finding_view, standard_errors, told
+from service.diagnosis.words.findings import FindingView, finding_view, in_words, standard_errors
 from service.diagnosis.words.gain import concerned, gain_in_words
 from service.ingest import read_file
 from service.kit.measures import number
@@ -123,7 +123,7 @@ def _choices(finding: FindingView) -> Table:
 
 
 def _structure(structure: Structure) -> str:
-    return f"{told([structure]).rstrip('.')} ({standard_errors(structure.strength)})"
+    return f"{in_words([structure]).rstrip('.')} ({standard_errors(structure.strength)})"
 
 
 def _gain(diagnosis: Diagnosis) -> Iterator[Text]:

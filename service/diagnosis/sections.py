@@ -63,7 +63,7 @@ class CourseView:
 
 
 def course_views(structures: Sequence[Structure], residuals: Residuals) -> tuple[CourseView, ...]:
-    """Every course that can be drawn; one without components is told in words alone."""
+    """Every course that can be drawn; one without components is described in words alone."""
     courses = [s.course for s in structures if s.course is not None and s.course.components]
     return tuple(_view(course, residuals, f"course-{number}") for number, course in enumerate(courses, 1))
 

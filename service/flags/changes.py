@@ -200,7 +200,7 @@ def fault_of(url: str, hosts: tuple[str, ...]) -> str:
 
 
 def remove_webhook(storage: Storage, id: int, who: str, now: datetime) -> None:
-    """Tells an address no more."""
+    """Stops notifying an address."""
     with storage.database.writing() as store:
         url = Webhooks(store).get(id).url
         Webhooks(store).remove(id, now)

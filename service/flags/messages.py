@@ -34,7 +34,7 @@ TIMEOUT = httpx.Timeout(LONGEST_ATTEMPT, connect=5.0)
 MOST_AT_ONCE = 16
 """Receivers that are sent to at once; one that holds its connection open holds a socket, and no more."""
 FIRST_PAUSE, LONGEST_PAUSE = timedelta(seconds=10), timedelta(hours=1)
-"""A restart of the receiver is waited for, and an hour after it is back at most everything has been told."""
+"""A restart of the receiver is waited for, and at most an hour after it is back everything has been sent."""
 MOST_ATTEMPTS = 30
 """Over about 21 hours."""
 LOOK_EVERY = 1.0

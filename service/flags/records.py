@@ -1,4 +1,4 @@
-"""Flags, the notices of their lives, and the addresses that are told."""
+"""Flags, the notices of their lives, and the addresses that are notified."""
 
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -114,7 +114,7 @@ class Notice:
 
     @property
     def key(self) -> str:
-        """The same wherever and whenever it is told: by it a receiver knows what it has heard before."""
+        """The same wherever and whenever it is sent: by it a receiver recognises a repeat."""
         return str(uuid5(NAMESPACE_URL, f"imu-health/{self.unit}/{self.at.isoformat()}/{self.id}"))
 
 
@@ -162,7 +162,7 @@ class Flag:
 @answer
 @dataclass(frozen=True)
 class Webhook:
-    """An address that is told."""
+    """An address that is notified."""
 
     id: int
     """Number of the webhook."""
@@ -192,7 +192,7 @@ class Delivery:
     id: int
     """Number of the delivery."""
     notice: Notice
-    """What the address is told."""
+    """What the address is sent."""
     state: DeliveryState
     """`waiting`, `delivered`, or `failed`: given up."""
     attempts: int

@@ -37,7 +37,7 @@ class Notices(Queries):
         flag: int | None = None,
         session: str | None = None,
     ) -> None:
-        """Stores a notice, and puts it into the outbox of every address that is told of its kind."""
+        """Stores a notice, and puts it into the outbox of every address that is notified of its kind."""
         row = NoticeRow(unit_id=unit, flag_id=flag, kind=kind, at=at, who=who, text=text, session_id=session)
         self._session.add(row)
         self._session.flush()
@@ -46,8 +46,8 @@ class Notices(Queries):
 
     def _put_into_outbox(self, notice: int, at: datetime) -> None:
         columns = ("notice_id", "webhook_id", "state", "attempts", "outcome")
-        told = select(literal(notice), WebhookRow.id, literal("waiting"), literal(0), literal(""))
-        new = insert(DeliveryRow).from_select(columns, told.where(WebhookRow.removed_at.is_(None)))
+        notified = select(literal(notice), WebhookRow.id, literal("waiting"), literal(0), literal(""))
+        new = insert(DeliveryRow).from_select(columns, notified.where(WebhookRow.removed_at.is_(None)))
         deliveries = self._session.scalars(new.returning(DeliveryRow.id)).all()
         WorkQueue(self._store, WorkKind.MESSAGE).enqueue_once(map(str, sorted(deliveries)), at)
 
@@ -111,7 +111,7 @@ def _has(text: str) -> ColumnElement[bool]:
 
 
 def _is_of(assignee: Assignee) -> ColumnElement[bool]:
-    """Whether a flag is somebody's. An account may be renamed, so its login tells; where a flag has none, the name."""
+    """Whether a flag is somebody's. An account may be renamed, so its login decides; without one, the name."""
     by_name = and_(FlagRow.assignee == assignee.name, FlagRow.assignee_login == "")
     return or_(FlagRow.assignee_login == assignee.login, by_name) if assignee.login else by_name
 

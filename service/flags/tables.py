@@ -52,7 +52,7 @@ class NoticeRow(Base):
 
 
 class WebhookRow(Base):
-    """An address that is told of notices; one that was removed keeps its deliveries."""
+    """An address that is notified; one that was removed keeps its deliveries."""
 
     __tablename__ = "webhooks"
     id: Mapped[int] = mapped_column(primary_key=True)

@@ -20,7 +20,7 @@ Secret = Annotated[str, StringConstraints(pattern=r"^[ -~]+$", min_length=16, ma
 
 
 class NewWebhook(BaseModel):
-    """An address that is to be told."""
+    """An address to notify."""
 
     model_config = ConfigDict(
         extra="forbid",
@@ -38,7 +38,7 @@ class NewWebhook(BaseModel):
 
 
 class WebhookList(BaseModel):
-    """All addresses that are told."""
+    """All addresses that are notified."""
 
     webhooks: tuple[Webhook, ...] = Field(description="In the order in which they were registered.")
 
@@ -54,7 +54,7 @@ router = APIRouter(prefix="/webhooks", tags=["webhooks"])
 
 @router.get("", responses=errors())
 def list_webhooks(store: Reading) -> WebhookList:
-    """Every address that is told; secrets are not shown."""
+    """Every address that is notified; secrets are not shown."""
     return WebhookList(webhooks=Webhooks(store).every())
 
 

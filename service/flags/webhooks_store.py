@@ -1,4 +1,4 @@
-"""Addresses that are told of notices, and the outbox of what is on its way to them."""
+"""Addresses that are notified, and the outbox of what is on its way to them."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -25,7 +25,7 @@ class Webhooks(Queries):
     """Webhooks and their deliveries."""
 
     def add(self, url: str, secret: str, who: str, now: datetime) -> Webhook:
-        """Stores an address; it is told of what happens from now on."""
+        """Stores an address; it is notified of what happens from now on."""
         row = WebhookRow(url=url, secret=secret, who=who, created_at=now, removed_at=None)
         self._session.add(row)
         self._session.flush()
@@ -44,7 +44,7 @@ class Webhooks(Queries):
         return tuple(map(_webhook, self._session.scalars(query)))
 
     def remove(self, id: int, now: datetime) -> None:
-        """Tells an address no more; what was on its way is given up."""
+        """Stops notifying an address; what was on its way is given up."""
         self._session.execute(update(WebhookRow).where(WebhookRow.id == id).values(removed_at=now))
         waiting = update(DeliveryRow).where(DeliveryRow.webhook_id == id, DeliveryRow.state == DeliveryState.WAITING)
         failed = waiting.values(state=DeliveryState.FAILED, outcome=REMOVED, ended_at=now)

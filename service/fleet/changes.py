@@ -54,7 +54,7 @@ def _type(storage: Storage, group: Group, now: datetime) -> None:
 
 
 def _stands(storage: Storage, now: datetime) -> None:
-    """All together: a shift of one is told from the others."""
+    """All together: a shift of one is recognised by the others."""
     with storage.database.reading() as store:
         asked, found = WorkQueue(store, WorkKind.SUMMARY).tickets_under(f"{Level.STAND} "), stand_health(store)
     with storage.database.writing() as store:

@@ -205,7 +205,7 @@ LAST = (
     SessionRow.margin,
 )
 FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, DiagnosisRow.reservations)
-"""What a line of the fleet tells of the latest session and of its diagnosis; the rest is long, and stays unread."""
+"""What a line of the fleet shows of the latest session and of its diagnosis; the rest is long, and stays unread."""
 
 
 _Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)

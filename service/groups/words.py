@@ -348,8 +348,10 @@ def _choice(rival: Rival) -> GroupChoice:
     whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
     count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
     sensors = () if "*" in rival.sensors else rival.sensors
-    told = joined("", (rival.measurement, count)) if rival.measurement else "no planned session can separate them"
-    return GroupChoice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), told)
+    measurement = (
+        joined("", (rival.measurement, count)) if rival.measurement else "no planned session can separate them"
+    )
+    return GroupChoice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), measurement)
 
 
 def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:

@@ -167,7 +167,7 @@ class Job:
     @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def upload(self) -> str:
-        """Of an upload: its id at `/uploads/{id}`, which tells what becomes of it."""
+        """Of an upload: its id at `/uploads/{id}`, which says what becomes of it."""
         return under_way(self.id) if self.kind is JobKind.UPLOAD else ""
 
     @property

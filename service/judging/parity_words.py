@@ -1,4 +1,4 @@
-"""What a recording in service tells: how it agrees with the calibration, and what it never sees."""
+"""What a recording in service shows: how it agrees with the calibration, and what it never sees."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ ONE_ORIENTATION = (
     "turns as well."
 )
 SMALLEST = 1e-4
-"""Probability below which its size tells nobody more."""
+"""Probability below which its size says no more."""
 PER_SENSOR = 4
 """Numbers of a sensor that can change: scale, bias and two turns of its axis."""
 

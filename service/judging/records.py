@@ -72,8 +72,8 @@ class UnitRecords:
 
 
 @dataclass(frozen=True)
-class Told:
-    """What one session tells of its unit's flags: by its verdict, or by its diagnosis."""
+class FlagEvidence:
+    """What one session says for its unit's flags, by its verdict or by its diagnosis."""
 
     concerns: tuple[Concern, ...]
     clear: tuple[tuple[str, str, str], ...]
@@ -81,18 +81,18 @@ class Told:
 
 
 @dataclass(frozen=True)
-class ToldSession:
-    """What an accepted session tells of flags."""
+class SessionEvidence:
+    """What an accepted session says for flags."""
 
     at: Moment
-    verdict: Told | None
+    verdict: FlagEvidence | None
     """By its verdict; None where that was not kept."""
-    diagnosis: Told | None
+    diagnosis: FlagEvidence | None
     """By its diagnosis; None where there is none. Of a session that could not decide it clears nothing."""
     is_old: bool = False
-    """Whether it was judged before it was kept what it tells."""
+    """Whether it was judged by a release that did not keep its evidence."""
     unit: str = ""
-    """Serial number, where several units tell."""
+    """Serial number, where the evidence is of several units."""
     block: str = ""
     """The same of the kind of block."""
 
@@ -106,7 +106,7 @@ class Decided:
     judged: Judged
     basis: str
     """What it rests on."""
-    told: Told | None
+    evidence: FlagEvidence | None
     is_first: bool = False
     """Whether nothing was decided of it under this revision before."""
 
@@ -127,7 +127,7 @@ class SaidVerdict:
 
 
 def said(record: StoredSession | Receipt | UnitSummary) -> dict[str, Any]:
-    """The fields of a record with a verdict, and how that is said; a questioned session tells nothing."""
+    """The fields of a record with a verdict, and how that is said; a questioned session counts for nothing."""
     known = record.reservations
     words = verdict_in_words(condition_of(record.verdict, is_reference=record.is_reference), known)
     if not isinstance(record, UnitSummary) and record.state is RecordState.QUESTIONED:

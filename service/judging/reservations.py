@@ -208,7 +208,7 @@ def _once(sensors: tuple[str, ...]) -> tuple[str, ...]:
 
 
 WORTH_SAYING = 1 / 3
-"""Part of a tolerance from which on an effect is told: what a measurement may leave uncertain of it at most, too."""
+"""Part of a tolerance from which on an effect is a reservation: the most that may stay uncertain, too."""
 Known = frozenset[tuple[str, str]]
 """Causes that are in the model in force, with the sensor or an empty name."""
 
@@ -299,10 +299,10 @@ def _is_known(finding: Finding, known: Known) -> bool:
 
 def _of_models(session: Doubted) -> Iterator[Reservation]:
     """Each other verdict once, the worst first."""
-    told: set[Verdict] = {session.verdict} if session.verdict is not None else set(Verdict)
+    named: set[Verdict] = {session.verdict} if session.verdict is not None else set(Verdict)
     for other in sorted(session.otherwise, key=lambda one: -one.verdict.severity):
-        if other.verdict not in told:
-            told.add(other.verdict)
+        if other.verdict not in named:
+            named.add(other.verdict)
             text = otherwise(other.verdict, other.causes, other.sensors, named=other.named)
             yield Reservation(Doubt.OTHER_MODEL, text, REPEAT, other.sensors, verdict=other.verdict)
 
@@ -322,7 +322,7 @@ def _of_structures(session: Doubted) -> Iterator[Reservation]:
 
 
 def _of_errors(session: Doubted) -> Iterator[Reservation]:
-    """Errors stated too large only make a verdict plainer, so they are told where one is in doubt."""
+    """Errors stated too large only make a verdict plainer, so they are named where one is in doubt."""
     in_doubt = session.verdict not in (None, Verdict.PASS, Verdict.FAIL)
     wrong = (scale for scale in session.noise if scale.factor > 1 or in_doubt)
     kinds = {sensor.kind for sensor in session.by.calibration.sensors}

@@ -28,7 +28,7 @@ from estimator.message import with_messages
 from service.diagnosis.tables import DiagnosisRow
 from service.flags.records import Concern, FlagState, Matter, NoticeKind
 from service.flags.tables import FlagRow, NoticeRow
-from service.judging.records import Counted, Decided, Key, Moment, Told, ToldSession, UnitRecords
+from service.judging.records import Counted, Decided, FlagEvidence, Key, Moment, SessionEvidence, UnitRecords
 from service.queue.records import WorkKind
 from service.queue.tables import WorkRow
 from service.sessions.decision import Judged, Verdict
@@ -158,24 +158,24 @@ class Derivations(Queries):
         self.insert_many(CommonMotionRow, [row for one in decided for row in _motion_rows(one)])
         self._session.expire_all()
 
-    def tell(self, id: str, told: Told) -> None:
-        """Keeps what the diagnosis of a session tells."""
+    def keep_evidence(self, id: str, evidence: FlagEvidence) -> None:
+        """Keeps what the diagnosis of a session says for flags."""
         own = update(DiagnosisRow).where(DiagnosisRow.session_id == id)
-        self._session.execute(own.values(tells=told_to_dict(told)))
+        self._session.execute(own.values(tells=evidence_to_dict(evidence)))
         self._session.expire_all()
 
-    def told(self, unit: int) -> tuple[ToldSession, ...]:
-        """What every accepted session of a unit tells, in order of time."""
+    def evidence(self, unit: int) -> tuple[SessionEvidence, ...]:
+        """Of every accepted session of a unit, in order of time."""
         return tuple(
-            ToldSession((at, id), _told(verdict), _found(diagnosis, is_undecided), basis is None)
-            for at, id, verdict, diagnosis, is_undecided, basis in self._session.execute(_TOLD, {"unit": unit})
+            SessionEvidence((at, id), _evidence(verdict), _diagnosis_evidence(diagnosis, is_undecided), basis is None)
+            for at, id, verdict, diagnosis, is_undecided, basis in self._session.execute(_EVIDENCE, {"unit": unit})
         )
 
-    def told_of_stand(self, stand: str) -> tuple[ToldSession, ...]:
-        """What the newest accepted sessions on a stand tell by their diagnoses, oldest first."""
-        found = self._session.execute(_TOLD_OF_STAND, {"stand": stand}).all()
+    def evidence_on_stand(self, stand: str) -> tuple[SessionEvidence, ...]:
+        """By the diagnoses of the newest accepted sessions on a stand, oldest first."""
+        found = self._session.execute(_EVIDENCE_OF_STAND, {"stand": stand}).all()
         return tuple(
-            ToldSession((at, id), None, _found(diagnosis, is_undecided), unit=unit, block=block)
+            SessionEvidence((at, id), None, _diagnosis_evidence(diagnosis, is_undecided), unit=unit, block=block)
             for at, id, diagnosis, is_undecided, unit, block in reversed(found)
         )
 
@@ -230,15 +230,15 @@ def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Upd
 
 
 MOST_OF_STAND = 500
-"""Sessions, the newest, that tell of a stand: of months where it is used every hour."""
+"""The newest sessions that count for a stand: of months where it is used every hour."""
 _IS_UNDECIDED = (SessionRow.verdict == Verdict.UNDECIDABLE) & ~SessionRow.is_reference
-_TOLD = (
+_EVIDENCE = (
     select(SessionRow.started_at, SessionRow.id, SessionRow.tells, DiagnosisRow.tells, _IS_UNDECIDED, SessionRow.basis)
     .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
     .where(SessionRow.unit_id == bindparam("unit"), IS_ACCEPTED)
     .order_by(SessionRow.started_at, SessionRow.id)
 )
-_TOLD_OF_STAND = (
+_EVIDENCE_OF_STAND = (
     select(SessionRow.started_at, SessionRow.id, DiagnosisRow.tells, _IS_UNDECIDED, UnitRow.serial, SessionRow.block)
     .join(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
     .join(UnitRow, UnitRow.id == SessionRow.unit_id)
@@ -261,7 +261,7 @@ def _summary(judged: Judged) -> dict[str, Any]:
 
 
 def _judged(one: Decided) -> dict[str, Any]:
-    tells = None if one.told is None else told_to_dict(one.told)
+    tells = None if one.evidence is None else evidence_to_dict(one.evidence)
     return {"session": one.session, "new_basis": one.basis, "new_tells": tells, **_summary(one.judged)}
 
 
@@ -280,20 +280,20 @@ def _motion_rows(one: Decided) -> Iterator[dict[str, Any]]:
         yield {"session_id": one.session, "revision": one.revision, **vars(motion)}
 
 
-def told_to_dict(told: Told) -> dict[str, list[list[Any]]]:
+def evidence_to_dict(evidence: FlagEvidence) -> dict[str, list[list[Any]]]:
     """As the store keeps it."""
-    concerns = [[c.matter.value, c.place, c.severity, c.summary] for c in told.concerns]
-    document: dict[str, list[list[Any]]] = STORED.written({"concerns": concerns, "clear": told.clear})
+    concerns = [[c.matter.value, c.place, c.severity, c.summary] for c in evidence.concerns]
+    document: dict[str, list[list[Any]]] = STORED.written({"concerns": concerns, "clear": evidence.clear})
     return document
 
 
-def _found(document: dict[str, list[list[Any]]] | None, is_undecided: bool) -> Told | None:
+def _diagnosis_evidence(document: dict[str, list[list[Any]]] | None, is_undecided: bool) -> FlagEvidence | None:
     """By a diagnosis: a session too coarse to decide has not seen that something is gone."""
-    told = _told(document)
-    return told if told is None or not is_undecided else Told(told.concerns, ())
+    evidence = _evidence(document)
+    return evidence if evidence is None or not is_undecided else FlagEvidence(evidence.concerns, ())
 
 
-def _told(document: dict[str, list[list[Any]]] | None) -> Told | None:
+def _evidence(document: dict[str, list[list[Any]]] | None) -> FlagEvidence | None:
     if document is None:
         return None
     concerns = tuple(
@@ -301,4 +301,4 @@ def _told(document: dict[str, list[list[Any]]] | None) -> Told | None:
         for matter, place, severity, summary in document["concerns"]
     )
     clear = tuple((str(matter), str(place), with_messages(why)) for matter, place, why in document["clear"])
-    return Told(concerns, clear)
+    return FlagEvidence(concerns, clear)

@@ -96,7 +96,7 @@ def _is_serviced_since(facts: UseFacts) -> bool:
 
 
 def _is_measured(facts: UseFacts) -> bool:
-    """Whether a session tells of the unit as it is now."""
+    """Whether a session shows the unit as it is now."""
     return facts.unit.last_at is not None and not _is_serviced_since(facts)
 
 

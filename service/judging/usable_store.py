@@ -138,6 +138,6 @@ def _flag(row: FlagRow) -> OpenFlag:
 
 
 def _uncertain(document: bytes, unit_type: UnitTypeRow, tolerances: ToleranceRow) -> tuple[str, ...]:
-    """What a reference tells too little of to be used by itself."""
+    """What a reference determines too poorly to be used by itself."""
     allowed = tolerances_of(unit_type_of(unit_type, tolerances))
     return tuple(left_uncertain(calibration_of(document), allowed, COVERAGE))

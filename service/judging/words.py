@@ -268,7 +268,7 @@ MOSTLY_MOTION = 0.5
 MOST_CANDIDATES = 6
 """Sensors that a sentence lists: a block of the common kind has no more."""
 LEAST_SHARE = 1e-3
-"""Of the samples, below which the share itself tells nobody more."""
+"""Of the samples, below which the share itself says no more."""
 
 
 def recording_in_words(result: ParityResult, decisions: tuple[Decision, ...]) -> str:

@@ -93,7 +93,7 @@ class Guard:
 
     @contextmanager
     def at_request(self, doing: str, place: str) -> Iterator[None]:
-        """A piece of work for somebody who waits for it, and is told what is foreseen."""
+        """A piece of work for somebody who waits for it, and is shown what is foreseen."""
         with unforeseen(doing, place) as met:
             yield
         if met.failure is not None:

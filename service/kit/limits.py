@@ -61,7 +61,7 @@ class Limits:
 
     @property
     def extent(self) -> Extent:
-        """What the estimator's reader is told."""
+        """Limits for the estimator's reader."""
         return Extent(rows=self.rows, columns=self.columns, cells=self.cells, nesting=self.nesting)
 
 

@@ -176,8 +176,8 @@ def coverage_in_words(calibration: Calibration, k: float) -> str:
     if not dofs:
         return f"k = {number(k)}"
     most, least = (coverage_factor(k, dof) for dof in (min(dofs), max(dofs)))
-    told = _range(min(dofs), max(dofs), 0)
-    degrees = "one effective degree" if told == "1" else say("{number} effective degrees", number=told)
+    count = _range(min(dofs), max(dofs), 0)
+    degrees = "one effective degree" if count == "1" else say("{number} effective degrees", number=count)
     return say(
         "k = {least}, by Student's t: the noise is estimated with {degrees} of freedom",
         least=_range(least, most, 2),

@@ -67,7 +67,7 @@ class Template:
         """Every expression and statement, and whether its value is in text for people."""
         for k, char in enumerate(self.flat):
             if self.part(char).startswith(("{{", "{%")):
-                yield self.part(char), k in self._told
+                yield self.part(char), k in self._spoken
 
     def whole(self, flat: str) -> str:
         """The source of a flat text."""
@@ -76,14 +76,14 @@ class Template:
     def spoken_source(self, start: int, end: int) -> str:
         """The source between two positions, with expressions for people translated."""
         return "".join(
-            translating(self.part(c)) if k in self._told and self.part(c).startswith("{{") else self.whole(c)
+            translating(self.part(c)) if k in self._spoken and self.part(c).startswith("{{") else self.whole(c)
             for k, c in enumerate(self.flat[start:end], start)
         )
 
     @cached_property
-    def _told(self) -> frozenset[int]:
-        told = frozenset(k for a, b in (*self.texts(), *self.spoken()) for k in range(a, b))
-        return told - self._english
+    def _spoken(self) -> frozenset[int]:
+        spoken = frozenset(k for a, b in (*self.texts(), *self.spoken()) for k in range(a, b))
+        return spoken - self._english
 
     @cached_property
     def _english(self) -> frozenset[int]:

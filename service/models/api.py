@@ -108,7 +108,7 @@ class ModelDocument(ModelRevision):
     """One accepted or withdrawn cause: a numbered revision of a model."""
 
     evidence: Json  # type: ignore[assignment]  # as it is stored
-    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions told beside,
+    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions adds,
     null where a single session showed it."""
 
 

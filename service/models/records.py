@@ -110,7 +110,7 @@ class ModelRevision:
     session: str
     """The session that showed it."""
     evidence: Evidence | None
-    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions told beside,
+    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions adds,
     null where a single session showed it."""
     accepted_by: str
     """Who accepted it."""

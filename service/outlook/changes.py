@@ -38,7 +38,7 @@ class Sources:
     past: Past
     known: Histories
     """The unit's own."""
-    told: TypeHistories
+    histories: TypeHistories
     together: tuple[str, ...]
     """What all sensors did together, and what a diagnosis explains of the latest changes, in words."""
 
@@ -52,7 +52,7 @@ def known_of(store: Store, serial: str) -> Histories:
 
 
 def gathered(store: Store, serial: str, known: Histories) -> Sources:
-    """Everything that a unit's outlook is worked out from; what the unit tells of its type is kept already."""
+    """Everything that a unit's outlook is worked out from; what the unit contributes to its type is kept already."""
     unit = Units(store).key(serial)
     since, _ = Services(store).around(unit, END_OF_TIME)
     last, shown = Outlooks(store).last_calibration(unit), Outlooks(store).last_session(unit)
@@ -74,10 +74,10 @@ def gathered(store: Store, serial: str, known: Histories) -> Sources:
 @outside_writing
 def worked_out(sources: Sources) -> UnitOutlook:
     """The numerical part, with no store at hand."""
-    told = sources.told
-    priors = {place: learned(rows) for place, rows in told.items()}
+    histories = sources.histories
+    priors = {place: learned(rows) for place, rows in histories.items()}
     outlook = forecast(sources.past, sources.known, priors)
-    return replace(outlook, rests_on=digest(told), together=sources.together)
+    return replace(outlook, rests_on=digest(histories), together=sources.together)
 
 
 @lru_cache(maxsize=AT_HAND)
@@ -87,16 +87,16 @@ def learned(rows: tuple[bytes, ...]) -> Prior:
 
 
 def of_type(store: Store, unit: int) -> TypeHistories:
-    """What the units of a unit's type tell of the parameters that this one has."""
+    """What the units of a unit's type contribute to the parameters that this one has."""
     return {place: Outlooks(store).histories(unit, *place) for place in sorted(Outlooks(store).places(unit))}
 
 
-def digest(told: TypeHistories) -> str:
+def digest(histories: TypeHistories) -> str:
     """64 hexadecimal digits, the same for the same histories."""
-    return sha256(RULE + b"".join(_bytes(told))).hexdigest()
+    return sha256(RULE + b"".join(_bytes(histories))).hexdigest()
 
 
-def _bytes(told: TypeHistories) -> Iterable[bytes]:
-    for place, rows in told.items():
+def _bytes(histories: TypeHistories) -> Iterable[bytes]:
+    for place, rows in histories.items():
         yield "/".join(place).encode()
         yield from rows

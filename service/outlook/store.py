@@ -192,12 +192,12 @@ class Outlooks(Queries):
         self._session.execute(delete(OutlookRow).where(OutlookRow.unit_id == unit))
         self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
 
-    def put_histories(self, unit: int, told: Mapping[tuple[str, str], Sequence[Evidence]]) -> None:
-        """Rewrites what a unit's histories tell of its type, by kind of sensor and parameter."""
+    def put_histories(self, unit: int, evidence: Mapping[tuple[str, str], Sequence[Evidence]]) -> None:
+        """Rewrites what a unit's histories contribute to its type, by kind of sensor and parameter."""
         self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
         self._session.add_all(
             HistoryRow(unit_id=unit, kind=kind, parameter=parameter, evidence=packed(histories))
-            for (kind, parameter), histories in told.items()
+            for (kind, parameter), histories in evidence.items()
         )
         self._session.flush()
 

@@ -30,7 +30,7 @@ class StateList(BaseModel):
     """The life of a session."""
 
     session: str = Field(description="Its id.")
-    state: RecordState = Field(description="What it is now. Only an accepted session tells of its unit.")
+    state: RecordState = Field(description="What it is now. Only an accepted session counts for its unit.")
     states: tuple[StateChange, ...] = Field(description="Oldest first; empty where it was accepted and remained so.")
 
 

@@ -66,7 +66,7 @@ def _was_questioned(store: Store, id: str) -> bool:
 
 
 OTHERWISE_WRITTEN = ("channels-swapped", "sign-reversed", "runs-swapped", "beta-reversed", "positions-swapped")
-"""Causes that say of a file that it tells something else than what was done."""
+"""Causes that say of a file that it states something else than what was done."""
 QUESTIONED = "Questioned, not judged: "
 """Heads the reason."""
 NOTHING_KNOWN = Remedies()

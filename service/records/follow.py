@@ -15,7 +15,7 @@ from service.judging.reference import known_unit
 from service.judging.store import Derivations
 from service.kit.guard import ending_here, kept
 from service.outlook.changes import END_OF_TIME, gathered, known_of, worked_out
-from service.outlook.rules.histories import told_of_type
+from service.outlook.rules.histories import type_evidence
 from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -140,12 +140,12 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
             if asked is None:
                 return
             unit, known = Units(store).key(serial), known_of(store, serial)
-        told = told_of_type(known)
+        evidence = type_evidence(known)
         with storage.database.writing() as store:
             Units(store).hold(serial)
             if not WorkQueue(store, WorkKind.OUTLOOK).holds(serial, asked.ticket):
                 continue
-            Outlooks(store).put_histories(unit, told)
+            Outlooks(store).put_histories(unit, evidence)
         with storage.database.reading() as store:
             sources = gathered(store, serial, known)
         outlook = worked_out(sources)

@@ -19,7 +19,7 @@ from service.judging.judge import judge, judge_recording
 from service.judging.records import Counted, Decided
 from service.judging.reference import KnownUnit, alike
 from service.judging.store import Derivations
-from service.records.flagging.fold import told_by
+from service.records.flagging.fold import verdict_evidence
 from service.records.keep import Made, made
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Judged, Opening
@@ -230,8 +230,8 @@ def put(known: KnownUnit, places: Sequence[Place], foreseen: Foreseen, diagnosed
     for place in places:
         own, outcome = place.session, foreseen.outcomes[place.session.id]
         basis = (UNWEIGHED if own.id in diagnosed else "") + place.basis
-        told = told_by(own.at, outcome.judged)
-        decided.append(Decided(own.id, own.revision, outcome.judged, basis, told, is_first=own.id in known.made))
+        evidence = verdict_evidence(own.at, outcome.judged)
+        decided.append(Decided(own.id, own.revision, outcome.judged, basis, evidence, is_first=own.id in known.made))
         if own.programme == IN_SERVICE:
             _move(known, own.id, outcome.moved)
     Derivations(known.store).put_judged(decided)

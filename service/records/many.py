@@ -1,6 +1,6 @@
 """Many units computed again, here or by the processes of a Dask cluster.
 
-computing fails is told and stops no other.
+computing fails is reported and stops no other.
 
 What is done is not done again: `units_behind` names the units with sessions of an earlier revision than concerns them.
 So a run that was ended goes on where it was, and a second one beside it does nothing twice.
@@ -53,7 +53,7 @@ class Outcome:
 
 
 Run = Callable[[Iterable[str]], Iterator[Outcome]]
-"""Computes units again, by serial number, and tells of each when it is done."""
+"""Computes units again, by serial number, and reports each when it is done."""
 
 
 def units_behind(storage: Storage) -> Iterator[str]:
@@ -69,7 +69,7 @@ def units_behind(storage: Storage) -> Iterator[str]:
 
 
 def recalibrate_one(storage: Storage, serial: str, now: datetime, coverage_factor: float) -> Outcome:
-    """A unit's sessions; whatever fails is told."""
+    """A unit's sessions; whatever fails is reported."""
     done = None
     with ending_here("recalibration", serial) as met:
         done = recalibrate(storage, serial, now, coverage_factor=coverage_factor)
@@ -169,7 +169,7 @@ def _run(client: Client, serials: Iterable[str], last: str, clock: Callable[[], 
 
 
 def _outcome(future: Future[Outcome], serial: str) -> Outcome:
-    """A unit at which worker after worker died is told like one that failed."""
+    """A unit at which worker after worker died is reported like one that failed."""
     if future.status == "finished":
         return future.result()
     fault = future.exception() if future.status == "error" else CancelledError("it was called off")

@@ -92,7 +92,7 @@ def recalibrate(
 ) -> Recalibrated:
     """Computes every session of a unit under its model, those that do not count too, and judges what rests on them.
 
-    ``until``: the last revision that counts, so that what each of several moved can be told apart; None for all.
+    ``until``: the last revision that counts, so that what each of several moved can be distinguished; None for all.
     ``then`` belongs to the transaction that puts it in force.
     """
     sources = _sources(storage, serial, until)
@@ -111,7 +111,7 @@ def recalibrate(
             derived = _put_in_force(store, way, serial, put, foreseen)
         after = {session.id: session for session in Sessions(store).of_unit(serial)}
         _write_down(store, way, [(before[one.session.id], after[one.session.id]) for one in put], who)
-        done = _told(serial, stored, outcomes, tuple(moved_verdicts(before, tuple(after.values()))))
+        done = _report(serial, stored, outcomes, tuple(moved_verdicts(before, tuple(after.values()))))
         then(store, done)
     if derived is not None:
         follow(storage, way, serial, derived)
@@ -153,7 +153,7 @@ def _concerning(revisions: Iterable[ModelRevision], stand: str | None) -> list[M
     return [r for r in revisions if r.scope is not Scope.STAND or r.subject == stand]
 
 
-def _told(
+def _report(
     serial: str,
     stored: Sequence[StoredSession],
     outcomes: "Sequence[_Recomputed | LeftSession | None]",

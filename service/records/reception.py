@@ -20,7 +20,7 @@ class Reception:
     coverage_factor: float
     metrics: Metrics
     ring: Callable[[], None]
-    """Is told when there are sessions to be diagnosed."""
+    """Notified when there are sessions to be diagnosed."""
     who: str = "crew"
     """That sends the files."""
     is_dated_later: bool = False

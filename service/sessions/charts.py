@@ -157,7 +157,7 @@ def scatter_in_words(size: float, measure: Measure) -> str:
 
 
 WIDER = 1.01
-"""Times by which the noise found must be larger to be drawn of its own: less is not told apart by eye."""
+"""Times by which the noise found must be larger to be drawn of its own: less cannot be seen."""
 DASHES = [4, 3]
 """Pixels drawn and left out of the edge of the noise that was found."""
 

@@ -94,14 +94,14 @@ def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
 
 
 class DoubtKind(StrEnum):
-    """Why a verdict carries a reservation, in the order in which reservations are told."""
+    """Why a verdict carries a reservation, in the order in which reservations are listed."""
 
     RECORD = "record"
     """The file says something else than what was done."""
     NOT_CHECKED = "not-checked"
     """No causes could be looked for."""
     PENDING = "pending"
-    """Causes are still being looked for: told to programs, which read a list; people are told in the verdict."""
+    """Causes are still being looked for: in the list for programs; people read it in the verdict."""
     TEMPERATURE = "temperature"
     """It was measured far from the temperatures of the unit's reference and earlier sessions."""
     CAUSE = "cause"

@@ -1,7 +1,7 @@
 """Parameters through time, one row a session, sensor and parameter, with what was decided of it.
 
 Histories have thousands of points: their columns are read, not whole rows as objects, and of a decision only those that
-a point tells.
+a point says.
 """
 
 from collections.abc import Iterable, Iterator, Sequence

@@ -91,7 +91,7 @@ class _StoredSession:
     reservations: Hidden[Reservations] = ()
     """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
-    """Only an accepted session tells of its unit."""
+    """Only an accepted session counts for its unit."""
     superseded_by: str | None = None
     """The session that stands for a superseded one."""
     temperature: Hidden[float | None] = None
@@ -150,7 +150,7 @@ class _Receipt:
     reservations: Hidden[Reservations] = None
     """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
-    """`questioned` where the file cannot be as it says; then it tells nothing."""
+    """`questioned` where the file cannot be as it says; then it counts for nothing."""
 
 
 @answer

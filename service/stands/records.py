@@ -128,7 +128,7 @@ class KnownStand:
 
     use: StandUse
     condition: StandCondition | None
-    """As it was last made; None where no session tells of it."""
+    """As it was last made; None where no session shows it."""
 
 
 @answer

@@ -131,7 +131,7 @@ def _motions(
 
 
 def _tuple(stored: Any) -> tuple[Any, ...]:
-    """A stored list; empty where something else is stored, which `MotionOnStand.is_whole` tells."""
+    """A stored list; empty where something else is stored, which `MotionOnStand.is_whole` says."""
     return tuple(stored) if isinstance(stored, list) else ()
 
 

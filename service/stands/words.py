@@ -23,9 +23,9 @@ def reason_of(
     if not shifts:
         return joined(" ", (STEADY, *_seating(seating))) if evidence else TOO_FEW
     lasting = [shift for shift in shifts if shift.until is None]
-    told = [_shift(shift) for shift in (*lasting, *(shift for shift in shifts if shift.until is not None))]
+    shown = [_shift(shift) for shift in (*lasting, *(shift for shift in shifts if shift.until is not None))]
     advice = "Check stand and fixture." if lasting else "The shift has ended: record what was done to the stand."
-    return joined(" ", (*told, advice, JUDGED, *_seating(seating)))
+    return joined(" ", (*shown, advice, JUDGED, *_seating(seating)))
 
 
 def _shift(shift: StandEvidence) -> str:

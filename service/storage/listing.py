@@ -40,7 +40,7 @@ class Key:
 
     @property
     def order(self) -> ColumnElement[Any]:
-        """As a query is told it."""
+        """As a query takes it."""
         order: ColumnElement[Any] = self.column.desc() if self.is_falling else self.column.asc()
         if self.nulls_first is None:
             return order

@@ -41,7 +41,7 @@ def cause_on(identifier: str, sensors: Sequence[str]) -> str:
 
 
 def weighty_first(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """As they are told: how the block sits in its fixture since earlier sessions, without which it is judged, last."""
+    """In the order of reading; how the block sits since earlier sessions, without which it is judged, comes last."""
     return tuple(sorted(findings, key=_is_seating))
 
 

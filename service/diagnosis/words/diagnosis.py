@@ -22,7 +22,7 @@ from service.diagnosis.words.causes import (
     weighty_first,
     what_is_wrong,
 )
-from service.diagnosis.words.findings import UNEXPLAINED, headline_of, told, what_to_do_about
+from service.diagnosis.words.findings import UNEXPLAINED, headline_of, in_words, what_to_do_about
 from service.kit.measures import THIN, leading_kind, number
 from service.sessions.records import DiagnosisState
 from service.sessions.words.advice import too_few
@@ -36,7 +36,7 @@ NOTHING = "Nothing wrong found"
 NOTHING_LEFT = "Too few positions for a diagnosis"
 TAKEN_UP = "There are as many parameters as readings, so no cause can be found: add positions."
 MOST_FINDINGS = 3
-"""Findings that one line tells before it counts the rest."""
+"""Findings that one line names before it counts the rest."""
 HEADLINES = {
     DiagnosisState.NOTHING: NOTHING,
     DiagnosisState.UNEXPLAINED: UNEXPLAINED,
@@ -81,9 +81,9 @@ def summary_of(answer: DiagnosisAnswer) -> str:
     """One line that a technician understands."""
     if answer.findings:
         common = [s for s in answer.structures if not s.sensors]
-        return joined(" ", (_named(weighty_first(answer.findings)), *([told(common)] if common else [])))
+        return joined(" ", (_named(weighty_first(answer.findings)), *([in_words(common)] if common else [])))
     if answer.structures:
-        return joined(" ", (told(answer.structures), *errors_of(answer)))
+        return joined(" ", (in_words(answer.structures), *errors_of(answer)))
     return nothing_of(answer)
 
 
@@ -108,7 +108,7 @@ def _kinds(answer: DiagnosisAnswer) -> set[str]:
 
 
 def _named(findings: Sequence[Finding]) -> str:
-    """The first findings; two that are one choice are told once."""
+    """The first findings; two that are one choice are named once."""
     said = tuple(dict.fromkeys(what_is_wrong(finding, findings) for finding in findings))
     more = len(said) - MOST_FINDINGS
     return joined(" ", said[:MOST_FINDINGS]) + (say(" And {number} more.", number=more) if more > 0 else "")

@@ -94,7 +94,7 @@ def ranking_of(finding: Finding) -> Iterator[Bar]:
 
 
 SURE = 1e-12
-"""Probability by chance below which the exponent tells nobody more."""
+"""Probability by chance below which the exponent says no more."""
 SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Of a power of ten."""
 
@@ -287,11 +287,11 @@ def what_to_do_about(structures: Sequence[Structure]) -> str:
 
 
 def leading(structures: Sequence[Structure]) -> Structure:
-    """The one that is told first."""
+    """The one that is named first."""
     return next((s for s in structures if s.of_record), structures[0])
 
 
-def told(structures: Sequence[Structure]) -> str:
+def in_words(structures: Sequence[Structure]) -> str:
     """What is there, in whom and where, in one line."""
     first = leading(structures)
     named = first.sensors and not first.of_record
@@ -307,7 +307,7 @@ def unexplained_in(sensors: Sequence[str]) -> str:
 def summed_up(structures: Sequence[Structure]) -> str:
     """That something is there, and in which sensors."""
     if leading(structures).of_record:
-        return told(structures)
+        return in_words(structures)
     sensors = sorted({sensor for structure in structures for sensor in structure.sensors})
     own = unexplained_in(sensors)
     if all(structure.sensors for structure in structures):

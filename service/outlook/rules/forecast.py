@@ -59,7 +59,7 @@ class Past:
     longest_days: float
     """From one calibration to the next, as the type allows."""
     shown: StoredSession | None = None
-    """Its latest session of any programme: a recording in service tells no date, but may find it unfit."""
+    """Its latest session of any programme: a recording in service sets no date, but may find it unfit."""
 
 
 def forecast(past: Past, known: Histories, priors: Mapping[tuple[str, str], Prior]) -> UnitOutlook:

@@ -1,4 +1,4 @@
-"""Step: judged changes since the last break → a history of each parameter, and what it tells of the unit's type."""
+"""Step: judged changes since the last break → a history of each parameter, and what it adds to the unit's type."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -158,12 +158,12 @@ Point = tuple[datetime, list[float], list[float], float | None, float | None]
 """Date, change, its uncertainty with its degrees of freedom, temperature."""
 
 
-def told_of_type(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
-    """What each history tells, by kind of sensor and parameter."""
-    told: dict[tuple[str, str], list[Evidence]] = {}
+def type_evidence(found: Histories) -> dict[tuple[str, str], list[Evidence]]:
+    """What each history contributes, by kind of sensor and parameter."""
+    by_place: dict[tuple[str, str], list[Evidence]] = {}
     for key, track in zip(found.keys, found.tracks, strict=True):
-        told.setdefault((key.kind, key.parameter), []).append(evidence(track))
-    return told
+        by_place.setdefault((key.kind, key.parameter), []).append(evidence(track))
+    return by_place
 
 
 def _groups(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) -> dict[TrackKey, Group]:

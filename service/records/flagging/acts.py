@@ -53,5 +53,5 @@ def resolve_as_done(store: Store, occasion: Occasion, flag: Flag, why: str) -> N
 
 
 def tell(store: Store, occasion: Occasion, kind: NoticeKind, text: str, flag: int) -> None:
-    """Keeps what happened to a flag, for people and for programs that are told."""
+    """Keeps what happened to a flag, for people and for programs that are notified."""
     Notices(store).add(occasion.unit, kind, occasion.at, SERVICE, text, flag=flag, session=occasion.session)

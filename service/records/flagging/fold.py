@@ -1,4 +1,4 @@
-"""Step: the open flags of a unit as its accepted sessions tell them, one after another in the order of time.
+"""Step: the open flags of a unit from its accepted sessions, one after another in the order of time.
 
 A session raises a matter, a later one shows it again or finds it in order. What a diagnosis no longer finds is closed
 with its reason; that a sensor was out of tolerance only a person settles. What a person resolved stays resolved until a
@@ -20,7 +20,7 @@ from service.diagnosis.words.findings import summed_up
 from service.flags.records import Concern, Flag, Matter, NoticeKind
 from service.flags.store import Flags, Notices
 from service.fleet.store import Fleet, Refreshed
-from service.judging.records import Key, Moment, Told, ToldSession
+from service.judging.records import FlagEvidence, Key, Moment, SessionEvidence
 from service.judging.store import Derivations
 from service.judging.words import reason, verdict_in_words
 from service.kit.measures import day_of
@@ -45,7 +45,7 @@ NEW_REFERENCE = "{sensor} is now judged against the session of {day}."
 
 
 def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: Refreshed) -> None:
-    """Tells of another verdict of the unit, where its latest session has another than was known."""
+    """A notice of another verdict of the unit, where its latest session has another than was known."""
     if was.before is None or was.before is latest.verdict:
         return
     before = condition_of(was.before, is_reference=was.was_reference).word
@@ -54,7 +54,7 @@ def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: R
     Notices(store).add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=latest.id)
 
 
-def told_by(measured_at: datetime, judged: Judged) -> Told:
+def verdict_evidence(measured_at: datetime, judged: Judged) -> FlagEvidence:
     """One concern a sensor that is out of tolerance; a sensor that is wholly within it is clear, and every sensor of a
     new reference."""
     day = day_of(measured_at)
@@ -67,7 +67,7 @@ def told_by(measured_at: datetime, judged: Judged) -> Told:
             clear.append((Matter.TOLERANCE.value, sensor, say(NEW_REFERENCE, day=day, sensor=sensor)))
         elif own and all(d.verdict in PASSES for d in own):
             clear.append((Matter.TOLERANCE.value, sensor, say(WITHIN, day=day, sensor=sensor)))
-    return Told(tuple(concerns), tuple(clear))
+    return FlagEvidence(tuple(concerns), tuple(clear))
 
 
 def _by_sensor(judged: Judged) -> dict[str, list[Decision]]:
@@ -89,7 +89,7 @@ NO_LONGER_FOUND = "The diagnosis of the session of {day} no longer finds it."
 
 
 def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
-    """Keeps what the diagnosis tells and settles the unit's flags. A session without a diagnosis tells nothing: a
+    """Keeps what the diagnosis says and settles the unit's flags. A session without a diagnosis says nothing: a
     failed one, or a recording in which no causes are looked for. Nor does an alignment: how a block sits on a turntable
     is no fault of the unit, and nothing else is looked for there. One without a degree of freedom clears nothing."""
     session = Sessions(store).get(made.session)
@@ -99,7 +99,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     accepted = in_force(Models(store).of_session(session.id))
     concerns = tuple(_concerns(made.found, session, accepted))
     clear = () if made.found.calibration.fit.is_exact else tuple(_clear(session))
-    Derivations(store).tell(session.id, Told(concerns, clear))
+    Derivations(store).keep_evidence(session.id, FlagEvidence(concerns, clear))
     settle_sessions(store, Occasion(unit, session.id, at))
 
 
@@ -116,11 +116,11 @@ def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRev
     """One a matter and place; what an engineer accepted into the model is known and raises nothing."""
     sensors = found.calibration.sensors
     known = {(revision.cause, place) for revision in accepted for place in places_of(revision, sensors)}
-    told: dict[tuple[str, str], list[Concern]] = {}
+    by_key: dict[tuple[str, str], list[Concern]] = {}
     for finding in found.findings:
         for concern in _of_finding(finding, found.findings, session, known):
-            told.setdefault(concern.key, []).append(concern)
-    for first, *others in told.values():
+            by_key.setdefault(concern.key, []).append(concern)
+    for first, *others in by_key.values():
         said = dict.fromkeys((first.summary, *(concern.summary for concern in others)))
         yield replace(first, summary=joined(" ", said))
     if found.structures:
@@ -148,7 +148,7 @@ def _of_finding(
 
 
 MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED)
-"""That a unit's sessions tell of; of a stand all sessions on it tell, the clock and the other units of the rest."""
+"""That a unit's own sessions decide; the rest rests on sessions on a stand, on the clock and on other units."""
 ANY = "*"
 """Every place."""
 
@@ -167,7 +167,7 @@ class Opened:
 
 @dataclass(frozen=True)
 class Lives:
-    """What sessions that told one after another have left."""
+    """What is left after the sessions so far."""
 
     opened: dict[Key, Opened]
     closed: dict[Key, str]
@@ -175,10 +175,10 @@ class Lives:
 
 
 def settle_sessions(store: Store, occasion: Occasion) -> None:
-    """Brings the flags that sessions tell of in line with the unit's accepted sessions."""
-    own = Derivations(store).told(occasion.unit)
+    """Brings the flags that sessions raise in line with the unit's accepted sessions."""
+    sessions = Derivations(store).evidence(occasion.unit)
     opened = {f.key: f for f in Flags(store).open_of(occasion.unit) if f.matter in (*MATTERS, Matter.STAND)}
-    lives = _lives(own, tuple(opened.values()))
+    lives = _lives(sessions, tuple(opened.values()))
     settled = Derivations(store).settled(occasion.unit, SERVICE) if lives.opened else {}
     wanted = {key: one for key, one in lives.opened.items() if key not in settled or settled[key] < one.at}
     for key, one in wanted.items():
@@ -189,34 +189,34 @@ def settle_sessions(store: Store, occasion: Occasion) -> None:
             resolve_as_done(store, occasion, flag, why)
     if wanted.keys() - opened.keys():
         Fleet(store).count_flags(occasion.unit)
-    for stand in sorted({*_stands_told(own), *Flags(store).open_stands_of(occasion.unit)}):
+    for stand in sorted({*_faulty_stands(sessions), *Flags(store).open_stands_of(occasion.unit)}):
         settle_stand(store, occasion, stand)
 
 
-def _stands_told(own: Iterable[ToldSession]) -> Iterator[str]:
+def _faulty_stands(sessions: Iterable[SessionEvidence]) -> Iterator[str]:
     """Stands that a unit's sessions find at fault."""
-    for one in own:
+    for one in sessions:
         for concern in () if one.diagnosis is None else one.diagnosis.concerns:
             if concern.matter is Matter.STAND:
                 yield concern.place
 
 
-def _lives(own: Iterable[ToldSession], opened: Iterable[Flag]) -> Lives:
-    """What is open and what no longer is, as a unit's sessions tell it one after another."""
+def _lives(sessions: Iterable[SessionEvidence], opened: Iterable[Flag]) -> Lives:
+    """What is open and what no longer is, after a unit's sessions one after another."""
     lives = Lives({}, {})
-    for one in own:
+    for one in sessions:
         kept = tuple(_concern(flag) for flag in opened if flag.session == one.at[1]) if one.is_old else ()
-        for told in (one.verdict, one.diagnosis, Told(kept, ())):
-            if told is not None:
-                lives = _after(lives, told, one.at)
+        for evidence in (one.verdict, one.diagnosis, FlagEvidence(kept, ())):
+            if evidence is not None:
+                lives = _after(lives, evidence, one.at)
     return lives
 
 
-def _after(lives: Lives, told: Told, at: Moment) -> Lives:
+def _after(lives: Lives, evidence: FlagEvidence, at: Moment) -> Lives:
     """A sensor out of tolerance is left to a person, who says why it is back; what a diagnosis found is closed by one
     that no longer finds it."""
-    shown = {c.key: Opened(c, at[1], at) for c in told.concerns if c.matter in MATTERS}
-    clear = {(matter, place): why for matter, place, why in told.clear}
+    shown = {c.key: Opened(c, at[1], at) for c in evidence.concerns if c.matter in MATTERS}
+    clear = {(matter, place): why for matter, place, why in evidence.clear}
     gone = {key: why for key in lives.opened if (why := clear.get(key) or clear.get((key[0], ANY)))}
     closed = {key: why for key, why in gone.items() if key[0] != Matter.TOLERANCE}
     left = {
@@ -228,7 +228,7 @@ def _after(lives: Lives, told: Told, at: Moment) -> Lives:
 
 
 def _concern(flag: Flag) -> Concern:
-    """What a session told of before that was kept."""
+    """Of a session whose evidence was not kept."""
     return Concern(flag.matter, flag.place, flag.severity, flag.summary)
 
 

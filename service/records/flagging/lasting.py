@@ -66,7 +66,7 @@ ACCEPTED = "Accepted into the model of {whose}, revision {revision}."
 def flag_lasting(
     store: Store, group: Group, found: Iterable[GroupFinding], latest: Member | None, at: datetime
 ) -> None:
-    """Brings the flags of a group's own effects in line with its answer; those of others are told by theirs.
+    """Brings the flags of a group's own effects in line with its answer; others' flags follow from theirs.
 
     ``latest``: the session that was measured last; None where the group has none.
     """

@@ -1,7 +1,7 @@
 """Step: what sessions and units show of a stand means a flag of the stand, one a matter, that names the units.
 
-Sessions on it tell one after another in the order of time, whatever unit they measure: one finds the stand at fault, a
-later one of a block of the same kind no longer does. That it has shifted the common motions of its units tell, looked
+Sessions on it are taken in the order of time, whatever unit they measure: one finds the stand at fault, a
+later one of a block of the same kind no longer does. A shift shows in the common motions of its units, looked
 at now and then. What is no longer found is closed with its reason; what a person resolved stays resolved until a later
 session shows it again.
 """
@@ -14,7 +14,7 @@ from estimator.message import joined, say
 from service.errors import ServiceError
 from service.flags.records import Concern, Flag, FlagState, Matter
 from service.flags.store import FlagQuery, Flags
-from service.judging.records import Moment, ToldSession
+from service.judging.records import Moment, SessionEvidence
 from service.judging.store import Derivations
 from service.kit.guard import Alone, plainly
 from service.models.records import Scope
@@ -48,7 +48,7 @@ class _Fault:
 def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
     """Brings the flag on what sessions find on a stand in line with all accepted sessions on it."""
     Stands(store).hold(stand)
-    found, why = _fault(Derivations(store).told_of_stand(stand), stand)
+    found, why = _fault(Derivations(store).evidence_on_stand(stand), stand)
     opened = _open(store, Matter.STAND, stand)
     settled = None if found is None else Derivations(store).settled_of_stand(stand, SERVICE)
     if found is None or (settled is not None and settled >= found.at):
@@ -58,11 +58,11 @@ def settle_stand(store: Store, occasion: Occasion, stand: str) -> None:
     _bring(store, replace(occasion, session=found.at[1]), opened, _of_stand(found.concern, stand, found.units))
 
 
-def _fault(told: Iterable[ToldSession], stand: str) -> tuple[_Fault | None, str]:
+def _fault(sessions: Iterable[SessionEvidence], stand: str) -> tuple[_Fault | None, str]:
     """What is open, and else why nothing is."""
     by_block: dict[str, _Fault] = {}
     why = NOT_SHOWN
-    for one in told:
+    for one in sessions:
         if one.diagnosis is None:
             continue
         shown = next((c for c in one.diagnosis.concerns if c.key == (Matter.STAND, stand)), None)
@@ -149,7 +149,7 @@ def _close(storage: Storage, flag: Flag, now: datetime) -> None:
 
 
 def _require_whole(one: StandCondition) -> None:
-    """Tells of sessions whose common motion cannot be used; without them the stand is still judged."""
+    """Raises for sessions whose common motion cannot be used; without them the stand is still judged."""
     if one.unreadable:
         raise ServiceError(
             say("What is stored of these sessions cannot be used: {reason}.", reason=", ".join(one.unreadable))

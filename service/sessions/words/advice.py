@@ -1,4 +1,4 @@
-"""What to measure so that a session tells what it leaves open."""
+"""What to measure so that a session settles what it leaves open."""
 
 from estimator.message import joined, say, say_count
 from estimator.results import Calibration

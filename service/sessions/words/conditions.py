@@ -146,19 +146,19 @@ def but_alone(reservations: Reservations) -> str:
     """The same where no word stands before it."""
     if reservations is None:
         return LOOKING
-    told, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
+    named, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
     rest = say("; and {number} more", number=more) if more > 0 else ""
     return say(
         "but {reservations}{rest}: {advice}",
-        reservations=joined("; and ", (one.text for one in told)),
+        reservations=joined("; and ", (one.text for one in named)),
         rest=rest,
-        advice=joined(" and ", advice_of(told)),
+        advice=joined(" and ", advice_of(named)),
     )
 
 
-def advice_of(told: Sequence[Reservation]) -> tuple[str, ...]:
+def advice_of(reservations: Sequence[Reservation]) -> tuple[str, ...]:
     """What to do, once, and not what other advice says already; a wrong file is put right before anything else."""
-    if any(one.kind is Doubt.RECORD for one in told):
-        told = [one for one in told if one.kind is Doubt.RECORD]
-    advice = tuple(dict.fromkeys(one.advice for one in told))
+    if any(one.kind is Doubt.RECORD for one in reservations):
+        reservations = [one for one in reservations if one.kind is Doubt.RECORD]
+    advice = tuple(dict.fromkeys(one.advice for one in reservations))
     return tuple(one for one in advice if not any(one in other for other in advice if other != one))

@@ -30,7 +30,7 @@ MEANINGS = {
 }
 NOT_DECIDED = "cannot be determined from a record of this length"
 SEVERAL = 3
-"""Sensors of a kind, from which on all of them together are told in one sentence."""
+"""Sensors of a kind, from which on all of them together are named in one sentence."""
 LEVEL = 0.01
 """Chance that a unit whose noise is the same is said to have become noisier, over all its sensors and terms."""
 
@@ -64,8 +64,8 @@ def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
         return ()
     newest = decided[-1].session
     courses = [list(own) for _, own in groupby(sorted(decided, key=_place), key=_place)]
-    told = [own for own in courses if len(own) > 1 and own[-1].session == newest]
-    return tuple(s for own in _by_term(told) for s in _sentences(own, growth(_sizes(own), LEVEL / len(told))))
+    lasting = [own for own in courses if len(own) > 1 and own[-1].session == newest]
+    return tuple(s for own in _by_term(lasting) for s in _sentences(own, growth(_sizes(own), LEVEL / len(lasting))))
 
 
 def _sizes(courses: Sequence[Points]) -> list[GrowthCourse]:

@@ -24,7 +24,7 @@ DOUBTFUL = 0.05
 TOO_GOOD = 0.999
 """Probability of χ² above which the noise must have been overstated."""
 SMALLEST = 1e-4
-"""Probability below which its size tells nobody more."""
+"""Probability below which its size says no more."""
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import pytest
 
 from estimator.diagnosis.results import Course, Structure
-from service.diagnosis.words.findings import course_in_words, headline_of, summed_up, told, what_to_do_about
+from service.diagnosis.words.findings import course_in_words, headline_of, in_words, summed_up, what_to_do_about
 
 OWN = Structure("harmonic 3 of β", ("A2",), 1e-9, 9.0)
 COURSE = Structure("of the stand", (), 1e-9, 9.0, Course("β", ("α",), ((1e-5,), (-1e-5,))))
@@ -13,16 +13,16 @@ COMMON = "An effect common to all sensors, of the stand or fixture, that no know
 
 
 def test_what_one_sensor_does_is_told_of_that_sensor() -> None:
-    assert told([OWN]) == "An effect in A2 that no known cause explains: harmonic 3 of β."
+    assert in_words([OWN]) == "An effect in A2 that no known cause explains: harmonic 3 of β."
 
 
 def test_what_all_sensors_show_is_told_of_the_stand() -> None:
-    assert told([COURSE]) == f"{COMMON}: the applied vector deviates in α, smoothly along β."
-    assert told([PATTERN]) == f"{COMMON}: harmonic 3 of β."
+    assert in_words([COURSE]) == f"{COMMON}: the applied vector deviates in α, smoothly along β."
+    assert in_words([PATTERN]) == f"{COMMON}: harmonic 3 of β."
 
 
 def test_a_mixed_up_record_is_told_before_all_else() -> None:
-    assert told([OWN, MIXED]) == "The record is wrong: input axes 74° off: columns are mixed up."
+    assert in_words([OWN, MIXED]) == "The record is wrong: input axes 74° off: columns are mixed up."
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from service.diagnosis.store import Diagnoses
 from service.flags.changes import resolve_flag
 from service.flags.records import Concern, Flag, FlagState, Matter
 from service.flags.store import FlagQuery, Flags
-from service.judging.records import Told
+from service.judging.records import FlagEvidence
 from service.judging.store import Derivations
 from service.models.records import Scope
 from service.records.changes import withdraw_session
@@ -33,9 +33,9 @@ from tests.service.made_sessions import session_bytes
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 STAND = "ODG-1"
 GONE = "The diagnosis no longer finds it."
-STICKS = Told((Concern(Matter.CAUSE, "A3", 1, "A3 sticks."),), ())
-AT_FAULT = Told((Concern(Matter.STAND, STAND, 1, "The head is off centre."),), ())
-SOUND = Told((), ((Matter.STAND.value, STAND, GONE), (Matter.CAUSE.value, "*", GONE)))
+STICKS = FlagEvidence((Concern(Matter.CAUSE, "A3", 1, "A3 sticks."),), ())
+AT_FAULT = FlagEvidence((Concern(Matter.STAND, STAND, 1, "The head is off centre."),), ())
+SOUND = FlagEvidence((), ((Matter.STAND.value, STAND, GONE), (Matter.CAUSE.value, "*", GONE)))
 MEASURED = tuple((unit, month) for unit in ("BA-1", "BA-2") for month in (1, 3, 5))
 
 
@@ -55,13 +55,13 @@ def session(storage: Storage, unit: str, month: int) -> str:
         return next(s.id for s in Sessions(store).of_unit(unit) if s.started_at.month == month)
 
 
-def tell(storage: Storage, unit: str, month: int, told: Told) -> None:
+def tell(storage: Storage, unit: str, month: int, told: FlagEvidence) -> None:
     """As a diagnosis of the session would."""
     id = session(storage, unit, month)
     made = StoredDiagnosis(id, 0, DiagnosisState.NAMED, "", None, None, None, "1", NOW)
     with storage.database.writing() as store:
         Diagnoses(store).add_once(made)
-        Derivations(store).tell(id, told)
+        Derivations(store).keep_evidence(id, told)
         settle_sessions(store, Occasion(Units(store).hold(unit), id, NOW))
 
 
