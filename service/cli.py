@@ -98,7 +98,7 @@ def imu_health(
 
 
 def main() -> None:
-    """Runs a command; what a user can put right is one line on standard error, never a traceback."""
+    """Runs a command; what a user can mend is one line on standard error, never a traceback."""
     try:
         code = app(standalone_mode=False)
     except TyperException as fault:

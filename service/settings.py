@@ -80,8 +80,8 @@ class Settings(BaseSettings):
         default=10.0,
         gt=0,
         le=600,
-        description="Longest wait for a lock of the database, s; PostgreSQL has thrice that for a statement and half "
-        "of it for a connection.",
+        description="Longest wait for a lock of the database, s; PostgreSQL has three times that for a statement and "
+        "half of it for a connection.",
     )
     host: str = Field(default="127.0.0.1", description="Address to listen on.")
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on.")

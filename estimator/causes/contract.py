@@ -290,7 +290,7 @@ class Correction(Cause):
 
     @abstractmethod
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
-        """Every way to undo it: the sensors (or, for rows, the rows) concerned and the session put right."""
+        """Every way to undo it: the sensors (or, for rows, the rows) concerned and the corrected session."""
 
 
 class SensorCause(Signature):

@@ -66,13 +66,13 @@ def diagnose(
 
 @dataclass(frozen=True, eq=False)
 class PutRight:
-    """A session whose record is put right, and its history, both fitted."""
+    """A session whose record is corrected, and its history, both fitted."""
 
     rows: CalibrationSession
     """As its file says, averaged."""
     clips: tuple[Clip, ...]
     errors: tuple[RecordError, ...]
-    """What of the record was put right."""
+    """What of the record was corrected."""
     right: Baseline
     earlier: tuple[Baseline, ...]
     """Of the history, oldest first, without clipped readings."""
@@ -81,7 +81,7 @@ class PutRight:
 def put_right(
     session: CalibrationSession, history: Sequence[CalibrationSession], catalogue: Sequence[Cause]
 ) -> PutRight:
-    """The session and its history fitted, the session's record put right first."""
+    """The session and its history fitted, the session's record corrected first."""
     rows = averaged(session)
     refuse_silent(rows)
     clips, whole = unclipped(rows, catalogue)
@@ -101,7 +101,7 @@ def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -
 
 
 def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
-    """What the simulation gets wrong about a session whose record is put right."""
+    """What the simulation gets wrong about a session whose record is corrected."""
     rows, right, earlier = session.rows, session.right, session.earlier
     wrong = impossible_axes(right, earlier, catalogue)
     state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)

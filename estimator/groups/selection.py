@@ -110,7 +110,7 @@ def select(
 def larger_than_stated(layout: GroupLayout) -> Array:
     """(n,) at least 1: by how much the sessions of each unit scatter more than they say, over all of them.
 
-    Those that were put right by themselves are asked apart. The largest effect of the unit is no scatter.
+    Those that were corrected by themselves are asked apart. The largest effect of the unit is no scatter.
     """
     plain = pooled(layout)
     energy: dict[tuple[str, bool], Array] = {}

@@ -1,6 +1,6 @@
 """From a session to what is kept of it for its groups.
 
-The record is put right first: clipped channels, slips of the record and readings that do not belong to the rest. Then
+The record is corrected first: clipped channels, slips of the record and readings that do not belong to the rest. Then
 every sensor's scatter is held against its stated noise, after what the session shows plainly by itself is taken out.
 Where it contradicts it, because the noise is misstated or because structure is left that no candidate explains, the
 session enters with the scatter that it has and never with full weight. Noise that is estimated from the session itself
@@ -91,7 +91,7 @@ def statistics_of(session: CalibrationSession) -> SessionStatistics:
 
 
 def put_right(session: CalibrationSession) -> tuple[Baseline, tuple[str, ...]]:
-    """A session fitted with its record put right, and what was put right, in words."""
+    """A session fitted with its record corrected, and the corrections, in words."""
     rows = averaged(session)
     refuse_silent(rows)
     clips, whole = unclipped(rows, CATALOGUE)

@@ -111,7 +111,7 @@ class SessionStatistics(
     noise_factor: Array
     """(m,) by which the stated standard errors were enlarged (or reduced), because the readings contradict them."""
     put_right: tuple[str, ...] = ()
-    """What of the record was put right first, in words."""
+    """What of the record was corrected first, in words."""
 
     @cached_property
     def starts(self) -> Array:

@@ -76,7 +76,7 @@ def diagnose(
 
 @remembered
 def record_of(earlier: CalibrationSession, catalogue: tuple[Cause, ...]) -> SessionStatistics:
-    """What is kept of a session of the history, its record put right."""
+    """What is kept of a session of the history, its record corrected."""
     _, right = undo_record_errors(earlier_baseline(earlier, catalogue), (), catalogue)
     return kept(right.session, with_fitted_flip(right), ())
 

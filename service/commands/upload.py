@@ -146,11 +146,14 @@ COLOURS = {
 
 
 Supersedes = Annotated[
-    str | None, typer.Option(metavar="ID", help="Stored session that this corrected file stands for from now on.")
+    str | None, typer.Option(metavar="ID", help="Stored session that this corrected file supersedes.")
 ]
 By = Annotated[str | None, typer.Option(help="Who replaces it; with --supersedes.")]
 Wait = Annotated[
-    bool, typer.Option("--wait/--no-wait", help="Wait until causes were looked for: they may be said with the verdict.")
+    bool,
+    typer.Option(
+        "--wait/--no-wait", help="Wait until causes were looked for: they may add reservations to the verdict."
+    ),
 ]
 Mapping = Annotated[
     Path | None, typer.Option(help="JSON file that says how tables of your own layout are read: imu-mapping/1.")
@@ -173,7 +176,7 @@ def upload_files(
 ) -> None:
     """Upload session files and print the verdict of each; a file that is already there is stored once."""
     if supersedes and len(files) > 1:
-        raise typer.BadParameter("one corrected file stands for one session", param_hint="--supersedes")
+        raise typer.BadParameter("one corrected file supersedes one session", param_hint="--supersedes")
     read_by = None if mapping is None else mapping.read_text(encoding="utf-8")
     fields = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
     stated = {name: text for name, text in fields.items() if text}

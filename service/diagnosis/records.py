@@ -58,7 +58,7 @@ class StoredDiagnosis:
     estimator_version: str
     created_at: datetime
     reservations: tuple[Reservation, ...] = ()
-    """What the session's verdict is said with."""
+    """Reservations of the session's verdict."""
     gain_in_words: str = ""
     """What the named causes gain, in one sentence; empty where none is named."""
 

@@ -58,7 +58,7 @@ class Diagnoses(Queries):
         )
 
     def put_reservations(self, session: str, reservations: Sequence[Reservation]) -> None:
-        """Says anew what a verdict is said with, because the verdict or its model changed."""
+        """Works out a verdict's reservations anew, because the verdict or its model changed."""
         own = DiagnosisRow.session_id == session
         written = reservations_to_list(reservations)
         self._touch(session)
@@ -107,7 +107,7 @@ class Diagnoses(Queries):
         return found is not None and found.state is DiagnosisState.FAILED
 
     def _touch(self, session: str) -> None:
-        """The unit's verdict may be said with a reservation now, or without."""
+        """The unit's verdict may have gained or lost a reservation."""
         unit = self._session.scalar(select(SessionRow.unit_id).where(SessionRow.id == session))
         if unit is not None:
             self.touch(unit)

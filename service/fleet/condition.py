@@ -75,7 +75,7 @@ class UnitSummary:
     lot: str | None = None
     """Production lot, where it is recorded."""
     reservations: Hidden[Reservations] = ()
-    """What the verdict is said with."""
+    """Reservations of the verdict."""
     customer: Hidden[Customer] = NO_CUSTOMER
     """For whom it is calibrated."""
     is_undated: Hidden[bool] = False
@@ -114,7 +114,7 @@ class ConditionCount:
     condition: Condition
     count: int
     reserved: int
-    """Of how many of them the verdict is said with a reservation."""
+    """Of how many of them the verdict has a reservation."""
 
     def without(self, other: "ConditionCount") -> "ConditionCount":
         """The same without those that another condition counts."""
@@ -135,13 +135,13 @@ class FleetCondition:
     flags: int = 0
     """How many flags are open."""
     reserved: dict[Verdict, int] = field(default_factory=dict)
-    """Of how many with each verdict it is said with a reservation."""
+    """Of how many with each verdict have a reservation."""
     overdue: Hidden[int] = 0
     """How many should have been calibrated by now; 0 where that was not asked."""
     references: int = 0
     """Of how many the latest session is a reference, which nothing was held against."""
     reserved_references: Hidden[int] = 0
-    """Of how many of these it is said with a reservation."""
+    """Of how many of these have a reservation."""
 
     @property
     def counts(self) -> tuple[ConditionCount, ...]:

@@ -32,7 +32,7 @@ class FleetQuery(ListQuery):
     text: str | None = None
     """Part of the serial number or of the type's name, small and capital letters alike."""
     reserved: bool | None = None
-    """Whether the verdict is said with a reservation; None where either will do."""
+    """Whether the verdict has a reservation; None where either will do."""
     due_before: datetime | None = None
     undated: bool = False
     """Only units that wait for no date: a hand, another session, or the first one."""
@@ -85,7 +85,7 @@ class Tally:
     flags: int
     """That are open on them."""
     reserved: int
-    """Of how many the verdict is said with a reservation."""
+    """Of how many the verdict has a reservation."""
 
 
 @dataclass(frozen=True)

@@ -326,7 +326,7 @@ def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
 
 
 def _reservations(row: DiagnosisRow | None) -> Reservations:
-    """What the verdict is said with; None while causes are still being looked for."""
+    """Reservations of the verdict; None while causes are still being looked for."""
     return None if row is None else reservations_from_list(row.session_id, row.reservations)
 
 

@@ -42,7 +42,7 @@ class TalliedRow(Base):
 
 class FleetTallyRow(Base):
     """How many units of a type are in one condition and use so much of their tolerance; their open flags, and how many
-    of their verdicts are said with a reservation."""
+    of their verdicts have a reservation."""
 
     __tablename__ = "fleet_tallies"
     unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), primary_key=True, autoincrement=False)

@@ -117,7 +117,7 @@ def _is_design(found: Found, kind: UnitType) -> bool:
 
 
 def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy = Remedy.READINGS) -> Iterator[Doubt]:
-    """Scale factors far from known ones; sensors that are off alike together. ``remedy`` is what puts right readings in
+    """Scale factors far from known ones; sensors that are off alike together. ``remedy`` is what corrects readings in
     another unit: with nominal values that agree with them, both."""
     ratios = {
         sensor.name: abs(own.scale.value / known[sensor.name])

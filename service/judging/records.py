@@ -117,7 +117,7 @@ STILL_LOOKING = Reservation(Doubt.PENDING, LOOKING, AGAIN)
 
 @dataclass(frozen=True, kw_only=True)
 class SaidVerdict:
-    """A verdict that is said with its reservations."""
+    """A verdict with its reservations."""
 
     reservations: tuple[Reservation, ...]
     """What speaks against taking the verdict as it stands; one of kind `pending` while causes are still being looked

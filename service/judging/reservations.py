@@ -1,4 +1,4 @@
-"""Step: a verdict and what was found about its session → what the verdict is said with.
+"""Step: a verdict and what was found about its session → the verdict's reservations.
 
 The verdict in force is one of several: of the baseline, of the model with the named causes, and of the model with each
 alternative that the readings leave standing. Where they agree, and nothing that was found is large beside a tolerance,
@@ -236,7 +236,7 @@ class Doubted:
 
 
 def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
-    """Everything that the verdict is said with, by how much it matters; empty where it is plain."""
+    """The verdict's reservations, by how much they matter; empty where it has none."""
     found = (
         *_of_temperature(session.temperatures, session.worth),
         *_of_findings(session),

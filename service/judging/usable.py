@@ -138,7 +138,7 @@ def _gravely_reserved(facts: UseFacts, _: datetime) -> Iterator[Objection]:
 
 
 def _said_with(facts: UseFacts, *, forbidding: bool) -> Iterator[Objection]:
-    """What the verdict is said with, each with the action that the verdict itself ends with."""
+    """The verdict's reservations, each with the action that the verdict itself ends with."""
     every = facts.unit.reservations or ()
     action = joined(" and ", advice_of(every[:MOST_TOLD]))
     for one in every:

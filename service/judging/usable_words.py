@@ -53,7 +53,7 @@ def flagged(flag: OpenFlag) -> str:
 
 
 def reserved(one: Reservation) -> str:
-    """What a verdict is said with, as a sentence of its own."""
+    """A verdict's reservations as one sentence."""
     return say("{problem}: {advice}.", problem=capitalised(one.text), advice=one.advice)
 
 

@@ -48,7 +48,7 @@ class Limits:
     at_once: int = 2
     """Files that are read apart at the same time."""
     in_flight: int = 4
-    """Large uploads that are received or worked on at once; others are asked back."""
+    """Large uploads that are received or worked on at once; more are rejected with Retry-After."""
     work: float = 600.0
     """Seconds that one piece of work in the background may take; the largest diagnosis takes tens of them."""
     free: int = 256 * MEBIBYTE

@@ -21,7 +21,7 @@ HARD = "\u00a0"
 MINUS = "\u2212"
 """The true one, as wide as a plus."""
 UNKNOWN = "\u2013"
-"""Stands for a number that is not known: a dash."""
+"""Shown for a number that is not known: a dash."""
 COVERAGE = 2.0
 """k of the uncertainties that are shown where no decision states its own."""
 

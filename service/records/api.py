@@ -35,7 +35,7 @@ class StateList(BaseModel):
 
 
 class Correcting(BaseModel):
-    """Who has a questioned session's file put right."""
+    """Who is to have a questioned session's file corrected."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"by": "K. Ito"}})
 
@@ -43,7 +43,7 @@ class Correcting(BaseModel):
 
 
 class Superseding(BaseModel):
-    """Which session stands for another one, who says so and why."""
+    """Which session supersedes another, who says so and why."""
 
     model_config = ConfigDict(
         extra="forbid",

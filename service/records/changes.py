@@ -94,7 +94,7 @@ def question_diagnosed(store: Store, way: Deriving, id: str, found: Diagnosed) -
 
 
 def accept_session(storage: Storage, way: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
-    """Accepts a session; ConflictError where it counts already, or where another one stands for it."""
+    """Accepts a session; ConflictError where it counts already, or where another has superseded it."""
     with storage.database.writing() as store:
         Units(store).hold(Sessions(store).get(id).unit)
         session = Sessions(store).get(id)

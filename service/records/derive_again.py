@@ -186,7 +186,7 @@ NOT_STORED = 0
 
 
 def foresee_upload(store: Store, way: Deriving, new: StoredSession, made: Calibrated, but: str | None) -> Foreseen:
-    """The verdict of a session that is to be stored; ``but`` is the session that gives way to it."""
+    """The verdict of a session that is to be stored; ``but`` is the session that it supersedes."""
     unit, block = Units(store).find(new.unit), made.checked.session.block
     own = Counted(new.id, block, new.programme, new.started_at, new.revision, is_reference=False, basis=NOT_JUDGED)
     if unit is None:

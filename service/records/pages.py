@@ -68,7 +68,7 @@ for mark in MARKS.items():
 
 @router.post("/sessions/{id}/correct")
 def correct(id: Key, by: By, reception: ReceptionOf, now: Now) -> RedirectResponse:
-    """A corrected file is made of a questioned session's and stands for it."""
+    """A corrected file is made from a questioned session's and supersedes it."""
     return RedirectResponse(f"/sessions/{correct_session(reception, id, by, now).id}", SEE_OTHER)
 
 
@@ -77,7 +77,7 @@ def stand(
     id: Key, session: Annotated[str, Form(max_length=200, pattern=NOT_BLANK)], by: By, why: Why,
     reception: ReceptionOf, now: Now,
 ) -> RedirectResponse:  # fmt: skip
-    """A session stands for another one of the same moment."""
+    """A session supersedes another one of the same moment."""
     supersede_session(reception.storage, deriving(reception, now), Replaced(session, by, why), id)
     reception.ring()
     return RedirectResponse(f"/sessions/{id}", SEE_OTHER)

@@ -1,4 +1,4 @@
-"""Flow: a session gives way to another one: a corrected file, the right unit, the right date. Both stay on record."""
+"""Flow: a session is superseded by another: a corrected file, the right unit, the right date. Both stay on record."""
 
 from datetime import datetime
 
@@ -27,7 +27,7 @@ REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
 
 
 def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: str) -> tuple[StoredSession, Derived]:
-    """Says that a stored session stands for another one; ConflictError where either does not count."""
+    """Marks a stored session as superseded by another; ConflictError where either does not count."""
     settled = settled_by(storage, replaced.session, by)
     with storage.database.writing() as store:
         derived = supersede(store, way, replaced, Sessions(store).get(by), settled)
@@ -81,7 +81,7 @@ def _is_in_doubt_for(store: Store, session: StoredSession, why: str | None) -> b
 
 
 def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) -> StoredSession:
-    """Writes down that a session gives way to another, and returns it as it was."""
+    """Writes down that a session is superseded, and returns it as it was."""
     Units(store).hold(Sessions(store).get(replaced.session).unit)
     known = Sessions(store).get(replaced.session)
     if known.id == by.id:

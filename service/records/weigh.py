@@ -163,7 +163,7 @@ def weighable(store: Store, session: Counted) -> Weighable:
 
 
 def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
-    """After another calibration or verdict of a session came into force: what it is said with; where its file is lost
+    """After another calibration or verdict of a session came into force: its reservations; where its file is lost
     or can no longer be read, that nobody could look. No transaction is open."""
     id = session.id
     with storage.database.reading() as store:

@@ -89,11 +89,11 @@ class _StoredSession:
     stage: str | None = None
     """`as-found`, `as-left`, or null where neither was said."""
     reservations: Hidden[Reservations] = ()
-    """What the verdict is said with."""
+    """Reservations of the verdict."""
     state: RecordState = RecordState.ACCEPTED
     """Only an accepted session counts for its unit."""
     superseded_by: str | None = None
-    """The session that stands for a superseded one."""
+    """The replacement of a superseded session."""
     temperature: Hidden[float | None] = None
     """°C, the mean over the session; None where it was not recorded."""
     time_since_power_on: float | None = None
@@ -148,7 +148,7 @@ class _Receipt:
     is_reference: bool
     """Whether later sessions are judged against this one; then its own verdict is `undecidable`."""
     reservations: Hidden[Reservations] = None
-    """What the verdict is said with."""
+    """Reservations of the verdict."""
     state: RecordState = RecordState.ACCEPTED
     """`questioned` where the file cannot be as it says; then it counts for nothing."""
 
@@ -190,7 +190,7 @@ class SessionQuery(ListQuery):
     is_reference: bool | None = None
     """Whether later sessions are judged against it; None where either will do."""
     reserved: bool = False
-    """Only those whose verdict is said with a reservation."""
+    """Only those whose verdict has a reservation."""
     order: SessionOrder = SessionOrder.MEASURED
 
 

@@ -11,7 +11,7 @@ from service.sessions.records import Marks
 
 @dataclass(frozen=True)
 class Replaced:
-    """The session that a corrected file stands for, who says so and why."""
+    """The session that a corrected file supersedes, who says so and why."""
 
     session: str
     who: str

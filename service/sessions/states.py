@@ -16,7 +16,7 @@ class RecordState(StrEnum):
     """It cannot be as it says, until an engineer says that it is."""
     WITHDRAWN = "withdrawn"
     SUPERSEDED = "superseded"
-    """Another session stands for it: a corrected file, of another unit or of another date."""
+    """It is superseded: by a corrected file, of another unit or of another date."""
 
 
 class RecordKind(StrEnum):
@@ -52,7 +52,7 @@ class StateChange:
     why: str
     """Why."""
     superseded_by: str | None = None
-    """The session that stands for a superseded one."""
+    """The replacement of a superseded session."""
     remedies: Hidden[Remedies | None] = None
     """What would put a questioned one right, as far as was known then; None of others, and of lines from before this
     was kept."""

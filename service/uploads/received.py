@@ -181,9 +181,7 @@ REPLACES = "Only an engineer replaces a session: upload the file as it is, and a
 NO_FILE = "The form contains no file. Send the session as the body, or as the form's part `file`."
 
 
-Supersedes = Annotated[
-    Text | None, Query(description="The stored session that this corrected file stands for from now on.")
-]
+Supersedes = Annotated[Text | None, Query(description="The stored session that this corrected file supersedes.")]
 By = Annotated[Text | None, Query(description="Who says so; with `supersedes`.")]
 Why = Annotated[LongText | None, Query(description="What was wrong; with `supersedes`.")]
 Check = Annotated[

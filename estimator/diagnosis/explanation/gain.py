@@ -3,7 +3,7 @@
 Positions are held out fold by fold. The rest of the rows fit the model, without and with the signatures, and predict
 the held-out rows with full predictive covariance; all in the whitened frame, where rows are independent. *Before* is
 the baseline of the record as it came, with the noise as stated; *after* holds the named causes, excess noise among
-them, the record put right. Both log scores are densities of the same numbers, readings in their stated sigmas: what a
+them, the record corrected. Both log scores are densities of the same numbers, readings in their stated sigmas: what a
 larger sigma costs is counted.
 """
 
@@ -30,7 +30,7 @@ from estimator.diagnosis.selection.search_state import SearchState
 def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Sequence[bool | None]) -> Gain:
     """Scores of held-out positions and of an earlier session, before and after.
 
-    ``given``: of the record as it came, where it had to be put right; ``new``: of every finding, whether it came since
+    ``given``: of the record as it came, where it had to be corrected; ``new``: of every finding, whether it came since
     the history.
     """
     named = [f for f in state.detections if not f.best.cause.between]

@@ -1,4 +1,4 @@
-"""Findings about the record, put right before the search: clipped channels, record errors, wrong entries."""
+"""Findings about the record, corrected before the search: clipped channels, record errors, wrong entries."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -27,7 +27,7 @@ def clip_findings(
     """Clipped sensors of a session as it came, as one finding: every limit at the input, with the noise of a reading
     and the uncertainty of the scale factor that it is counted by.
 
-    ``baseline`` and ``calibration``: of the session put right.
+    ``baseline`` and ``calibration``: of the corrected session.
     """
     inputs = measured(session)[0] / baseline.parameters.scale
     limits = [abs(float((c.side * inputs[list(c.rows), c.sensor]).max())) for c in clips]

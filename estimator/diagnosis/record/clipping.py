@@ -84,7 +84,7 @@ class Clip:
 
 
 def unclipped(session: CalibrationSession, catalogue: Sequence[Cause]) -> tuple[list[Clip], CalibrationSession]:
-    """The sensors clipped in an averaged session, and the session put right."""
+    """The sensors clipped in an averaged session, and the corrected session."""
     cause = next((c for c in catalogue if c.clips), None)
     if cause is None:
         return [], session

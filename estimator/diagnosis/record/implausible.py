@@ -1,4 +1,4 @@
-"""Axes that no sensor can have: the record is wrong in a way that no correction of the catalogue puts right.
+"""Axes that no sensor can have: the record is wrong in a way that no correction of the catalogue repairs.
 
 Then everything within the session is made of the wrong record too, and no cause is named from it.
 """

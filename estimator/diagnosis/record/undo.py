@@ -16,7 +16,7 @@ MOST = 3
 def undo_record_errors(
     baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]
 ) -> tuple[list[RecordError], Baseline]:
-    """The record errors of the catalogue that were found in a fitted session, and the session put right, fitted."""
+    """The record errors of the catalogue that were found in a fitted session, and the corrected session, fitted."""
     known = [c for c in catalogue if isinstance(c, Correction)]
     errors: list[RecordError] = []
     for _ in range(MOST):

@@ -34,7 +34,7 @@ a weaker one would cost a degree of freedom for an amplitude that the session ha
 
 LARGEST = 0.3
 """Largest part of the applied vector that an effect on a stand may be: beyond it linear signatures no longer hold, and
-a record error or a clipped channel, both put right before, is the likelier explanation."""
+a record error or a clipped channel, both corrected before, is the likelier explanation."""
 
 WORTH = 1e-3
 """p-value below which a signature is looked at as an explanation: is its amplitude within reason, is it a rival?

@@ -74,7 +74,7 @@ class Tile:
     condition: Condition
     count: int
     reserved: int
-    """Of how many of them the verdict is said with a reservation."""
+    """Of how many of them the verdict has a reservation."""
     chosen: bool
     url: str
 

@@ -143,7 +143,7 @@ def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
 
 @router.put("/{id}/stage", responses=errors(400, 404, 422))
 def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, person: PersonOf) -> SaidSession:
-    """Say whether the session shows the unit as found or as left; the file's own word gives way to this."""
+    """Say whether the session shows the unit as found or as left; this overrides the file."""
     return said_session(set_stage(storage, id, new.stage, person.signs(new.by), now))
 
 

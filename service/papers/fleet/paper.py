@@ -44,7 +44,7 @@ class FleetLine:
     unit_type: str
     condition: Condition
     but: str
-    """What the verdict is said with; empty where it is plain."""
+    """Reservations of the verdict; empty where it is plain."""
     use: str
     """What it may be used for, and what to do."""
     worst: str

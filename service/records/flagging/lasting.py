@@ -33,7 +33,7 @@ def no_longer_overdue(
     due now.
 
     ``latest``: the unit's latest calibration, the reason where it came after the flag was raised.
-    It is raised by the clock (`overdue_units`) and not here: records that are entered late, one after another, would
+    It is raised as time passes (`overdue_units`) and not here: records that are entered late, one after another, would
     raise and resolve it with every one.
     """
     opened = tuple(flag for flag in Flags(store).open_of(occasion.unit) if flag.matter is Matter.OVERDUE)

@@ -24,7 +24,7 @@ class Condition:
     """The mark in charts (Vega's name), the same as the icon's outline."""
     meaning: str
     reserved: bool = False
-    """Whether the verdict is said with a reservation; the mark beside it says so too."""
+    """Whether the verdict has a reservation; the mark beside it says so too."""
 
     @property
     def rank(self) -> int:
@@ -90,7 +90,7 @@ def condition_of(verdict: Verdict | None, *, is_reference: bool = False) -> Cond
 
 
 def said_with(condition: Condition, reservations: Reservations) -> Condition:
-    """The same verdict, marked where it is said with a reservation: ``Fit, with reservation``."""
+    """The same verdict, marked where it has a reservation: ``Fit, with reservation``."""
     if not reservations:
         return condition
     return replace(
@@ -130,7 +130,7 @@ def state_in_words(change: StateChange) -> str:
 LOOKING = "the search for causes is not finished"
 STILL_LOOKING = say("; {looking}", looking=LOOKING)
 MOST_TOLD = 2
-"""Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""
+"""Reservations that a verdict names before the rest are counted: more are no longer read in one breath."""
 
 
 def but(reservations: Reservations) -> str:
@@ -157,7 +157,7 @@ def but_alone(reservations: Reservations) -> str:
 
 
 def advice_of(reservations: Sequence[Reservation]) -> tuple[str, ...]:
-    """What to do, once, and not what other advice says already; a wrong file is put right before anything else."""
+    """What to do, once, and not what other advice says already; a wrong file is corrected before anything else."""
     if any(one.kind is Doubt.RECORD for one in reservations):
         reservations = [one for one in reservations if one.kind is Doubt.RECORD]
     advice = tuple(dict.fromkeys(one.advice for one in reservations))
