@@ -35,6 +35,7 @@ units export --out register.csv  # to change and import again
 due --when overdue --location "Hangar 2"  # what must come back from there
 due --when 2026-12 --format jsonl  # a month, for a program
 report --format xlsx --out fleet.xlsx  # the fleet as a workbook
+report status BA-017 --out status.pdf  # one page to hand over with the unit
 report label BA-017 --out label.pdf  # due date and QR code, to stick on the unit
 usable BA-017 && echo "may fly"  # the exit code says it
 flags --assigned me  # what you are to look after

@@ -84,6 +84,7 @@ GET {UNIT}/found-and-left
 GET {UNIT}/usable
 GET {UNIT}/label.pdf
 GET {UNIT}/label.svg
+GET {UNIT}/status.pdf
 GET {UNIT}/customer
 GET {UNIT}/register
 GET {API}/register
