@@ -4,9 +4,12 @@ Most are stable; some drift, jump, were serviced, are overdue or too noisy to de
 Files go through the same upload as a user's, and end on the day on which the fleet is made.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
+from multiprocessing import get_context
 
 import numpy as np
 
@@ -14,12 +17,14 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.blocks import SENSORS, TYPE_NAME, Change, unit_type
 from service.demo.cast import END, START, YEARS, DemoDrift, DemoMember, Intervention, Jump
 from service.demo.fill import UPLOADED_AFTER
-from service.demo.history import DemoFile, files_of
+from service.demo.history import files_of
 from service.kit.arriving_files import DEMONSTRATION
 from service.kit.measures import YEAR
+from service.opening import open_storage
 from service.records.changes import record_service
 from service.records.diagnose import diagnose
 from service.records.register import Entering, enter, move_unit
+from service.settings import Settings
 from service.storage import Storage
 from service.types.store import UnitTypes
 from service.units.records import CustodyStep, Move, NewEntry, NewService
@@ -41,18 +46,25 @@ OWNERS = ("Northern Airways", "Survey Ltd", "")
 
 
 @dataclass(frozen=True)
+class Life:
+    """A unit before it is made, and the seed of its chances."""
+
+    member: DemoMember
+    seed: tuple[int, int]
+
+
+@dataclass(frozen=True)
 class ManyPlan:
     """A fleet before it is made."""
 
-    members: tuple[DemoMember, ...]
+    lives: tuple[Life, ...]
     entries: tuple[NewEntry, ...]
     retired: tuple[str, ...]
-    seed: int
 
     @property
     def files(self) -> int:
         """Sessions of all units."""
-        return sum(member.files for member in self.members)
+        return sum(life.member.files for life in self.lives)
 
 
 def plan(units: int, seed: int) -> ManyPlan:
@@ -62,12 +74,12 @@ def plan(units: int, seed: int) -> ManyPlan:
     serials = [f"{'FG' if kind == GYROSCOPE else 'FA'}-{number:05d}" for number, kind in enumerate(kinds, 1)]
     unmeasured = round(REGISTERED * units)
     pairs = zip(serials[unmeasured:], kinds[unmeasured:], strict=True)
-    members = tuple(_member(serial, kind, rng) for serial, kind in pairs)
+    lives = tuple(Life(_member(serial, kind, rng), (seed, number)) for number, (serial, kind) in enumerate(pairs))
     entries = tuple(
         NewEntry(serial, TYPE_NAME[kind], *(str(rng.choice(texts)) for texts in (OWNERS, LOCATIONS, CUSTODIANS)))
         for serial, kind in zip(serials, kinds, strict=True)
     )
-    return ManyPlan(members, entries, tuple(serials[-max(1, round(RETIRED * units)) :]), seed)
+    return ManyPlan(lives, entries, tuple(serials[-max(1, round(RETIRED * units)) :]))
 
 
 def _member(serial: str, kind: str, rng: np.random.Generator) -> DemoMember:
@@ -95,27 +107,44 @@ def _member(serial: str, kind: str, rng: np.random.Generator) -> DemoMember:
     return plain
 
 
-def fill_many(storage: Storage, planned: ManyPlan, k: float, now: datetime, advance: Callable[[], None]) -> None:
-    """Makes the fleet in an empty database; ``advance`` is called once a session."""
-    with storage.database.writing() as store:
-        for kind in (ACCELEROMETER, GYROSCOPE):
-            UnitTypes(store).add_once(unit_type(kind), now - (END - START))
-    enter(storage, planned.entries, Entering(DEMONSTRATION, now))
-    shift = timedelta(days=(now - END).days - 1)
-    for number, member in enumerate(planned.members):
-        rng = np.random.default_rng([planned.seed, number])
-        _fill_one(storage, member, list(files_of(member, rng, shift)), shift, k, advance)
-    for serial in planned.retired:
-        retire = Move(remark="Beyond repair.", step=CustodyStep.RETIRED)
-        move_unit(storage, serial, retire, DEMONSTRATION, now)
+@contextmanager
+def opened(settings: Settings) -> Iterator[Storage]:
+    """The stores of the settings, closed at the end."""
+    storage = open_storage(settings)
+    try:
+        yield storage
+    finally:
+        storage.database.close()
 
 
-def _fill_one(
-    storage: Storage, member: DemoMember, files: Sequence[DemoFile], shift: timedelta, k: float,
-    advance: Callable[[], None],
-) -> None:  # fmt: skip
+def fill_many(settings: Settings, planned: ManyPlan, now: datetime, workers: int) -> Iterator[int]:
+    """Makes the fleet in an empty database, by so many processes; tells of every unit how many sessions it has."""
+    with opened(settings) as storage:
+        with storage.database.writing() as store:
+            for kind in (ACCELEROMETER, GYROSCOPE):
+                UnitTypes(store).add_once(unit_type(kind), now - (END - START))
+        enter(storage, planned.entries, Entering(DEMONSTRATION, now))
+        if workers == 1:
+            yield from (_fill_one(storage, settings, life, now) for life in planned.lives)
+        else:
+            with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+                made = [pool.submit(_fill_beside, settings, life, now) for life in planned.lives]
+                yield from (future.result() for future in as_completed(made))
+        for serial in planned.retired:
+            retire = Move(remark="Beyond repair.", step=CustodyStep.RETIRED)
+            move_unit(storage, serial, retire, DEMONSTRATION, now)
+
+
+def _fill_beside(settings: Settings, life: Life, now: datetime) -> int:
+    """One unit, in a process of its own."""
+    with opened(settings) as storage:
+        return _fill_one(storage, settings, life, now)
+
+
+def _fill_one(storage: Storage, settings: Settings, life: Life, now: datetime) -> int:
     """One unit's life: its sessions in order, a service between them, and the diagnosis of the latest."""
-    waiting = list(member.services)
+    member, shift = life.member, timedelta(days=(now - END).days - 1)
+    files, waiting = list(files_of(member, np.random.default_rng(life.seed), shift)), list(member.services)
     for file in files:
         while waiting and waiting[0].at + shift <= file.at:
             done = waiting.pop(0)
@@ -123,8 +152,8 @@ def _fill_one(
             record_service(storage, member.serial, new, done.at + shift)
         at = file.at + UPLOADED_AFTER
         latest = upload(
-            storage, file.content, file.name, at,
-            coverage_factor=k, who=DEMONSTRATION, outlook=file is files[-1], is_dated_later=False,
+            storage, file.content, file.name, at, coverage_factor=settings.coverage_factor, who=DEMONSTRATION,
+            outlook=file is files[-1], is_dated_later=False,
         )  # fmt: skip
-        advance()
     diagnose(storage, latest.id, at)
+    return len(files)

@@ -17,17 +17,17 @@ from tests.service.commands.conftest import Run
 def test_a_fleet_is_the_same_for_the_same_seed_and_has_every_story() -> None:
     planned = plan(1000, 1)
     assert planned == plan(1000, 1) != plan(1000, 2)
-    assert (len(planned.entries), len(planned.members), len(planned.retired)) == (1000, 980, 20)
-    shares = {story: sum(member.story == story for member in planned.members) for story in ("stable", "drift", "new")}
+    assert (len(planned.entries), len(planned.lives), len(planned.retired)) == (1000, 980, 20)
+    shares = {story: sum(life.member.story == story for life in planned.lives) for story in ("stable", "drift", "new")}
     assert 600 < shares["stable"] < 780
     assert min(shares["drift"], shares["new"]) > 10
-    assert planned.files == sum(member.sessions for member in planned.members)
+    assert planned.files == sum(life.member.sessions for life in planned.lives)
 
 
 @pytest.fixture
 def folder(run: Run, tmp_path: Path) -> Path:
     """A data folder with three units."""
-    ran = run("fill", "--units", 3, "--data-folder", tmp_path / "data")
+    ran = run("fill", "--units", 3, "--workers", 2, "--data-folder", tmp_path / "data")
     assert ran.code == 0
     assert "3 simulated units" in ran.err
     assert "Done in" in ran.err
