@@ -11,9 +11,9 @@ from datetime import datetime
 from estimator.errors import Problem
 from estimator.message import say
 from service.errors import ConflictError, RefusedError
+from service.ingest.checked import CLOCK_LEEWAY
 from service.ingest.names import fault_of_name, fault_of_serial
 from service.kit.measures import day_of
-from service.records.changes import CLOCK_LEEWAY
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.queries import Store
