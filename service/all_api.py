@@ -14,6 +14,7 @@ from service.kit.person import Role
 from service.models import api as models
 from service.outlook import api as feeds
 from service.pages import operations
+from service.pages.due import api as due
 from service.pages.fleet import api as fleet
 from service.pages.session import api as sessions
 from service.pages.stand import api as stands
@@ -30,6 +31,7 @@ from service.people.admission import ADMITTED, Gate
 from service.planning import api as plans
 from service.records import api as records
 from service.records import events_api as events
+from service.records import register_api as register
 from service.uploads import api as uploads
 from service.web.headers import API
 from service.web.held import EntityTags
@@ -81,10 +83,10 @@ PREFIX = API
 """The version of the contract is part of every address."""
 ROUTERS = (
     groups.router, remarks.attachments_router, sessions.router, records.router, papers.router, onboard.router,
-    papers.printing_router, diagnoses.router, events.router, usable.router, papers.labels_router, units.router,
-    unit_types.router, models.router, plans.router, stands.router, uploads.templates_router, uploads.layouts_router,
-    uploads.router, flags.router, views.router, remarks.router, webhooks.router, feeds.router, fleet.router,
-    work.router, people.router,
+    papers.printing_router, diagnoses.router, events.router, register.router, usable.router, papers.labels_router,
+    units.router, unit_types.router, models.router, plans.router, stands.router, uploads.templates_router,
+    uploads.layouts_router, uploads.router, flags.router, views.router, remarks.router, webhooks.router, feeds.router,
+    due.router, fleet.router, work.router, people.router,
 )  # fmt: skip
 """Of every resource, in the order in which addresses are tried."""
 

@@ -12,6 +12,7 @@ from service.diagnosis import pages as diagnoses
 from service.flags import pages as flags
 from service.models import pages as models
 from service.pages import help, routes, saved
+from service.pages.due import pages as due
 from service.pages.session import list_pages as sessions
 from service.pages.stand import pages as stands
 from service.pages.type import pages as types
@@ -23,6 +24,7 @@ from service.people.oidc import pages as oidc_pages
 from service.planning import pages as plan_pages
 from service.planning import readiness_pages as before_pages
 from service.records import pages as records
+from service.records import register_pages as register
 from service.uploads import arrivals_pages
 from service.uploads.layout import pages as layouts
 from service.web import assets
@@ -32,8 +34,9 @@ from service.web.problem_pages import ProblemPages, unexpected_pages
 from service.work import pages as work
 
 PARTS = (
-    routes, account_pages, admin_pages, papers, diagnoses, flags, saved, layouts, models, records, remarks, oidc_pages,
-    before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work, assets,
+    routes, due, account_pages, admin_pages, papers, diagnoses, flags, saved, layouts, models, records, register,
+    remarks, oidc_pages, before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
+    assets,
 )  # fmt: skip
 """Every file of addresses."""
 

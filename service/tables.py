@@ -5,6 +5,7 @@ What was measured and computed is written once; only summaries that can be made 
 
 unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
     └──< units ──< services                   │
+           ├──< custody                       │      where units are and who has them, append-only
            ├──< notes ──1 note_withdrawals    │
            ├──< flags ──┐                     │
            ├──< notices ┴──< deliveries >── webhooks

@@ -19,6 +19,10 @@ class CommandEntry:
 
 CATALOGUE = {
     "serve": CommandEntry("serve.serve", "Start the service: schema brought up to date, pages and API on one address."),
+    "fill": CommandEntry(
+        "fill.fill",
+        "Fill an empty database with a large fleet of simulated units: sessions of three years, custody, retirement.",
+    ),
     "calibrate": CommandEntry(
         "calibrate.calibrate_files",
         "Calibrate session files: scale factor, bias, quadratic term and axis of every sensor, with uncertainties.",
@@ -43,6 +47,11 @@ CATALOGUE = {
         "fleet.history",
         "Show the parameters of a unit through time, each beside its reference and its tolerance.",
     ),
+    "units": CommandEntry(
+        "register",
+        "Show the register of units; enter, move, retire and return them, import and export it as CSV.",
+    ),
+    "due": CommandEntry("register", "Show which units must be calibrated when, with where they are and who has them."),
     "report": CommandEntry("documents.report", "Write the fleet's condition as a file for other programs."),
     "usable": CommandEntry(
         "api",

@@ -123,6 +123,17 @@ def write_label(
         deliver(client.get(path, due=str(due).lower()).content, out)
 
 
+@report.command("status")
+def write_status(
+    unit: Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")],
+    server: Server = DEFAULT_SERVER,
+    out: Out = None,
+) -> None:
+    """Write one page to hand over with a unit: may it be used, due date, reservations, lines to sign; PDF."""
+    with connect(server, language=output_language()) as client:
+        deliver(client.get(in_address("/units/{unit}/status.pdf", {"unit": unit})).content, out)
+
+
 def write_template(
     server: Server = DEFAULT_SERVER,
     *,

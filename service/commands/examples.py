@@ -8,6 +8,7 @@ from collections.abc import Iterator
 PROGRAM = "imu-health"
 LINES = """
 serve --demo  # a fleet of simulated units to look at
+fill --units 1000 --data-folder large  # a large fleet to try, then: serve --data-folder large
 serve --data-folder my-units --port 8080  # your own, on another port
 calibrate session.json  # every sensor's parameters with their uncertainties
 calibrate sessions/*.json --json  # one object a line, for a program
@@ -24,7 +25,17 @@ fleet --stand S1 --due-before 2026-12-01  # what one stand has to measure until 
 fleet | jq -r 'select(.verdict == "fail") | .serial'  # in a pipe: one unit a line
 history BA-017 --sensor A3 --parameter bias  # how one parameter moved
 history BA-017 --since 2026-01-01 --format jsonl > history.jsonl  # for a program
+units import register.csv --by "K. Ito"  # units before they are measured, their locations and custodians
+units enter BA-901 --type RA-6 --location "Hangar 2" --by "K. Ito"  # one unit
+units move BA-017 --location "Hangar 3" --custodian "M. Sato" --by "K. Ito"  # kept in its history
+units retire BA-017 --why "scrapped" --by "K. Ito"  # out of fleet, due dates and alarms; its records stay
+units return BA-017 --why "repaired after all" --by "K. Ito"  # back into use
+units show BA-017  # where it is, and where it was
+units export --out register.csv  # to change and import again
+due --when overdue --location "Hangar 2"  # what must come back from there
+due --when 2026-12 --format jsonl  # a month, for a program
 report --format xlsx --out fleet.xlsx  # the fleet as a workbook
+report status BA-017 --out status.pdf  # one page to hand over with the unit
 report label BA-017 --out label.pdf  # due date and QR code, to stick on the unit
 usable BA-017 && echo "may fly"  # the exit code says it
 flags --assigned me  # what you are to look after

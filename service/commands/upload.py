@@ -201,7 +201,8 @@ def _print_line(answer: Json) -> None:
         screen().print(f"[bold]{escape(answer['subject'])}[/] was received: job {answer['id']} works on it")
         return
     verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
-    line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(translated(answer['reason']))}"
+    said = " ".join(filter(None, (translated(answer["reason"]), translated(answer.get("remark", "")))))
+    line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(said)}"
     screen().print(line, soft_wrap=True)
 
 

@@ -90,9 +90,12 @@ class DemoFile:
     at: datetime
 
 
-def files_of(member: DemoMember) -> Iterator[DemoFile]:
-    """The member's sessions in order; the same bytes every time."""
-    rng = np.random.default_rng([SEED, CAST.index(member)])
+def files_of(
+    member: DemoMember, rng: np.random.Generator | None = None, shift: timedelta = timedelta()
+) -> Iterator[DemoFile]:
+    """The member's sessions in order, so much later than its story says; the same bytes every time."""
+    if rng is None:
+        rng = np.random.default_rng([SEED, CAST.index(member)])
     if member.programme == ROTATION_ALIGNMENT:
         yield from _alignments(member, rng)
         return
@@ -106,7 +109,7 @@ def files_of(member: DemoMember) -> Iterator[DemoFile]:
         session = replace(session, stage=_stage(member, at))
         if member.hidden is not None and number == member.sessions - 1:
             session = with_effect(session, member.hidden)
-        yield _file(session, at)
+        yield _file(session, at + shift)
     if member.flown is not None:
         now = truth.stepped(step_of((member.flown,), SENSORS, member.kind), norm)
         flight = recording(member.serial, sensors_of(member.kind, SENSORS), now, rng)

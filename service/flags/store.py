@@ -5,7 +5,20 @@ from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 
-from sqlalchemy import ColumnElement, Row, ScalarSelect, and_, bindparam, case, insert, literal, or_, select, update
+from sqlalchemy import (
+    ColumnElement,
+    Row,
+    ScalarSelect,
+    and_,
+    bindparam,
+    case,
+    exists,
+    insert,
+    literal,
+    or_,
+    select,
+    update,
+)
 from sqlalchemy.orm import aliased
 
 from estimator.message import say
@@ -37,7 +50,8 @@ class Notices(Queries):
         flag: int | None = None,
         session: str | None = None,
     ) -> None:
-        """Stores a notice, and puts it into the outbox of every address that is notified of its kind."""
+        """Stores a notice, and puts it into the outbox of every address that is notified of its kind; no address is
+        notified of a retired unit."""
         row = NoticeRow(unit_id=unit, flag_id=flag, kind=kind, at=at, who=who, text=text, session_id=session)
         self._session.add(row)
         self._session.flush()
@@ -47,7 +61,10 @@ class Notices(Queries):
     def _put_into_outbox(self, notice: int, at: datetime) -> None:
         columns = ("notice_id", "webhook_id", "state", "attempts", "outcome")
         notified = select(literal(notice), WebhookRow.id, literal("waiting"), literal(0), literal(""))
-        new = insert(DeliveryRow).from_select(columns, notified.where(WebhookRow.removed_at.is_(None)))
+        retired = exists().where(
+            NoticeRow.id == notice, UnitRow.id == NoticeRow.unit_id, UnitRow.retired_at.is_not(None)
+        )
+        new = insert(DeliveryRow).from_select(columns, notified.where(WebhookRow.removed_at.is_(None), ~retired))
         deliveries = self._session.scalars(new.returning(DeliveryRow.id)).all()
         WorkQueue(self._store, WorkKind.MESSAGE).enqueue_once(map(str, sorted(deliveries)), at)
 
@@ -86,6 +103,8 @@ class FlagQuery(ListQuery):
 
 IS_OF_UNIT = FlagRow.scope == Scope.UNIT
 """About the unit itself, not about its type or a stand."""
+IS_OF_RETIRED = exists().where(UnitRow.id == FlagRow.unit_id, UnitRow.retired_at.is_not(None))
+"""On a unit that is retired."""
 IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
 """A number that orders open flags before those that are resolved."""
 
@@ -185,9 +204,11 @@ class Flags(Queries):
         return found[0]
 
     def page(self, wanted: FlagQuery) -> tuple[Flag, ...]:
-        """Flags with their lives, open ones first, newest first unless asked otherwise, in one query."""
-        page = FLAGS.page(self._session, select(FlagRow.id), wanted)
-        ids = page.cut(select(FlagRow.id)).subquery()
+        """Flags with their lives, open ones first, newest first unless asked otherwise, in one query; those of retired
+        units only where their unit is asked for."""
+        listed = select(FlagRow.id) if wanted.unit else select(FlagRow.id).where(~(IS_OF_UNIT & IS_OF_RETIRED))
+        page = FLAGS.page(self._session, listed, wanted)
+        ids = page.cut(listed).subquery()
         query = (
             select(FlagRow, UnitRow.serial, NoticeRow)
             .join(ids, ids.c.id == FlagRow.id)

@@ -13,9 +13,9 @@ from service.kit.moments import epoch_ms
 from service.outlook.records import UnitOutlook
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
-from service.sessions.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
+from service.sessions.words.conditions import NOT_MEASURED, REFERENCE, UNDECIDED, Condition, condition_of
 from service.types.records import UnitType
-from service.units.records import NO_CUSTOMER, Customer
+from service.units.records import NO_CUSTOMER, Customer, Registered
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,14 @@ class UnitSummary:
     """Reservations of the verdict."""
     customer: Hidden[Customer] = NO_CUSTOMER
     """For whom it is calibrated."""
+    owner: str = ""
+    """To whom it belongs, as the register says."""
+    location: str = ""
+    """Where it is, as the register says."""
+    custodian: str = ""
+    """Who has it, as the register says."""
+    retired_at: datetime | None = None
+    """Since when it is retired, UTC; null while it is in use."""
     is_undated: Hidden[bool] = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
     deviation: Hidden[float | None] = None
@@ -142,6 +150,8 @@ class FleetCondition:
     """Of how many the latest session is a reference, which nothing was held against."""
     reserved_references: Hidden[int] = 0
     """Of how many of these have a reservation."""
+    uncalibrated: int = 0
+    """Of how many registered units no session counts yet."""
 
     @property
     def counts(self) -> tuple[ConditionCount, ...]:
@@ -152,20 +162,23 @@ class FleetCondition:
         ]
         own = ConditionCount(REFERENCE, self.references, self.reserved_references)
         judged = (one.without(own) if one.condition is UNDECIDED else one for one in found)
-        return (*judged, own) if own.count else tuple(judged)
+        unmeasured = ConditionCount(NOT_MEASURED, self.uncalibrated, 0)
+        return (*judged, *(one for one in (own, unmeasured) if one.count))
 
     @classmethod
-    def of(cls, tallies: Sequence[Tally], of_groups: int = 0) -> "FleetCondition":
-        """The sums of some counts; ``of_groups``: open flags of types and stands."""
+    def of(cls, tallies: Sequence[Tally], of_groups: int = 0, uncalibrated: int = 0) -> "FleetCondition":
+        """The sums of some counts; ``of_groups``: open flags of types and stands; ``uncalibrated``: registered units
+        that no count is of."""
         counts = {verdict: [tally for tally in tallies if tally.verdict is verdict] for verdict in Verdict}
         return cls(
-            units=sum(tally.units for tally in tallies),
+            units=sum(tally.units for tally in tallies) + uncalibrated,
             verdicts={verdict: sum(tally.units for tally in own) for verdict, own in counts.items()},
             simulated=sum(tally.units for tally in tallies if tally.is_simulated),
             flags=sum(tally.flags for tally in tallies) + of_groups,
             reserved={verdict: sum(tally.reserved for tally in own) for verdict, own in counts.items()},
             references=sum(tally.units for tally in tallies if tally.is_reference),
             reserved_references=sum(tally.reserved for tally in tallies if tally.is_reference),
+            uncalibrated=uncalibrated,
         )
 
 
@@ -181,3 +194,5 @@ class UnitKnown:
     """What the next session will be judged against; None when the next one becomes the reference."""
     outlook: UnitOutlook | None
     """None before a session was judged."""
+    entry: Registered
+    """What the register says."""

@@ -34,6 +34,7 @@ class FleetQuery(ListQuery):
     reserved: bool | None = None
     """Whether the verdict has a reservation; None where either will do."""
     due_before: datetime | None = None
+    due_since: datetime | None = None
     undated: bool = False
     """Only units that wait for no date: a hand, another session, or the first one."""
     unit_type: str | None = None
@@ -44,6 +45,12 @@ class FleetQuery(ListQuery):
     """Only units with an open flag."""
     reference: bool | None = None
     """Whether the latest session is a reference; None where either will do."""
+    location: str | None = None
+    custodian: str | None = None
+    uncalibrated: bool = False
+    """Only registered units of which no session counts yet."""
+    retired: bool | None = False
+    """Whether the unit is retired; None where either will do."""
     unfit: bool = False
     """Only units that somebody must act on: unfit, probably unfit, or undecided."""
     order: Order = Order.CONDITION
@@ -56,10 +63,16 @@ class FleetChoices:
     types: tuple[str, ...] = ()
     stands: tuple[str, ...] = ()
     lots: tuple[str, ...] = ()
+    locations: tuple[str, ...] = ()
+    custodians: tuple[str, ...] = ()
 
 
 NOT_KNOWN = -1
 """Severity of a unit of which no session is accepted."""
+UNCALIBRATED = -2
+"""The same of one that is in the register: the fleet lists it."""
+RETIRED = -3
+"""Of a retired unit, whatever its sessions: the fleet leaves it out."""
 STEP, LAST = 10, 200
 """Per cent of the tolerance: width of a bar, and where the bar of everything beyond begins."""
 NOT_JUDGED = -1

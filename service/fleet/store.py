@@ -18,17 +18,17 @@ from sqlalchemy import (
     union_all,
     update,
 )
-from sqlalchemy.orm import aliased, load_only
+from sqlalchemy.orm import InstrumentedAttribute, aliased, load_only
 
 from estimator.session import PROGRAMMES
 from service.diagnosis.tables import DiagnosisRow
 from service.flags.tables import FlagRow
 from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
-from service.fleet.records import NOT_KNOWN, FleetChoices, FleetQuery, Tally
+from service.fleet.records import UNCALIBRATED, FleetChoices, FleetQuery, Tally
 from service.fleet.tables import ConditionRow, FleetTallyRow
 from service.fleet.wanted_store import UNITS
 from service.models.records import Scope
-from service.outlook.store import outlook_of
+from service.outlook.store import outlook_of, overdue_count
 from service.outlook.tables import OutlookRow
 from service.queue.records import WorkKind
 from service.queue.tables import WorkRow
@@ -46,11 +46,14 @@ from service.storage.queries import Queries
 from service.types.store import unit_type_of
 from service.types.tables import ToleranceRow, UnitTypeRow
 from service.units.records import Customer
+from service.units.register_store import register_entry
 from service.units.tables import ServiceRow, UnitRow
 
 Other = aliased(SessionRow)
 """A session of the unit, beside its latest one."""
-CHOICES = ("types", "stands", "lots")
+EVERY = 1_000_000
+"""Units of a fleet at most, where a count is of all."""
+CHOICES = ("types", "stands", "lots", "locations", "custodians")
 """Of `FleetChoices`."""
 
 
@@ -127,30 +130,37 @@ class Fleet(Queries):
 
     def units(self, wanted: FleetQuery) -> tuple[UnitSummary, ...]:
         """The wanted units, worst first; one more query where the list goes on from a unit."""
-        page = UNITS.page(self._session, _summaries(), wanted)
-        ids = page.cut(_summaries().with_only_columns(UnitRow.id, maintain_column_froms=True)).subquery()
+        listed = _listed(wanted.retired)
+        page = UNITS.page(self._session, listed, wanted)
+        ids = page.cut(listed.with_only_columns(UnitRow.id, maintain_column_froms=True)).subquery()
         query = page.ordered(_summaries().join(ids, ids.c.id == UnitRow.id))
         return page.forward(_summary(row) for row in self._session.execute(query))
 
+    def dates(self, wanted: FleetQuery) -> tuple[datetime | None, ...]:
+        """When each of the wanted units is due, however many; None where that is not known."""
+        listed = _listed(wanted.retired)
+        page = UNITS.page(self._session, listed, replace(wanted, limit=EVERY))
+        dates = page.cut(listed.with_only_columns(OutlookRow.due, maintain_column_froms=True))
+        return tuple(self._session.scalars(dates))
+
     def choices(self) -> FleetChoices:
-        """Types, stands and lots that there are, in one query."""
+        """Types, stands, lots, places and custodians that there are, in one query."""
         types = select(literal("types"), UnitTypeRow.name)
         stands = select(literal("stands"), StandRow.name)
         lots = select(literal("lots"), UnitRow.lot).where(UnitRow.lot.is_not(None)).distinct()
-        rows: Sequence[Any] = self._session.execute(union_all(types, stands, lots)).all()
+        held = (_held("locations", UnitRow.location), _held("custodians", UnitRow.custodian))
+        rows: Sequence[Any] = self._session.execute(union_all(types, stands, lots, *held)).all()
         return FleetChoices(**{of: tuple(sorted(n for place, n in rows if place == of)) for of in CHOICES})
 
     def unit(self, serial: str) -> UnitSummary | None:
         """One unit."""
-        row = self._session.execute(_summaries(measured=False).where(UnitRow.serial == serial)).one_or_none()
+        row = self._session.execute(_summaries().where(UnitRow.serial == serial)).one_or_none()
         return None if row is None else _summary(row)
 
     def unit_known(self, serial: str, now: datetime) -> UnitKnown | None:
         """One unit with what its page begins with, in one query."""
         in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
-        query = _summaries(measured=False).add_columns(
-            _waiting(), _reference(now), OutlookRow, UnitTypeRow, ToleranceRow
-        )
+        query = _summaries().add_columns(_waiting(), _reference(now), OutlookRow, UnitTypeRow, ToleranceRow)
         row = self._session.execute(query.join(ToleranceRow, in_force).where(UnitRow.serial == serial)).one_or_none()
         if row is None:
             return None
@@ -162,6 +172,7 @@ class Fleet(Queries):
             waiting=row[-5] or 0,
             reference_session=row[-4],
             outlook=None if outlook is None else outlook_of(outlook, row[0].lot, unit_type.name),
+            entry=register_entry(row[0], unit_type.name),
         )
 
     def condition(self) -> FleetCondition:
@@ -170,20 +181,22 @@ class Fleet(Queries):
 
     def condition_at(self, now: datetime) -> FleetCondition:
         """The same, and how many should have been calibrated by now, in one query."""
-        due = select(func.count()).select_from(OutlookRow).where(OutlookRow.due < now).scalar_subquery()
+        due = overdue_count(now).scalar_subquery()
         rows = self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS, due)).all()
         return replace(_condition([row[:-1] for row in rows]), overdue=rows[0][-1] if rows else 0)
 
     def tallies(self) -> tuple[Tally, ...]:
         """Units with an accepted session, by their verdict and by how much of their tolerance they use."""
-        return tuple(map(_tally, self._session.execute(_tallies())))
+        rows = self._session.execute(_tallies()).all()
+        return tuple(_tally(row) for row in rows if row[0] != UNCALIBRATED)
 
 
 def _tallies() -> Select[int, bool, bool, int, int, int, int]:
     row = FleetTallyRow
     key = (row.severity, row.is_reference, row.is_simulated, row.bar)
     counts = (func.sum(row.units), func.sum(row.flags), func.sum(row.reserved))
-    return select(*key, *counts).where(row.units > 0, row.severity != NOT_KNOWN).group_by(*key).order_by(*key)
+    is_listed = (row.severity >= 0) | (row.severity == UNCALIBRATED)
+    return select(*key, *counts).where(row.units > 0, is_listed).group_by(*key).order_by(*key)
 
 
 def _tally(row: Sequence[Any]) -> Tally:
@@ -192,7 +205,14 @@ def _tally(row: Sequence[Any]) -> Tally:
 
 def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
     """Of tallies, each with the open flags of types and stands at its end."""
-    return FleetCondition.of([_tally(row[:-1]) for row in rows], rows[0][-1] if rows else 0)
+    tallies = [_tally(row[:-1]) for row in rows if row[0] != UNCALIBRATED]
+    uncalibrated = sum(row[4] for row in rows if row[0] == UNCALIBRATED)
+    return FleetCondition.of(tallies, rows[0][-1] if rows else 0, uncalibrated)
+
+
+def _held(name: str, column: InstrumentedAttribute[str]) -> Select[str, str]:
+    """What the register says of units in use."""
+    return select(literal(name), column).where(column != "", UnitRow.retired_at.is_(None)).distinct()
 
 
 LAST = (
@@ -224,8 +244,14 @@ _WORST = (
 """What was decided of the parameter that a verdict hangs on."""
 
 
-def _summaries(*, measured: bool = True) -> Summaries:
-    """Units with their latest accepted session; those without one too where they need not be measured."""
+def _listed(retired: bool | None) -> Summaries:
+    """Units that a list may hold: those with an accepted session, and those in the register; retired or not."""
+    listed = _summaries().where(ConditionRow.unit_id.is_not(None) | UnitRow.registered_at.is_not(None))
+    return listed if retired is None else listed.where(UnitRow.retired_at.is_not(None) == retired)
+
+
+def _summaries() -> Summaries:
+    """Units with their latest accepted session, if any."""
     return (
         select(
             UnitRow,
@@ -241,7 +267,7 @@ def _summaries(*, measured: bool = True) -> Summaries:
         )
         .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-        .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
+        .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(DecisionRow, _WORST)
@@ -303,6 +329,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         failed=row[7] or "",
         due_reason=row[8] or "",
         deviation=row[9],
+        **_held_by(unit),
     )
 
 
@@ -322,7 +349,14 @@ def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
         worst_parameter=None,
         margin=None,
         lot=unit.lot,
+        customer=Customer(unit.customer, unit.customer_address),
+        **_held_by(unit),
     )
+
+
+def _held_by(unit: UnitRow) -> dict[str, Any]:
+    """What the register says of it."""
+    return {name: getattr(unit, name) for name in ("owner", "location", "custodian", "retired_at")}
 
 
 def _reservations(row: DiagnosisRow | None) -> Reservations:

@@ -6,6 +6,7 @@ order of their keys, so that two transactions never wait for each other crosswis
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
 from typing import Any
 
 from sqlalchemy import BindParameter, CompoundSelect, bindparam, delete, func, literal_column, select, union_all
@@ -13,7 +14,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from service.diagnosis.tables import DiagnosisRow
-from service.fleet.records import NOT_KNOWN, bar_of
+from service.fleet.records import NOT_KNOWN, RETIRED, UNCALIBRATED, bar_of
 from service.fleet.tables import ConditionRow, FleetTallyRow, TalliedRow
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import SessionRow
@@ -54,14 +55,14 @@ class Tallies(Queries):
     def _tallied_and_seen(self, units: Collection[int]) -> tuple[dict[int, dict[str, Any]], dict[int, dict[str, Any]]]:
         """What units added so far, and what they add by their rows of now."""
         rows = self._session.execute(_TALLIED_AND_SEEN, {"units": sorted(units)}).all()
-        was = {row[0]: dict(zip((*KEY, "flags", "reserved"), row[8:], strict=True)) for row in rows}
+        was = {row[0]: dict(zip((*KEY, "flags", "reserved"), row[10:], strict=True)) for row in rows}
         now = {
             unit: {
-                "unit_type_id": of_type, "severity": NOT_KNOWN if severity is None else severity,
+                "unit_type_id": of_type, "severity": _severity(severity, entered, gone),
                 "is_reference": bool(reference), "is_simulated": simulated, "bar": bar_of(margin),
                 "flags": flags or 0, "reserved": int(bool(reserved)),
             }
-            for unit, of_type, severity, reference, simulated, margin, flags, reserved, *_ in rows
+            for unit, of_type, severity, reference, simulated, margin, flags, reserved, entered, gone, *_ in rows
         }  # fmt: skip
         return {unit: own for unit, own in was.items() if own["severity"] is not None}, now
 
@@ -91,6 +92,7 @@ _TALLIED_AND_SEEN = (
     select(
         UnitRow.id, UnitRow.unit_type_id, ConditionRow.severity, SessionRow.is_reference, UnitRow.simulated,
         ConditionRow.margin, ConditionRow.flags, DiagnosisRow.reservations.is_not(None),
+        UnitRow.registered_at, UnitRow.retired_at,
         *(getattr(TalliedRow, name) for name in (*KEY, "flags", "reserved")),
     )
     .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
@@ -107,6 +109,15 @@ _STOOD_AND_STANDS: CompoundSelect[*tuple[Any, ...]] = union_all(
     .where(SessionRow.unit_id.in_(_UNITS), IS_ACCEPTED, SessionRow.stand_id.is_not(None))
     .group_by(SessionRow.unit_id, SessionRow.stand_id),
 )
+
+
+def _severity(severity: int | None, registered_at: datetime | None, retired_at: datetime | None) -> int:
+    """By which a unit is counted."""
+    if retired_at is not None:
+        return RETIRED
+    if severity is None:
+        return NOT_KNOWN if registered_at is None else UNCALIBRATED
+    return severity
 
 
 def _counted(come: Iterable[Mapping[str, Any]], gone: Iterable[Mapping[str, Any]]) -> dict[Key, dict[str, int]]:

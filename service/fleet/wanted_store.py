@@ -23,10 +23,13 @@ from service.units.tables import UnitRow
 
 BY_SERIAL = Key(UnitRow.serial, stays=True)
 ORDERS = {
-    Order.CONDITION: (Key(ConditionRow.severity, is_falling=True), Key(ConditionRow.margin, nulls_first=False)),
+    Order.CONDITION: (
+        Key(ConditionRow.severity, is_falling=True, nulls_first=False),
+        Key(ConditionRow.margin, nulls_first=False),
+    ),
     Order.DUE: (Key(OutlookRow.due, nulls_first=True),),
     Order.TYPE: (Key(UnitTypeRow.name),),
-    Order.LAST: (Key(ConditionRow.last_at),),
+    Order.LAST: (Key(ConditionRow.last_at, nulls_first=True),),
 }
 
 
@@ -59,10 +62,14 @@ UNITS: Listing[FleetQuery] = Listing(
         "flagged": lambda _: ConditionRow.flags > 0,
         "undated": lambda _: OutlookRow.due.is_(None),
         "due_before": lambda due: OutlookRow.due < due,
+        "due_since": lambda due: OutlookRow.due >= due,
         "text": _has,
         "unit_type": lambda name: UnitTypeRow.name == name,
         "stand": _is_on,
         "lot": lambda lot: UnitRow.lot == lot,
+        "location": lambda place: UnitRow.location == place,
+        "custodian": lambda name: UnitRow.custodian == name,
+        "uncalibrated": lambda _: ConditionRow.unit_id.is_(None),
     },
 )
 
@@ -108,7 +115,9 @@ def _shifts() -> Subquery:
 def _questioned(most: int) -> Subquery:
     row = SessionRow
     query = select(row.id, UnitRow.serial, row.started_at, row.uploaded_at).join(UnitRow)
-    latest = query.where(row.state == RecordState.QUESTIONED).order_by(row.uploaded_at.desc(), row.id)
+    latest = query.where(row.state == RecordState.QUESTIONED, UnitRow.retired_at.is_(None)).order_by(
+        row.uploaded_at.desc(), row.id
+    )
     return latest.limit(most).subquery("questioned")
 
 
@@ -124,6 +133,6 @@ def _found(most: int) -> Subquery:
         .outerjoin(UnitRow, (row.level == Level.UNIT.value) & (UnitRow.id == row.group_id))
         .outerjoin(UnitTypeRow, (row.level == Level.TYPE.value) & (UnitTypeRow.id == row.group_id))
         .outerjoin(StandRow, (row.level == Level.STAND.value) & (StandRow.id == row.group_id))
-        .where(row.own != "", ~again)
+        .where(row.own != "", ~again, UnitRow.retired_at.is_(None))
     )
     return query.order_by(place, row.group_id).limit(most).subquery("found")

@@ -100,6 +100,11 @@ def _is_measured(facts: UseFacts) -> bool:
     return facts.unit.last_at is not None and not _is_serviced_since(facts)
 
 
+def _retired(facts: UseFacts, _: datetime) -> Iterator[Objection]:
+    if facts.unit.retired_at is not None:
+        yield Objection(words.on(words.RETIRED, facts.unit.retired_at), words.RETURN)
+
+
 def _unmeasured(facts: UseFacts, _: datetime) -> Iterator[Objection]:
     unit = facts.unit
     if facts.serviced_at is not None and _is_serviced_since(facts):
@@ -232,7 +237,7 @@ def _noted(facts: UseFacts, _: datetime) -> Iterator[Objection]:
 
 
 AGAINST: tuple[Rule, ...] = (
-    _unmeasured, _unfit, _uncertain, _dated_later, _flagged, _gravely_reserved, _undue, _unjudged
+    _retired, _unmeasured, _unfit, _uncertain, _dated_later, _flagged, _gravely_reserved, _undue, _unjudged
 )  # fmt: skip
 """What forbids the use, the gravest first."""
 RESERVING: tuple[Rule, ...] = (

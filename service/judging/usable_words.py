@@ -16,6 +16,7 @@ TOO_COARSE = (
     "In its reference of {day} these are more uncertain than the tolerance, or not observed: {what}. Measure more "
     "positions."
 )
+RETIRED = "It is retired since {day}."
 NOTHING_JUDGED = "None of its sessions counts as a calibration: calibrate the unit."
 SINCE_SERVICE = "Nothing was measured since the service of {day}: calibrate the unit, which sets its new reference."
 NOT_FIT = "Not fit by its session of {day}: {reason}"
@@ -34,6 +35,7 @@ EXPIRED = (
     "{day}."
 )
 
+RETURN = "put it back into use first"
 CALIBRATE = "calibrate it"
 ADJUST = "adjust, repair or withdraw it"
 REPEAT = "repeat the session"

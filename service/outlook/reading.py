@@ -8,8 +8,6 @@ from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
 
-from estimator.message import say
-from service.errors import NotFoundError
 from service.kit.failure import unit_failed
 from service.outlook.populations import Population
 from service.outlook.records import ParameterTrend, UnitOutlook
@@ -24,8 +22,7 @@ def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
     """One unit's outlook within a transaction."""
     own = Outlooks(store).of_unit(serial)
     if own is None:
-        if not Units(store).exists(serial):
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+        Units(store).key(serial)
         own = nothing_known(serial)
     why = WorkQueue(store, WorkKind.OUTLOOK).failed(serial)
     return replace(

@@ -244,21 +244,33 @@ class Outlooks(Queries):
 
     def overdue(self, now: datetime) -> int:
         """How many units should have been calibrated by now."""
-        return self._session.scalar(select(func.count()).select_from(OutlookRow).where(OutlookRow.due < now)) or 0
+        return self._session.scalar(overdue_count(now)) or 0
 
     def overdue_units(self, now: datetime) -> tuple[str, ...]:
         """Serial numbers of the units that should have been calibrated by now."""
-        query = select(UnitRow.serial).join(OutlookRow, OutlookRow.unit_id == UnitRow.id).where(OutlookRow.due < now)
-        return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
+        return tuple(self._session.scalars(_overdue(now).with_only_columns(UnitRow.serial).order_by(UnitRow.serial)))
 
     def due(self, most: int, since: datetime | None = None) -> tuple[DueDate, ...]:
         """When units must come back and why, the first to come first; those that are overdue before all."""
         query = select(UnitRow.serial, OutlookRow.due, OutlookRow.reason)
-        query = query.join(UnitRow, UnitRow.id == OutlookRow.unit_id).where(OutlookRow.due.is_not(None))
+        query = query.join(UnitRow, UnitRow.id == OutlookRow.unit_id).where(
+            OutlookRow.due.is_not(None), UnitRow.retired_at.is_(None)
+        )
         if since is not None:
             query = query.where(OutlookRow.due >= since)
         rows = self._session.execute(query.order_by(OutlookRow.due, OutlookRow.unit_id).limit(most))
         return tuple(DueDate(unit, at, reason) for unit, at, reason in rows if at is not None)
+
+
+def _overdue(now: datetime) -> Select[int]:
+    """Units in use that should have been calibrated by now."""
+    query = select(UnitRow.id).join(OutlookRow, OutlookRow.unit_id == UnitRow.id)
+    return query.where(OutlookRow.due < now, UnitRow.retired_at.is_(None))
+
+
+def overdue_count(now: datetime) -> Select[int]:
+    """How many these are."""
+    return select(func.count()).select_from(_overdue(now).subquery())
 
 
 def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:

@@ -37,10 +37,12 @@ from service.planning.pattern import type_names
 from service.queue.store import PendingWork
 from service.queue.words import pending_in_words
 from service.records.dependencies import ReceptionOf
+from service.records.register import retired_in_words
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.doubt import Remedies
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
+from service.units.register_store import Register
 from service.units.remarks_store import SaidOf
 from service.uploads.correct import remedies_of
 from service.uploads.layout.form import carried
@@ -118,6 +120,7 @@ def show_unit(
             group=group_section(store, Level.UNIT, serial),
             follow=SOONEST if is_judged_later or (is_pending and settings.diagnosis_workers) else None,
             said=remarks(serial, "", (), report.said.files, in_force().attached),
+            history_of_custody=Register(store).history(serial),
         ),
     )
 
@@ -154,7 +157,8 @@ def show_session(
 @router.get("/sessions/{id}/outcome")
 def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Key) -> HTMLResponse:
     """What became of an upload by now, as the card of the upload page."""
-    outcome = outcome_of(Sessions(store).get(id), Diagnoses(store).summary(id))
+    session = Sessions(store).get(id)
+    outcome = outcome_of(session, Diagnoses(store).summary(id), retired_in_words(Register(store).get(session.unit)))
     return render(request, "outcome.html", upload_page((outcome,), settings))
 
 

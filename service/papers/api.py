@@ -26,6 +26,7 @@ from service.papers.desk import (
 from service.papers.label import Label, label_of, label_pdf, label_svg
 from service.papers.records import NOT_STATED, Signature
 from service.papers.schemas import CorrectionDocument, NewSignature
+from service.papers.status import status_paper, status_pdf
 from service.people.admission import PersonOf, attempt_of
 from service.people.dependencies import StorageOf
 from service.settings import Settings
@@ -186,6 +187,17 @@ def read_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: D
     Its address is that of the setting `IMU_HEALTH_PUBLIC_URL`, or the one that this request was sent to.
     """
     return as_file(label_pdf(labels.of(serial, due=due), labels.now, language), LABEL_PDF, f"{serial}-label.pdf")
+
+
+@labels_router.get(
+    "/{serial:path}/status.pdf",
+    responses={200: {"content": {PDF: BYTES}}, **errors(404, 422)},
+    response_class=Response,
+)
+def read_status(serial: Serial, store: Reading, now: Now, language: LanguageOf) -> Response:
+    """One page to hand over with the unit: may it be used, next calibration, reservations, what is closest to its
+    tolerance, and lines to sign."""
+    return as_file(status_pdf(status_paper(store, serial, now), now, language), PDF, f"{serial}-status.pdf")
 
 
 @labels_router.get(

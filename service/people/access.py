@@ -84,7 +84,13 @@ GET {UNIT}/found-and-left
 GET {UNIT}/usable
 GET {UNIT}/label.pdf
 GET {UNIT}/label.svg
+GET {UNIT}/status.pdf
 GET {UNIT}/customer
+GET {UNIT}/register
+GET {API}/register
+GET /register
+GET /due
+GET {API}/fleet/due
 GET {API}/unit-types
 GET {API}/unit-types/{{name:path}}
 GET {API}/unit-types/{{name:path}}/diagnosis
@@ -124,6 +130,8 @@ POST /upload/layout
 POST /units/{{serial:path}}/services
 POST /units/{{serial:path}}/notes
 POST /units/{{serial:path}}/customer
+POST /units/{{serial:path}}/moves
+POST /register
 POST /notes/{{id}}/withdraw
 POST /sessions/{{id}}/notes
 POST /attachments
@@ -145,6 +153,8 @@ POST {UNIT}/services
 POST {UNIT}/notes
 PUT {UNIT}/lot
 PUT {UNIT}/customer
+PUT {UNIT}/register
+POST {UNIT}/moves
 POST {API}/notes/{{id}}/withdraw
 POST {SESSION}/notes
 POST {API}/attachments
@@ -171,6 +181,9 @@ POST /sessions/{{id}}/correct
 POST /sessions/{{id}}/stand
 POST /sessions/{{id}}/reference
 POST /services/{{id}}/withdraw
+POST /register/import
+POST /units/{{serial:path}}/retire
+POST /units/{{serial:path}}/return
 POST /stands/{{name:path}}/certificates
 POST /unit-types/{{name:path}}/tolerances
 POST /unit-types/{{name:path}}/tolerances/preview
@@ -181,6 +194,9 @@ POST {SESSION}/correct
 POST {SESSION}/supersede
 POST {SESSION}/diagnosis/accept
 POST {UNIT}/reference
+POST {UNIT}/retire
+POST {UNIT}/return
+POST {API}/register
 POST {UNIT}/recalibrate
 POST {API}/jobs/recalibration
 POST {API}/jobs/failed/retry

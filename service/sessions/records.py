@@ -151,6 +151,8 @@ class _Receipt:
     """Reservations of the verdict."""
     state: RecordState = RecordState.ACCEPTED
     """`questioned` where the file cannot be as it says; then it counts for nothing."""
+    remark: str = ""
+    """What else must be known: that the unit is retired; empty where nothing is."""
 
 
 @answer

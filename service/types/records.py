@@ -30,7 +30,7 @@ class UnitType:
     name: str
     """Name of the type."""
     block: str
-    """`accelerometer` or `gyroscope`."""
+    """`accelerometer` or `gyroscope`; empty of a type of which no unit was measured yet."""
     sensors: tuple[str, ...]
     """Names of the sensors."""
     nominal_axes: tuple[tuple[float, float, float], ...]

@@ -24,8 +24,14 @@ ACCELEROMETER_DEFAULTS = Tolerances(
 """100 ppm, 50 µg, 20 µg/g², 20″."""
 GYROSCOPE_DEFAULTS = Tolerances(scale=1e-3, bias=0.05 * pi / 180 / 3600, quadratic=None, axis=120 * ARCSEC)
 """1000 ppm, 0.05 °/h, not judged, 120″."""
+NOT_JUDGED = Tolerances(None, None, None, None)
 DEFAULTS = {ACCELEROMETER: ACCELEROMETER_DEFAULTS, GYROSCOPE: GYROSCOPE_DEFAULTS}
 """By kind of sensor."""
+
+
+def named_only(name: str) -> UnitType:
+    """A type of which no unit was measured yet: its sensors come with the first session."""
+    return UnitType(name, "", (), (), (), NOT_JUDGED, None, revision=1)
 
 
 def type_of(new: Checked, calibration: Calibration) -> UnitType:

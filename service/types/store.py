@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import ColumnElement, Select, bindparam, func, or_, select
+from sqlalchemy import ColumnElement, Select, bindparam, func, or_, select, update
 from sqlalchemy.orm import aliased
 
 from estimator.message import say
@@ -27,20 +28,37 @@ class UnitTypes(Queries):
     """Kinds of unit and their tolerances."""
 
     def add_once(self, unit_type: UnitType, now: datetime) -> None:
-        """Stores a new type; one of that name that is there already stays as it is."""
+        """Stores a new type; one of that name that is there already stays as it is, unless only its name is known."""
+        block = {
+            "block": unit_type.block,
+            "sensors": list(unit_type.sensors),
+            "nominal_axes": [list(axis) for axis in unit_type.nominal_axes],
+            "nominal_scales": list(unit_type.nominal_scales),
+        }
         added = self.insert_once(
             UnitTypeRow,
             name=unit_type.name,
-            block=unit_type.block,
-            sensors=list(unit_type.sensors),
-            nominal_axes=[list(axis) for axis in unit_type.nominal_axes],
-            nominal_scales=list(unit_type.nominal_scales),
             revision=unit_type.revision,
             maximum_interval_days=unit_type.maximum_interval_days,
             flag_share=unit_type.flag_share,
+            **block,
         )
         if added:
             self._add_tolerances(self._row(unit_type.name), unit_type.tolerances, unit_type.gyro_tolerances, now)
+        elif self._complete(unit_type.name, block):
+            self._set_first(unit_type)
+
+    def _complete(self, name: str, block: Mapping[str, Any]) -> bool:
+        """Completes a type that only had a name from its first session; whether it did."""
+        named = update(UnitTypeRow).where(UnitTypeRow.name == name, UnitTypeRow.block == "")
+        return bool(self._session.scalars(named.values(**block).returning(UnitTypeRow.id)).all())
+
+    def _set_first(self, unit_type: UnitType) -> None:
+        """The first tolerances of a type that only had a name, by which nothing was judged."""
+        first = self._session.get_one(ToleranceRow, (self._row(unit_type.name).id, 1))
+        gyro = unit_type.gyro_tolerances
+        first.tolerances, first.gyro_tolerances = asdict(unit_type.tolerances), None if gyro is None else asdict(gyro)
+        self._session.flush()
 
     def get(self, name: str) -> UnitType:
         """The type with its current tolerances."""

@@ -1,7 +1,8 @@
-"""Services, notes and attachments of a unit."""
+"""Services, notes and attachments of a unit, and its entry in the register."""
 
 from dataclasses import dataclass
 from datetime import datetime
+from enum import StrEnum
 
 from service.kit.answer import answer
 from service.sessions.states import RecordState, StateChange
@@ -149,3 +150,94 @@ class Customer:
 
 NO_CUSTOMER = Customer()
 """Of a unit without a customer."""
+
+
+class CustodyStep(StrEnum):
+    """What happened to a unit in the register."""
+
+    ENTERED = "entered"
+    MOVED = "moved"
+    """To another place, or to somebody else."""
+    RETIRED = "retired"
+    RETURNED = "returned"
+    """Put back into use."""
+
+
+@answer
+@dataclass(frozen=True)
+class Custody:
+    """One change of where a unit is, who has it, or whether it is in use; never changed."""
+
+    id: int
+    """Number of the entry."""
+    unit: str
+    """Serial number of the unit."""
+    step: CustodyStep
+    """What happened: `entered`, `moved`, `retired` or `returned`."""
+    at: datetime
+    """When, UTC."""
+    who: str
+    """Who recorded it."""
+    location_before: str
+    """Where the unit was."""
+    location: str
+    """Where it is from then on."""
+    custodian_before: str
+    """Who had it."""
+    custodian: str
+    """Who has it from then on."""
+    remark: str
+    """Why, or what is worth knowing."""
+    recorded_at: datetime
+    """When it was written, UTC."""
+
+
+@answer
+@dataclass(frozen=True)
+class Registered:
+    """What the register says of a unit."""
+
+    unit: str
+    """Serial number of the unit."""
+    unit_type: str
+    """Name of its type."""
+    owner: str
+    """To whom it belongs; empty where that is not stated."""
+    location: str
+    """Where it is."""
+    custodian: str
+    """Who has it."""
+    note: str
+    """What is worth knowing."""
+    registered_at: datetime | None
+    """When it was entered, UTC; null of a unit that came with its first session."""
+    retired_at: datetime | None
+    """Since when it is retired, UTC; null while it is in use."""
+
+
+@dataclass(frozen=True)
+class NewEntry:
+    """What somebody enters of a unit; None leaves a field as it is."""
+
+    serial: str
+    unit_type: str | None = None
+    owner: str | None = None
+    location: str | None = None
+    custodian: str | None = None
+    note: str | None = None
+
+    @property
+    def stated(self) -> dict[str, str]:
+        """What is to be written to the unit itself, by column."""
+        known = {"owner": self.owner, "location": self.location, "custodian": self.custodian, "remark": self.note}
+        return {name: value for name, value in known.items() if value is not None}
+
+
+@dataclass(frozen=True)
+class Move:
+    """Where a unit goes or who gets it; None leaves it as it is."""
+
+    location: str | None = None
+    custodian: str | None = None
+    remark: str = ""
+    step: CustodyStep = CustodyStep.MOVED

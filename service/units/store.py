@@ -16,19 +16,22 @@ from service.types.tables import UnitTypeRow
 from service.units.records import Customer, NewService, Service
 from service.units.tables import ServiceRow, UnitRow
 
+HAS_SESSION = exists().where(SessionRow.unit_id == UnitRow.id)
+"""Whether a session of a unit was ever stored, whatever became of it."""
+
 
 class Units(Queries):
     """Units by serial number."""
 
     def exists(self, serial: str) -> bool:
         """Whether a session of this unit was ever stored."""
-        return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial)) is not None
+        return self.find(serial) is not None
 
     def is_simulated(self, serial: str) -> bool | None:
-        """Whether a unit's sessions are simulated, as its first one was; None where there is no such unit."""
+        """Whether a unit's sessions are simulated, as its first one was; None without a session."""
         if ("simulated", serial) in self._session.info:
             return bool(self._session.info["simulated", serial])
-        return self._session.scalar(select(UnitRow.simulated).where(UnitRow.serial == serial))
+        return self._session.scalar(select(UnitRow.simulated).where(UnitRow.serial == serial, HAS_SESSION))
 
     def set_simulated(self, serial: str, simulated: bool) -> None:
         """Records what a unit's sessions are from now on."""
@@ -79,6 +82,13 @@ class Units(Queries):
         type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
         self.insert_once(UnitRow, serial=serial, unit_type_id=type_id, simulated=simulated)
 
+    def begin(self, serial: str, unit_type: str, simulated: bool) -> None:
+        """A unit that was only registered until now is of the type and the origin of its first session."""
+        type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
+        unmeasured = update(UnitRow).where(UnitRow.serial == serial, ~HAS_SESSION)
+        self._session.execute(unmeasured.values(unit_type_id=type_id, simulated=simulated))
+        self._session.info.pop(("simulated", serial), None)
+
     def held(self, serial: str) -> int | None:
         """The key of a unit that is there, with the unit held until the transaction ends: its sessions are judged one
         after another."""
@@ -101,8 +111,8 @@ class Units(Queries):
         return key
 
     def find(self, serial: str) -> int | None:
-        """The key of a unit; None where no session of it was ever stored."""
-        return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
+        """The key of a unit; None without a session."""
+        return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial, HAS_SESSION))
 
     def key(self, serial: str) -> int:
         """The unit's key, which never changes: asked for once a transaction."""

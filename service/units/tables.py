@@ -1,4 +1,4 @@
-"""The tables of units, services, notes and attachments; notes and attachments are append-only."""
+"""The tables of units, services, custody, notes and attachments; the last three are append-only."""
 
 from datetime import datetime
 
@@ -20,6 +20,30 @@ class UnitRow(Base):
     lot: Mapped[str | None] = mapped_column(String(200))
     customer: Mapped[str] = mapped_column(String(200), server_default="")
     customer_address: Mapped[str] = mapped_column(String(2000), server_default="")
+    owner: Mapped[str] = mapped_column(String(200), server_default="")
+    location: Mapped[str] = mapped_column(String(200), server_default="")
+    custodian: Mapped[str] = mapped_column(String(200), server_default="")
+    remark: Mapped[str] = mapped_column(String(2000), server_default="")
+    registered_at: Mapped[datetime | None]
+    """When it was entered in the register; None of a unit that came with its first session only."""
+    retired_at: Mapped[datetime | None]
+
+
+class CustodyRow(Base):
+    """Where a unit went and who has it from then on; never changed."""
+
+    __tablename__ = "custody"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), index=True)
+    at: Mapped[datetime]
+    recorded_at: Mapped[datetime]
+    who: Mapped[str] = mapped_column(String(200))
+    step: Mapped[str] = mapped_column(String(20))
+    location_before: Mapped[str] = mapped_column(String(200))
+    location: Mapped[str] = mapped_column(String(200))
+    custodian_before: Mapped[str] = mapped_column(String(200))
+    custodian: Mapped[str] = mapped_column(String(200))
+    remark: Mapped[str] = mapped_column(String(2000))
 
 
 class ServiceRow(Base):

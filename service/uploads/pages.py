@@ -103,10 +103,11 @@ def _outcome(
     return Outcome(filename, result, diagnosis=diagnosis_line(diagnosis), pending=diagnosis is None)
 
 
-def outcome_of(session: StoredSession, diagnosis: DiagnosisSummary | None) -> Outcome:
+def outcome_of(session: StoredSession, diagnosis: DiagnosisSummary | None, remark: str = "") -> Outcome:
     """Outcome of a file that was uploaded a while ago."""
-    values = {f.name: getattr(session, f.name) for f in fields(Receipt) if f.name != "created"}
-    return Outcome(session.filename, Receipt(created=True, **values), (), diagnosis_line(diagnosis), diagnosis is None)
+    values = {f.name: getattr(session, f.name) for f in fields(Receipt) if f.name not in ("created", "remark")}
+    receipt = Receipt(created=True, remark=remark, **values)
+    return Outcome(session.filename, receipt, (), diagnosis_line(diagnosis), diagnosis is None)
 
 
 def upload_page(outcomes: Sequence[Outcome], settings: Settings, unit_types: Sequence[str] = ()) -> UploadPage:

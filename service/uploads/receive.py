@@ -34,6 +34,7 @@ from service.records.follow import follow
 from service.records.judge_again import Foreseen
 from service.records.keep import Made, keep, made
 from service.records.reception import Reception
+from service.records.register import retired_in_words
 from service.records.supersede import give_way, settled_by, supersede
 from service.sessions.decision import Verdict
 from service.sessions.doubt import remedies_among
@@ -46,6 +47,7 @@ from service.storage.files import content_hash
 from service.storage.queries import Store
 from service.types.rules import type_of
 from service.types.store import UnitTypes
+from service.units.register_store import Register
 from service.units.store import Units
 from service.uploads.store import Layouts, Log
 
@@ -163,7 +165,7 @@ def _with_followups(
     if not any(rest.is_left for rest in derived.values()):
         return receipt
     with storage.database.reading() as store:
-        return receipt_of(Sessions(store).get(receipt.id), created=receipt.created)
+        return replace(receipt_of(Sessions(store).get(receipt.id), created=receipt.created), remark=receipt.remark)
 
 
 def _known(storage: Storage, derivation: Deriving, stored: StoredSession, replaces: Replaced | None) -> Receipt:
@@ -238,7 +240,8 @@ def _store(store: Store, derivation: Deriving, received: Received, ready: _Ready
     stored = latest if latest is not None and latest.id == record.id else Sessions(store).get(record.id)
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
     Audit(store).write(received.at, received.who, "upload", stored.id, details)
-    return receipt_of(stored, created=True), derived
+    remark = retired_in_words(Register(store).get(stored.unit))
+    return replace(receipt_of(stored, created=True), remark=remark), derived
 
 
 def _derived(
@@ -269,10 +272,11 @@ def _unit(store: Store, received: Received, new: Calibrated) -> int:
     """The unit, locked, stored with its type when this is its first session: concurrent uploads wait here."""
     serial = new.checked.session.unit
     unit = Units(store).held(serial)
-    if unit is None:
-        unit_type = type_of(new.checked, new.calibration)
+    if unit is None or not Units(store).exists(serial):
+        unit_type, is_simulated = type_of(new.checked, new.calibration), new.checked.session.is_simulated
         UnitTypes(store).add_once(unit_type, received.at)
-        Units(store).add_once(serial, unit_type.name, new.checked.session.is_simulated)
+        Units(store).add_once(serial, unit_type.name, is_simulated)
+        Units(store).begin(serial, unit_type.name, is_simulated)
         unit = Units(store).hold(serial)
     if require_one_origin(store, new.checked.session):
         Units(store).set_simulated(serial, new.checked.session.is_simulated)

@@ -23,9 +23,11 @@ UPLOADS = frozenset(
         f"{PREFIX}/plan/missing",
         f"{PREFIX}/plan/ready",
         f"{PREFIX}/attachments",
+        f"{PREFIX}/register",
         "/upload",
         "/upload/layout",
         "/attachments",
+        "/register/import",
         "/ready",
         "/missing",
     }

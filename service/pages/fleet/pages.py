@@ -11,7 +11,7 @@ from service.groups.sections import FoundLine
 from service.judging.records import Usable
 from service.judging.use import Use, in_words
 from service.outlook.rules.populations import Standout
-from service.pages.fleet.view import DUE, FleetView
+from service.pages.fleet.view import DUE, RETIRED, FleetView
 from service.pages.saved import Saved
 from service.people.views import ListPage
 from service.sessions.doubt import Reservations
@@ -65,6 +65,9 @@ class FleetRow:
     next: str
     """What is needed where no date counts: ``repeat the session``."""
     overdue: bool
+    where: str
+    """Location and custodian; empty where neither is known."""
+    retired: bool
 
 
 @dataclass(frozen=True)
@@ -103,6 +106,8 @@ class FleetPage:
     """How many units are overdue, in words; empty where none is."""
     choices: FleetChoices
     """What the list can be narrowed to."""
+    retired: Mapping[str, str]
+    """What can be shown of retired units, in words."""
     dates: Mapping[str, str]
     """Choices of the next calibration's date, in words."""
     pending: str
@@ -155,6 +160,7 @@ def fleet_page(
         else "",
         choices=choices,
         dates=DUE,
+        retired=RETIRED,
         pending=pending,
         saved=kept,
     )
@@ -197,6 +203,8 @@ def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
         said=in_words(usable.use, usable.action),
         next=usable.action,
         overdue=usable.is_overdue,
+        where=joined(", ", filter(None, (unit.location, unit.custodian))),
+        retired=unit.retired_at is not None,
     )
 
 

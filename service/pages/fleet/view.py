@@ -7,11 +7,14 @@ from pydantic import Field
 
 from service.fleet.records import FleetQuery, Order
 from service.sessions.decision import Verdict
-from service.sessions.words.conditions import REFERENCE, RESERVED
+from service.sessions.words.conditions import NOT_MEASURED, REFERENCE, RESERVED
 from service.web.list_view import Asked, ListView, Words, one_of
 
 DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Do not use, or repeat"}
 """Choices of the next calibration's date, in words."""
+RETIRED = {"only": "Retired units only", "too": "Retired units too"}
+"""What is shown of retired units, in words; none where nothing is asked."""
+RETIRED_OF = {"": False, "only": True, "too": None}
 REFERENCES = {REFERENCE.key: True, Verdict.UNDECIDABLE.value: False}
 """Conditions that tell whether the latest session is a reference."""
 
@@ -28,11 +31,14 @@ class FleetView(ListView):
         Order.LAST.value: "by last session",
     }
     q: Words = ""
-    condition: Annotated[Asked, one_of({*Verdict, RESERVED.key, REFERENCE.key})] = ""
+    condition: Annotated[Asked, one_of({*Verdict, RESERVED.key, REFERENCE.key, NOT_MEASURED.key})] = ""
     due: Annotated[Asked, one_of(DUE)] = ""
     type: Asked = ""
     stand: Asked = ""
     lot: Asked = ""
+    location: Asked = ""
+    custodian: Asked = ""
+    retired: Annotated[Asked, one_of(RETIRED)] = ""
     flagged: Asked = ""
     page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
     """Its number, for people; what is read begins after a unit."""
@@ -50,6 +56,10 @@ class FleetView(ListView):
             unit_type=self.type or None,
             stand=self.stand or None,
             lot=self.lot or None,
+            location=self.location or None,
+            custodian=self.custodian or None,
+            uncalibrated=self.condition == NOT_MEASURED.key,
+            retired=RETIRED_OF[self.retired],
             flagged=bool(self.flagged),
             order=Order(self.order),
             backwards=self.backwards,

@@ -227,8 +227,7 @@ def _block(known: UnitType) -> str:
     count = len(known.sensors)
     if known.gyro_tolerances is not None:
         return say("{count} accelerometers and gyros", count=count)
-    kind = KINDS.get(known.block, known.block)
-    return counted(count, kind)
+    return counted(count, KINDS.get(known.block, known.block)) if known.block else "Not measured yet"
 
 
 def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:

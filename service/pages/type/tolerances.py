@@ -118,7 +118,9 @@ def _watch(known: UnitType, form: Mapping[str, str], faults: list[Problem]) -> W
 
 
 def _kinds(known: UnitType) -> tuple[tuple[str, Tolerances], ...]:
-    """Kinds of sensor with their tolerances."""
+    """Kinds of sensor with their tolerances; none of a type of which no unit was measured yet."""
+    if not known.block:
+        return ()
     if known.gyro_tolerances is None:
         return ((known.block, known.tolerances),)
     return (ACCELEROMETER, known.tolerances), (GYROSCOPE, known.gyro_tolerances)

@@ -78,6 +78,10 @@ def list_units(
     stand: Annotated[Text | None, Query(description="Only those last measured on this stand.")] = None,
     lot: Annotated[Text | None, Query(description="Only those of this production lot.")] = None,
     flagged: Annotated[bool, Query(description="Only those with an open flag.")] = False,
+    location: Annotated[Text | None, Query(description="Only those at this location.")] = None,
+    custodian: Annotated[Text | None, Query(description="Only those that this custodian has.")] = None,
+    uncalibrated: Annotated[bool, Query(description="Only registered units of which no session counts yet.")] = False,
+    retired: Annotated[bool | None, Query(description="Only retired units, or units in use.")] = False,
     order: Annotated[Order, Query(description="By condition worst first, by due date, serial number …")] = WORST_FIRST,
     backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
     after: Annotated[Text | None, Query(description="Only those that come after this serial number.")] = None,
@@ -86,6 +90,7 @@ def list_units(
     wanted = FleetQuery(
         verdict, text, reserved, offset=window.offset, limit=window.limit,
         due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged,
+        location=location, custodian=custodian, uncalibrated=uncalibrated, retired=retired,
         order=order, backwards=backwards, after=after,
     )  # fmt: skip
     found = Fleet(store).units(wanted)

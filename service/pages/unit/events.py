@@ -11,7 +11,7 @@ from service.sessions.decision import Decision
 from service.sessions.records import StoredSession
 from service.sessions.states import StateChange
 from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of, state_in_words
-from service.units.records import Note, Service
+from service.units.records import CustodyStep, Note, Service
 
 KINDS = {
     "adjustment": "Adjustment",
@@ -19,6 +19,13 @@ KINDS = {
     "sensor-swap": "Sensor swap",
     "reference": "New reference",
     "service": "Service",
+}
+
+STEPS = {
+    CustodyStep.ENTERED: "Entered",
+    CustodyStep.MOVED: "Moved",
+    CustodyStep.RETIRED: "Retired",
+    CustodyStep.RETURNED: "Put back into use",
 }
 
 

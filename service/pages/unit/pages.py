@@ -1,6 +1,6 @@
 """The page of one unit: its verdict now, and how every parameter of every sensor got there."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -17,7 +17,7 @@ from service.kit.measures import NOISE, day_of, heading, in_measure
 from service.outlook.charts import Track, TrackPoint, history_charts, tolerance_text, tracks_of
 from service.outlook.records import ParameterTrend, UnitOutlook
 from service.outlook.words import NextCalibration, next_calibration
-from service.pages.unit.events import KINDS, StageTable, UnitEvent, events_of, stage_table
+from service.pages.unit.events import KINDS, STEPS, StageTable, UnitEvent, events_of, stage_table
 from service.pages.unit.remarks import Remarks
 from service.pages.unit.report import UnitReport
 from service.papers.found_and_left import FoundAndLeft
@@ -26,7 +26,7 @@ from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import HistoryPoint
 from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of
 from service.sessions.words.noise import MEANINGS, NAMES, grown, term_in_words
-from service.units.records import Note, Service
+from service.units.records import Custody, CustodyStep, Note, Service
 
 
 @dataclass(frozen=True)
@@ -196,6 +196,10 @@ class UnitView:
     """Services and notes, newest first."""
     stages: StageTable | None
     """None where the unit was never marked as found."""
+    custody: tuple[Custody, ...]
+    """Where it was and who had it, the latest first."""
+    steps: Mapping[CustodyStep, str]
+    """What happened there, in words."""
     kinds: tuple[tuple[str, str], ...]
     """What can be done to a unit: identifier and name."""
     headline: str
@@ -227,6 +231,7 @@ def unit_page(
     group: GroupSection | None = None,
     follow: int | None = None,
     said: Remarks | None = None,
+    history_of_custody: Sequence[Custody] = (),
 ) -> UnitView:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
@@ -257,6 +262,8 @@ def unit_page(
         noise=noise_part(terms, report.services, valid),
         group=group,
         remarks=said,
+        custody=tuple(history_of_custody),
+        steps=STEPS,
         follow=follow,
     )
 

@@ -13,7 +13,7 @@ from service.sessions.states import RecordState, StateChange
 from service.sessions.store import Sessions
 from service.storage.queries import Store
 from service.types.records import UnitType
-from service.units.records import NO_EVENTS, Service, UnitEvents
+from service.units.records import NO_EVENTS, Registered, Service, UnitEvents
 from service.units.remarks_store import SaidOf
 
 
@@ -37,6 +37,8 @@ class UnitReport:
     outlook: UnitOutlook | None = None
     """None before a session was judged."""
     said: UnitEvents = NO_EVENTS
+    entry: Registered | None = None
+    """What the register says."""
 
 
 LATEST = 50
@@ -60,4 +62,5 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
         waiting=known.waiting,
         outlook=known.outlook,
         said=said,
+        entry=known.entry,
     )

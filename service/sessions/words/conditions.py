@@ -52,7 +52,7 @@ REFERENCE = Condition(
     "reference", "Reference set", "reference", "triangle-right",
     "Later sessions are judged against it; it is not judged itself.",
 )  # fmt: skip
-NOT_MEASURED = Condition("none", "Not measured", "no session", "stroke", "No session has been uploaded yet.")
+NOT_MEASURED = Condition("none", "No calibration yet", "no session", "stroke", "No session of it counts yet.")
 QUESTIONED = Condition(
     "none",
     "Questioned",

@@ -12,6 +12,7 @@ from sqlalchemy.exc import DatabaseError
 from service.errors import AwayError
 from service.flags.records import Delivery
 from service.flags.webhooks_store import Webhooks
+from service.fleet.store import Fleet
 from service.jobs.records import Job, JobKind, NewJob
 from service.jobs.store import Failures, Jobs
 from service.models.records import Scope
@@ -19,16 +20,22 @@ from service.models.store import Models, Recomputations
 from service.opening import open_database
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
+from service.records.register import Entering, enter, move_unit
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.storage.columns import PARTS
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, head_revision, stored_revision, upgrade
 from service.storage.tables import Base
+from service.types.store import UnitTypes
+from service.units.records import CustodyStep, Move, NewEntry
+from service.units.store import Units
 from service.uploads.receive import upload
 from tests.databases import Databases
 from tests.service.made_sessions import FAILED, session_bytes
 from tests.service.work.test_given_up import accepted
+
+REGISTERED = datetime(2026, 11, 21, tzinfo=UTC)
 
 
 def test_the_migrated_schema_is_the_one_of_the_tables(store_url: str) -> None:
@@ -169,3 +176,20 @@ def _work(storage: Storage, now: datetime) -> tuple[list[tuple[str, ...]], list[
     with storage.database.reading() as store:
         waiting = [WorkQueue(store, kind).waiting(later, 10) for kind in kinds]
         return waiting, [Jobs(store).get(id) for id in (1, 2)], Webhooks(store).deliveries(1, 10)
+
+
+def test_before_the_register_registered_units_go_and_retired_ones_are_in_use(store_url: str, storage: Storage) -> None:
+    upload(storage, session_bytes(), "a.json", REGISTERED)
+    enter(storage, (NewEntry("BA-900", "named only"),), Entering("K. Ito", REGISTERED))
+    move_unit(storage, "BA-017", Move(step=CustodyStep.RETIRED), "K. Ito", REGISTERED)
+    storage.database.close()
+    downgrade(store_url, "0035")
+    upgrade(store_url)
+    again = Storage(open_database(store_url), storage.files)
+    with again.database.writing() as store:
+        assert UnitTypes(store).find("named only") is None
+        Fleet(store).refresh(Units(store).key("BA-017"))
+    with again.database.reading() as store:
+        assert Units(store).every() == ("BA-017",)
+        assert Fleet(store).condition().units == 1
+    again.database.close()

@@ -1,0 +1,102 @@
+"""How many units are due when, and the lines of the list."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.fleet.condition import UnitSummary
+from service.judging.records import Usable
+from service.judging.use import Use, in_words
+from service.kit.answer import answer
+from service.kit.measures import month_of
+from service.pages.due.view import OVERDUE, UNKNOWN, month_after, month_begin
+from service.sessions.words.conditions import condition_of
+
+MONTHS = 12
+"""That have a tile of their own even where nothing is due, with this one."""
+
+
+@answer
+@dataclass(frozen=True)
+class DueCount:
+    """How many units are due in one period."""
+
+    when: str
+    """`overdue`, a month such as `2026-12`, or `unknown` where no date is known."""
+    units: int
+    """How many."""
+
+
+@answer
+@dataclass(frozen=True)
+class DueLine:
+    """One unit of the due list."""
+
+    unit: str
+    """Serial number."""
+    unit_type: str
+    """Name of its type."""
+    location: str
+    """Where it is."""
+    custodian: str
+    """Who has it."""
+    owner: str
+    """To whom it belongs."""
+    due: datetime | None
+    """When its next calibration is due, UTC; null where that is not known."""
+    days: int | None
+    """Whole days until then; negative where it is overdue."""
+    condition: str
+    """By its latest session, in words."""
+    use: Use
+    """What it may be used for now."""
+    said: str
+    """The same in words, with what to do."""
+    why: str
+    """Why it is due then, or why there is no date."""
+
+
+def due_counts(dates: Iterable[datetime | None], now: datetime) -> tuple[DueCount, ...]:
+    """Every unit once: what is overdue, this month and the next ones, later ones where something is due, no date."""
+    found = Counter(period(due, now) for due in dates)
+    months, start = [], month_begin(now)
+    for _ in range(MONTHS):
+        months.append(f"{start:%Y-%m}")
+        start = month_after(start)
+    later = sorted(key for key in found if key not in (OVERDUE, UNKNOWN, *months))
+    return tuple(DueCount(key, found[key]) for key in (OVERDUE, *months, *later, UNKNOWN))
+
+
+def period(due: datetime | None, now: datetime) -> str:
+    """In which a date lies."""
+    if due is None:
+        return UNKNOWN
+    return OVERDUE if due < now else f"{due:%Y-%m}"
+
+
+def period_in_words(when: str) -> str:
+    """``Overdue``, ``Dec 2026``."""
+    words = {OVERDUE: "Overdue", UNKNOWN: "No date"}
+    return words.get(when) or month_of(datetime.strptime(when, "%Y-%m"))
+
+
+def due_lines(units: Sequence[UnitSummary], uses: dict[str, Usable]) -> tuple[DueLine, ...]:
+    """Of units, in their order; the dates are those of the calendar of due dates."""
+    return tuple(_line(unit, uses[unit.serial]) for unit in units)
+
+
+def _line(unit: UnitSummary, use: Usable) -> DueLine:
+    return DueLine(
+        unit=unit.serial,
+        unit_type=unit.unit_type,
+        location=unit.location,
+        custodian=unit.custodian,
+        owner=unit.owner,
+        due=use.until,
+        days=None if use.until is None else (use.until - use.as_of).days,
+        condition=condition_of(unit.verdict, is_reference=unit.is_reference).word,
+        use=use.use,
+        said=in_words(use.use, use.action),
+        why=use.due_reason or ("" if use.until else use.why),
+    )

@@ -1,0 +1,75 @@
+"""The page of the due list."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import HTMLResponse
+
+from service.fleet.condition import UnitSummary
+from service.fleet.records import FleetChoices, FleetQuery
+from service.fleet.store import Fleet
+from service.judging.usable_reading import usable_of
+from service.pages.due.board import DueLine, due_counts, due_lines, period_in_words
+from service.pages.due.view import OVERDUE, UNKNOWN, DueView
+from service.web.dependencies import Now
+from service.web.list_view import Shown, address_of
+from service.web.render import render
+from service.work.dependencies import ReadingFleet
+
+
+@dataclass(frozen=True)
+class DueTile:
+    """One period; a click shows only its units."""
+
+    word: str
+    count: int
+    key: str
+    """The style of a condition."""
+    chosen: bool
+    url: str
+
+
+@dataclass(frozen=True)
+class DuePage:
+    """Everything the page shows."""
+
+    view: DueView
+    tiles: tuple[DueTile, ...]
+    lines: tuple[DueLine, ...]
+    shown: Shown[UnitSummary]
+    choices: FleetChoices
+    exports: Mapping[str, str]
+    """Addresses of the same as a file, by its form."""
+
+
+router = APIRouter(include_in_schema=False)
+STYLES = {OVERDUE: "fail", UNKNOWN: "undecidable"}
+
+
+@router.get("/due", response_class=HTMLResponse)
+def show_due(request: Request, store: ReadingFleet, now: Now, view: Annotated[DueView, Query()]) -> HTMLResponse:
+    """Units by the date of their next calibration, the first to come first."""
+    fleet = Fleet(store)
+    dates = fleet.dates(FleetQuery(location=view.location or None, custodian=view.custodian or None))
+    units = fleet.units(view.query(now))
+    shown = Shown.of(view, units, lambda unit: unit.serial)
+    tiles = tuple(
+        DueTile(
+            period_in_words(one.when), one.units, STYLES.get(one.when, "reference"), view.when == one.when,
+            view.first(when="" if view.when == one.when else one.when),
+        )
+        for one in due_counts(dates, now)
+    )  # fmt: skip
+    asked = {"when": view.when, "location": view.location, "custodian": view.custodian}
+    exports = {form: address_of("/api/v1/fleet/due", asked | {"format": form}) for form in ("xlsx", "csv")}
+    page = DuePage(
+        view=view,
+        tiles=tiles,
+        lines=due_lines(shown.entries, usable_of(store, shown.entries, now)),
+        shown=shown,
+        choices=fleet.choices(),
+        exports=exports,
+    )
+    return render(request, "due.html", page)

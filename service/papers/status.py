@@ -1,0 +1,130 @@
+"""One page of a unit's present result, to hand over with it: may it be used, until when, with what reservations, and
+which parameters are closest to their tolerances."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.message import say
+from service.errors import NotFoundError
+from service.fleet.condition import UnitSummary
+from service.fleet.store import Fleet
+from service.judging.records import Usable
+from service.judging.usable_reading import usable_of
+from service.judging.usable_words import next_in_words
+from service.judging.use import Use, in_words
+from service.kit.measures import HARD, THIN, day_of, number
+from service.languages.language import Language
+from service.papers.found_and_left import JudgedChange, moved
+from service.papers.typeset import typeset
+from service.sessions.decision import Decision
+from service.sessions.records import StoredSession
+from service.sessions.store import Sessions
+from service.sessions.words.conditions import Condition, condition_of
+from service.settings import VERSION
+from service.storage.queries import Store
+
+TEMPLATE = "status.typ"
+MOST_PARAMETERS = 10
+MOST_RESERVATIONS = 5
+TONES = {Use.YES: "pass", Use.RESERVED: "conditional-pass", Use.NO: "fail", Use.PENDING: "undecidable"}
+"""Colours of what a unit may be used for."""
+
+
+@dataclass(frozen=True)
+class StatusFact:
+    """One line of facts."""
+
+    name: str
+    value: str
+    is_written: bool = False
+    """Whether people wrote the value."""
+
+
+@dataclass(frozen=True)
+class StatusRow:
+    """One parameter that matters."""
+
+    change: JudgedChange
+    used: str
+    """Of the tolerance, U included; empty where it is not observed."""
+
+
+@dataclass(frozen=True)
+class StatusPaper:
+    """Everything that the page says."""
+
+    unit: str
+    day: str
+    key: str
+    """Of the colour of the use."""
+    use: str
+    why: str
+    condition: Condition
+    next: str
+    facts: tuple[StatusFact, ...]
+    reservations: tuple[str, ...]
+    more: int
+    """Reservations that have no room."""
+    rows: tuple[StatusRow, ...]
+    of: int
+    """Parameters that were judged."""
+    software: str
+    simulated: bool
+
+
+def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
+    """The page of a unit; NotFoundError when there is none."""
+    unit = Fleet(store).unit(serial)
+    if unit is None:
+        raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+    use = usable_of(store, (unit,), now)[serial]
+    session = None if unit.last_session is None else Sessions(store).get(unit.last_session)
+    decisions = () if session is None else Sessions(store).decisions(session.id)
+    said = (*use.reasons[1:], *use.reservations)
+    return StatusPaper(
+        unit=serial,
+        day=day_of(now),
+        key=TONES[use.use],
+        use=in_words(use.use, use.action),
+        why=use.why,
+        condition=condition_of(unit.verdict, is_reference=unit.is_reference),
+        next=next_in_words(use),
+        facts=tuple(_facts(unit, use, session)),
+        reservations=said[:MOST_RESERVATIONS],
+        more=max(0, len(said) - MOST_RESERVATIONS),
+        rows=tuple(_row(one) for one in closest(decisions)),
+        of=len(decisions),
+        software=VERSION,
+        simulated=unit.simulated,
+    )
+
+
+def closest(decisions: tuple[Decision, ...]) -> tuple[Decision, ...]:
+    """Those that matter, the worst first: least margin to tolerance, and before it what is not observed."""
+    ranked = sorted(decisions, key=lambda one: (-one.verdict.severity, one.margin if one.margin is not None else 0.0))
+    return tuple(ranked[:MOST_PARAMETERS])
+
+
+def _row(one: Decision) -> StatusRow:
+    used = "" if one.margin is None else f"{number(100 * (1 - one.margin), 0)}{THIN}%"
+    return StatusRow(moved(one), used)
+
+
+def _facts(unit: UnitSummary, use: Usable, session: StoredSession | None) -> list[StatusFact]:
+    custody = (("Owner", unit.owner), ("Location", unit.location), ("Custodian", unit.custodian))
+    found = [StatusFact("Type", unit.unit_type, is_written=True)]
+    found += [StatusFact(name, value, is_written=True) for name, value in custody if value]
+    if session is not None:
+        found.append(StatusFact("Latest session", day_of(session.started_at)))
+        found.append(StatusFact("Method", session.programme.replace("-", HARD)))
+        found.append(StatusFact("Session", session.id, is_written=True))
+        if session.stand:
+            found.append(StatusFact("Stand", session.stand, is_written=True))
+    if use.due_reason:
+        found.append(StatusFact("Why due then", use.due_reason))
+    return found
+
+
+def status_pdf(paper: StatusPaper, now: datetime, language: Language = Language.ENGLISH) -> bytes:
+    """The page, A4."""
+    return typeset(TEMPLATE, paper, now, language)

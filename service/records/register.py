@@ -1,0 +1,158 @@
+"""Flow: units are entered in the register, move, are retired and put back into use; every step is kept.
+
+A unit may be entered before its first session: its type is then known by name only, and the first session says what it
+has. Nothing of a list is stored where anything in it is wrong.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.errors import Problem
+from estimator.message import say
+from service.errors import ConflictError, RefusedError
+from service.ingest.checked import CLOCK_LEEWAY
+from service.ingest.names import fault_of_name, fault_of_serial
+from service.kit.measures import day_of
+from service.storage import Storage
+from service.storage.audit import Audit
+from service.storage.queries import Store
+from service.types.rules import named_only
+from service.types.store import UnitTypes
+from service.units.records import CustodyStep, Move, NewEntry, Registered
+from service.units.register_store import Register
+from service.units.store import Units
+
+NO_TYPE = "is missing: say the type of a unit that is not known yet"
+
+ACTIONS = {
+    CustodyStep.ENTERED: "register",
+    CustodyStep.MOVED: "move unit",
+    CustodyStep.RETIRED: "retire unit",
+    CustodyStep.RETURNED: "return unit",
+}
+"""Names in the audit trail."""
+
+
+@dataclass(frozen=True)
+class Entering:
+    """Who enters units, when, and why."""
+
+    who: str
+    now: datetime
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Entered:
+    """What became of a list of units."""
+
+    new: int
+    """Units that were not known before."""
+    changed: int
+    """Units of which something is different now."""
+    unchanged: int
+
+
+def enter(storage: Storage, entries: Sequence[NewEntry], by: Entering) -> Entered:
+    """Enters units, or changes what the register says of them; RefusedError with every problem by its row, then
+    nothing is stored."""
+    with storage.database.writing() as store:
+        serials = [entry.serial for entry in entries]
+        known, measured = Register(store).find(serials), Register(store).measured(serials)
+        problems = tuple(
+            Problem(problem.field, problem.message, row)
+            for row, entry in enumerate(entries, 1)
+            for problem in _problems(entry, known.get(entry.serial), is_measured=entry.serial in measured)
+        )
+        if problems:
+            raise RefusedError("The register cannot be changed so. Nothing was stored.", problems)
+        ordered = sorted(entries, key=lambda entry: entry.serial)
+        changed = sum(_enter(store, entry, known.get(entry.serial), by) for entry in ordered)
+        new = sum(entry.serial not in known for entry in entries)
+    return Entered(new, changed - new, len(entries) - changed)
+
+
+def _problems(entry: NewEntry, known: Registered | None, *, is_measured: bool) -> list[Problem]:
+    found = [Problem("serial", fault)] if known is None and (fault := fault_of_serial(entry.serial)) else []
+    if entry.unit_type and (fault := fault_of_name(entry.unit_type)):
+        found.append(Problem("unit_type", fault))
+    if known is None and not entry.unit_type:
+        found.append(Problem("unit_type", NO_TYPE))
+    elif known is not None and is_measured and entry.unit_type not in (None, "", known.unit_type):
+        fault = say("is {type} by its sessions; leave the type out or write that", type=known.unit_type)
+        found.append(Problem("unit_type", fault))
+    return found
+
+
+def _enter(store: Store, entry: NewEntry, known: Registered | None, by: Entering) -> bool:
+    """Stores one entry; whether that changed anything."""
+    if known is not None and known.registered_at is not None and not _differences(entry, known):
+        return False
+    if entry.unit_type and (known is None or entry.unit_type != known.unit_type):
+        UnitTypes(store).add_once(named_only(entry.unit_type), by.now)
+        Units(store).add_once(entry.serial, entry.unit_type, simulated=False)
+        Units(store).begin(entry.serial, entry.unit_type, simulated=False)
+    unit = Units(store).hold(entry.serial)
+    Register(store).put(unit, entry, by.now)
+    is_new = known is None or known.registered_at is None
+    moved = {name for name in ("location", "custodian") if known and name in _differences(entry, known)}
+    if is_new or moved:
+        step = CustodyStep.ENTERED if is_new else CustodyStep.MOVED
+        move = Move(entry.location, entry.custodian, by.remark, step)
+        Register(store).add(unit, known, move, by.now, by.who, by.now)
+    before = {} if known is None else {name: getattr(known, name) for name in _differences(entry, known)}
+    stated = {name: value for name, value in vars(entry).items() if value is not None and name != "serial"}
+    Audit(store).write(by.now, by.who, ACTIONS[CustodyStep.ENTERED], entry.serial, {"before": before, "entry": stated})
+    return True
+
+
+def _differences(entry: NewEntry, known: Registered) -> tuple[str, ...]:
+    """Fields that the register says otherwise."""
+    names = ("unit_type", "owner", "location", "custodian", "note")
+    asked = {name: getattr(entry, name) for name in names}
+    if not entry.unit_type:
+        asked["unit_type"] = None
+    return tuple(name for name in names if asked[name] is not None and asked[name] != getattr(known, name))
+
+
+def move_unit(
+    storage: Storage, serial: str, move: Move, who: str, now: datetime, *, at: datetime | None = None
+) -> Registered:
+    """Records where a unit is or who has it, retires it or puts it back into use; ConflictError where that is so
+    already."""
+    when = at or now
+    if when > now + CLOCK_LEEWAY:
+        fault = say("is in the future ({at}); record what has been done", at=f"{when:%Y-%m-%d}")
+        raise RefusedError("The register cannot be changed so. Nothing was stored.", (Problem("at", fault),))
+    with storage.database.writing() as store:
+        unit = Units(store).hold(serial)
+        was = Register(store).get(serial)
+        _require_change(was, move)
+        Register(store).move(unit, move)
+        if move.step in (CustodyStep.RETIRED, CustodyStep.RETURNED):
+            Register(store).retire(unit, when if move.step is CustodyStep.RETIRED else None)
+        Register(store).add(unit, was, move, when, who, now)
+        details = {"location": move.location, "custodian": move.custodian, "remark": move.remark}
+        Audit(store).write(now, who, ACTIONS[move.step], serial, details | {"at": when.isoformat()})
+        return Register(store).get(serial)
+
+
+def retired_in_words(entry: Registered) -> str:
+    """What a session of a retired unit is taken with; empty of a unit in use."""
+    if entry.retired_at is None:
+        return ""
+    day = day_of(entry.retired_at)
+    return say("{unit} is retired since {day}: fleet, due dates and alarms leave it out.", unit=entry.unit, day=day)
+
+
+def _require_change(was: Registered, move: Move) -> None:
+    if move.step is CustodyStep.RETIRED and was.retired_at is not None:
+        day = day_of(was.retired_at)
+        raise ConflictError(say("{unit} is retired since {day} already.", unit=was.unit, day=day))
+    if move.step is CustodyStep.RETURNED and was.retired_at is None:
+        raise ConflictError(say("{unit} is in use already.", unit=was.unit))
+    asked = {"location": move.location, "custodian": move.custodian}
+    is_same = all(value in (None, getattr(was, name)) for name, value in asked.items())
+    if move.step is CustodyStep.MOVED and is_same:
+        raise ConflictError(say("{unit} is there already, with the same custodian.", unit=was.unit))

@@ -1,0 +1,192 @@
+"""The register of units, over HTTP: entered, moved, retired and put back, as a table in and out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import polars as pl
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from estimator.json_object import Json
+from estimator.message import say
+from service.kit.answer import answer
+from service.kit.arriving_files import held
+from service.people.admission import PersonOf
+from service.people.dependencies import StorageOf
+from service.records.register import Entered, Entering, enter, move_unit
+from service.storage.queries import Store
+from service.units.records import Custody, CustodyStep, Move, NewEntry, Registered
+from service.units.register_file import read_register
+from service.units.register_store import Register
+from service.uploads.received import SentOf
+from service.web.dependencies import Now, Reading
+from service.web.fields import LongText, Moment, Name, Reason, Serial, Text
+from service.web.files import BINARY, BY_HEADER, as_table, table_of, wanted_form
+from service.web.problem_document import errors
+
+FORMS = {"application/json": "json", "text/csv": "csv"}
+COLUMNS = {
+    "serial": pl.String(), "unit_type": pl.String(), "owner": pl.String(), "location": pl.String(),
+    "custodian": pl.String(), "note": pl.String(), "retired_on": pl.String(),
+}  # fmt: skip
+
+
+class NewEntrySchema(BaseModel):
+    """What the register says of a unit."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {"unit_type": "RA-6", "location": "Hangar 2", "custodian": "K. Ito", "by": "M. Sato"}
+        },
+    )
+
+    unit_type: Text | None = Field(None, description="Name of its type; needed of a unit that is not known yet.")
+    owner: Text | None = Field(None, description="To whom it belongs; null leaves it as it is.")
+    location: Text | None = Field(None, description="Where it is; null leaves it as it is.")
+    custodian: Text | None = Field(None, description="Who has it; null leaves it as it is.")
+    note: LongText | None = Field(None, description="What is worth knowing; null leaves it as it is.")
+    by: Name = Field(description="Who enters it.")
+
+
+class NewMove(BaseModel):
+    """Where a unit goes, or who gets it."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"location": "Hangar 3", "custodian": "M. Sato", "by": "K. Ito"}}
+    )
+
+    location: Text | None = Field(None, description="Where it is from then on; null where it stays.")
+    custodian: Text | None = Field(None, description="Who has it from then on; null where that stays.")
+    remark: LongText = Field("", description="Why, or what is worth knowing.")
+    at: Moment | None = Field(None, description="When; now if not given. Without a zone it is UTC.")
+    by: Name = Field(description="Who records it.")
+
+
+class NewRetirement(BaseModel):
+    """Why a unit is retired, or put back into use."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"why": "scrapped", "by": "K. Ito"}})
+
+    why: Reason = Field(description="Why.")
+    at: Moment | None = Field(None, description="Since when; now if not given. Without a zone it is UTC.")
+    by: Name = Field(description="Who records it.")
+
+
+@answer
+@dataclass(frozen=True)
+class RegisterEntry(Registered):
+    """What the register says of a unit, and how that came about."""
+
+    history: tuple[Custody, ...] = ()
+    """Where it was and who had it, the latest first."""
+
+
+class RegisterList(BaseModel):
+    """All units."""
+
+    units: tuple[Registered, ...] = Field(description="Retired ones too, by serial number.")
+
+
+router = APIRouter(tags=["register"])
+
+
+def entry_of(store: Store, serial: str) -> RegisterEntry:
+    """One unit with its history."""
+    return RegisterEntry(**vars(Register(store).get(serial)), history=Register(store).history(serial))
+
+
+@router.get("/register", responses={200: {"content": {"text/csv": BINARY}}, **errors(422)}, response_model=RegisterList)
+def read_all(
+    request: Request,
+    store: Reading,
+    format: Annotated[
+        Literal["json", "csv"] | None,
+        Query(description="Form of the answer; without it the header `Accept` chooses, else it is JSON."),
+    ] = None,
+) -> Response:
+    """Every unit with its owner, location and custodian; the CSV can be changed and sent back."""
+    found = Register(store).every()
+    form = wanted_form(request, format, FORMS)
+    if form == "csv":
+        return as_table(register_table(found), form, "register")
+    document = RegisterList(units=found).model_dump_json()
+    return Response(document, media_type="application/json", headers=BY_HEADER)
+
+
+def register_table(found: Sequence[Registered]) -> pl.DataFrame:
+    """One row a unit."""
+    return table_of([_row(one) for one in found], COLUMNS)
+
+
+def _row(one: Registered) -> dict[str, Any]:
+    retired = "" if one.retired_at is None else f"{one.retired_at:%Y-%m-%d}"
+    return vars(one) | {"serial": one.unit, "retired_on": retired}
+
+
+IMPORTED: Json = {
+    "requestBody": {
+        "required": True,
+        "description": "A form with the CSV as `file`, and who imports it as `by`.",
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file", "by"],
+                    "properties": {"file": {"type": "string", "format": "binary"}, "by": {"type": "string"}},
+                }
+            }
+        },
+    }
+}
+
+
+@router.post("/register", responses=errors(400, 413, 422), openapi_extra=IMPORTED)
+def import_all(sent: SentOf, storage: StorageOf, now: Now) -> Entered:
+    """Enter or change the units of a CSV table. Where a row is wrong, every fault is listed and nothing is stored."""
+    return import_register(storage, sent, now)
+
+
+def import_register(storage: StorageOf, sent: SentOf, now: Now) -> Entered:
+    """The units of a file that was sent."""
+    entries = read_register(held(sent.given.content), sent.given.filename)
+    remark = say("imported from {file}", file=sent.given.filename)
+    return enter(storage, entries, Entering(sent.who, now, remark))
+
+
+@router.get("/units/{serial:path}/register", responses=errors(404, 422))
+def read_entry(serial: Serial, store: Reading) -> RegisterEntry:
+    """What the register says of the unit: owner, location, custodian, and their history."""
+    return entry_of(store, serial)
+
+
+@router.put("/units/{serial:path}/register", responses=errors(400, 422))
+def put_entry(serial: Serial, new: NewEntrySchema, storage: StorageOf, now: Now, person: PersonOf) -> RegisterEntry:
+    """Enter the unit, before or after its first session, or change what the register says of it."""
+    stated = new.model_dump(exclude={"by"})
+    entry = NewEntry(serial, **{name: text if text is None else text.strip() for name, text in stated.items()})
+    enter(storage, (entry,), Entering(person.signs(new.by), now))
+    with storage.database.reading() as store:
+        return entry_of(store, serial)
+
+
+@router.post("/units/{serial:path}/moves", status_code=201, responses=errors(400, 404, 409, 422))
+def record_move(serial: Serial, new: NewMove, storage: StorageOf, now: Now, person: PersonOf) -> Registered:
+    """Record where the unit is and who has it."""
+    move = Move(new.location, new.custodian, new.remark)
+    return move_unit(storage, serial, move, person.signs(new.by), now, at=new.at)
+
+
+@router.post("/units/{serial:path}/retire", responses=errors(400, 404, 409, 422))
+def retire(serial: Serial, new: NewRetirement, storage: StorageOf, now: Now, person: PersonOf) -> Registered:
+    """Retire the unit: fleet, due dates and alarms leave it out; its records stay."""
+    move = Move(remark=new.why, step=CustodyStep.RETIRED)
+    return move_unit(storage, serial, move, person.signs(new.by), now, at=new.at)
+
+
+@router.post("/units/{serial:path}/return", responses=errors(400, 404, 409, 422))
+def put_back(serial: Serial, new: NewRetirement, storage: StorageOf, now: Now, person: PersonOf) -> Registered:
+    """Put a retired unit back into use."""
+    move = Move(remark=new.why, step=CustodyStep.RETURNED)
+    return move_unit(storage, serial, move, person.signs(new.by), now, at=new.at)

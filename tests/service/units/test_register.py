@@ -1,0 +1,231 @@
+"""The register: units before their first session, where they are and who has them, and retired ones."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import httpx
+import pytest
+
+from service.errors import ConflictError, RefusedError
+from service.flags.store import FlagQuery, Flags
+from service.fleet.records import FleetQuery
+from service.fleet.store import Fleet
+from service.judging.usable_reading import usable_unit
+from service.outlook.store import Outlooks
+from service.records.register import Entering, enter, move_unit
+from service.storage import Storage
+from service.storage.queries import Store
+from service.types.store import UnitTypes
+from service.units.records import CustodyStep, Move, NewEntry
+from service.units.register_file import read_register
+from service.units.register_store import Register
+from service.uploads.receive import upload
+from tests.conftest import Filled, Holding
+from tests.service.dated import upload_and_date
+from tests.service.made_sessions import FAILED, session_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+BY = Entering("K. Ito", NOW)
+NEW = NewEntry("BA-900", "new type", "Aero Works", "Hangar 2", "M. Sato", "spare")
+RETIRE, RETURN = Move(remark="scrapped", step=CustodyStep.RETIRED), Move(remark="after all", step=CustodyStep.RETURNED)
+
+
+def listed(store: Store, query: FleetQuery = FleetQuery()) -> list[str]:  # noqa: B008 - frozen
+    """Serial numbers of a list."""
+    return [unit.serial for unit in Fleet(store).units(query)]
+
+
+def one_failed(storage: Storage) -> None:
+    """BA-017 is unfit; BA-900 is registered."""
+    for content in FAILED:
+        upload_and_date(storage, content, "a.json", NOW)
+    enter(storage, (NEW,), BY)
+
+
+@pytest.fixture
+def storage(filled: Filled) -> Storage:
+    """Both."""
+    return filled(one_failed)
+
+
+def test_a_registered_unit_is_in_the_fleet_without_a_calibration(storage: Storage) -> None:
+    with storage.database.reading() as store:
+        assert listed(store) == ["BA-017", "BA-900"]
+        assert (
+            listed(store, FleetQuery(uncalibrated=True)) == listed(store, FleetQuery(location="Hangar 2")) == ["BA-900"]
+        )
+        condition = Fleet(store).condition_at(NOW)
+        assert (condition.units, condition.uncalibrated, sum(condition.verdicts.values())) == (2, 1, 1)
+        assert condition.counts[-1].condition.word == "No calibration yet"
+        assert not usable_unit(store, "BA-900", NOW).usable
+        assert Fleet(store).choices().custodians == ("M. Sato",)
+
+
+def test_its_first_session_says_what_its_type_is(storage: Storage) -> None:
+    content = session_bytes(unit="BA-900", unit_type="new type")
+    upload(storage, content, "a.json", NOW)
+    with storage.database.reading() as store:
+        known = UnitTypes(store).get("new type")
+        assert len(known.sensors) == 6
+        assert known.tolerances.bias is not None
+        assert Fleet(store).condition().uncalibrated == 0
+        assert Register(store).get("BA-900").location == "Hangar 2"
+
+
+def test_a_session_of_another_type_corrects_the_register(storage: Storage) -> None:
+    upload(storage, session_bytes(unit="BA-900", origin="simulated"), "a.json", NOW)
+    with storage.database.reading() as store:
+        unit = Fleet(store).unit("BA-900")
+        other = Fleet(store).unit("BA-017")
+    assert unit is not None
+    assert other is not None
+    assert (unit.unit_type, unit.simulated) == (other.unit_type, True)
+
+
+def test_a_move_is_kept_with_what_was_before(storage: Storage) -> None:
+    move_unit(storage, "BA-900", Move(location="Hangar 3", remark="by road"), "R. Duarte", NOW)
+    with storage.database.reading() as store:
+        moved, entered = Register(store).history("BA-900")
+    assert (moved.location_before, moved.location, moved.custodian, moved.who) == (
+        "Hangar 2",
+        "Hangar 3",
+        "M. Sato",
+        "R. Duarte",
+    )
+    assert (entered.step, entered.location_before, entered.location) == (CustodyStep.ENTERED, "", "Hangar 2")
+    with pytest.raises(ConflictError, match="there already"):
+        move_unit(storage, "BA-900", Move(location="Hangar 3"), "R. Duarte", NOW)
+    with pytest.raises(RefusedError):
+        move_unit(storage, "BA-900", Move(location="Hangar 4"), "K. Ito", NOW, at=NOW + timedelta(days=3))
+
+
+def seen(storage: Storage, at: datetime) -> tuple[Any, ...]:
+    """List, counts, flags and tallies of the fleet."""
+    with storage.database.reading() as store:
+        fleet, flags = Fleet(store), Flags(store).page(FlagQuery())
+        return listed(store), fleet.condition_at(at), flags, fleet.tallies()
+
+
+def test_a_retired_unit_leaves_lists_counts_due_dates_and_flags_and_comes_back(storage: Storage) -> None:
+    late = NOW + timedelta(days=4000)
+    with storage.database.reading() as store:
+        before = (
+            listed(store),
+            Fleet(store).condition_at(late),
+            Flags(store).page(FlagQuery()),
+            Fleet(store).tallies(),
+        )
+    assert before[2]
+    move_unit(storage, "BA-017", RETIRE, "K. Ito", NOW)
+    with storage.database.reading() as store:
+        assert listed(store) == ["BA-900"]
+        assert listed(store, FleetQuery(retired=True)) == ["BA-017"]
+        assert listed(store, FleetQuery(retired=None)) == ["BA-017", "BA-900"]
+        condition = Fleet(store).condition_at(late)
+        assert (condition.units, condition.flags, condition.overdue) == (1, 0, 0)
+        assert Fleet(store).tallies() == ()
+        assert Flags(store).page(FlagQuery()) == ()
+        assert Flags(store).page(FlagQuery("BA-017"))
+        assert Outlooks(store).due(10) == Outlooks(store).overdue_units(late) == ()
+        assert usable_unit(store, "BA-017", NOW).why == "It is retired since 21 Nov 2026."
+    with pytest.raises(ConflictError, match="retired since 21 Nov 2026 already"):
+        move_unit(storage, "BA-017", RETIRE, "K. Ito", NOW)
+    move_unit(storage, "BA-017", RETURN, "K. Ito", NOW)
+    assert seen(storage, late) == before
+
+
+def test_a_session_of_a_retired_unit_is_taken_and_says_so(storage: Storage) -> None:
+    move_unit(storage, "BA-017", RETIRE, "K. Ito", NOW)
+    receipt = upload(storage, session_bytes(seed=9, month=9), "a.json", NOW)
+    assert receipt.created
+    assert receipt.remark.startswith("BA-017 is retired since 21 Nov 2026")
+    with storage.database.reading() as store:
+        assert listed(store) == ["BA-900"]
+
+
+CSV = "serial;unit_type;location;custodian;note\nBA-017;;Lab;K. Ito;'=1\nBA-901;RA-9;Hangar 1;;\n"
+
+
+def test_a_table_is_imported_whole_and_again_changes_nothing(storage: Storage) -> None:
+    entries = read_register(CSV.encode("utf-8-sig"), "register.csv")
+    assert vars(enter(storage, entries, BY)) == {"new": 1, "changed": 1, "unchanged": 0}
+    assert vars(enter(storage, entries, BY)) == {"new": 0, "changed": 0, "unchanged": 2}
+    with storage.database.reading() as store:
+        known = Register(store).get("BA-017")
+        assert (known.location, known.note, known.owner) == ("Lab", "=1", "")
+        assert len(Register(store).history("BA-017")) == 1
+
+
+def test_a_table_with_a_wrong_row_leaves_everything_as_it_was(storage: Storage) -> None:
+    table = "serial,unit_type\nBA-902,RA-9\nBA-903,\nBA-017,another\n"
+    with pytest.raises(RefusedError) as refused:
+        enter(storage, read_register(table.encode(), "a.csv"), BY)
+    assert [(p.row, p.field) for p in refused.value.problems] == [(2, "unit_type"), (3, "unit_type")]
+    with storage.database.reading() as store:
+        assert listed(store) == ["BA-017", "BA-900"]
+
+
+@pytest.mark.parametrize(
+    ("table", "places"),
+    [
+        ("unit,where\nA,B\n", {("unit", None), ("where", None), ("serial", None)}),
+        ("serial,unit_type\nA,B\nA,B\n", {("serial", 2)}),
+        (f"serial,unit_type\nA,{'x' * 201}\n", {("unit_type", 1)}),
+        ("serial,unit_type\n", {("file", None)}),
+        ('serial,unit_type\n"A,B\n', {("file", None)}),
+    ],
+)
+def test_what_is_wrong_with_a_table_is_told_by_row_and_column(table: str, places: set[tuple[str, int | None]]) -> None:
+    with pytest.raises(RefusedError) as refused:
+        read_register(table.encode(), "a.csv")
+    assert {(p.field, p.row) for p in refused.value.problems} == places
+
+
+@pytest.fixture
+def http(holding: Holding) -> httpx.Client:
+    """HTTP to a service with one unit."""
+    return holding(session_bytes())
+
+
+def test_the_register_over_http(http: httpx.Client) -> None:
+    entry = {"unit_type": "RA-9", "location": "Hangar 2", "by": "K. Ito"}
+    assert http.put("/api/v1/units/BA-900/register", json=entry).json()["history"][0]["step"] == "entered"
+    moved = http.post("/api/v1/units/BA-900/moves", json={"custodian": "M. Sato", "by": "K. Ito"})
+    assert (moved.status_code, moved.json()["custodian"], moved.json()["location"]) == (201, "M. Sato", "Hangar 2")
+    assert http.post("/api/v1/units/BA-900/retire", json={"why": "lost", "by": "K. Ito"}).json()["retired_at"]
+    assert [u["serial"] for u in http.get("/api/v1/units").json()["units"]] == ["BA-017"]
+    assert [u["serial"] for u in http.get("/api/v1/units?retired=true").json()["units"]] == ["BA-900"]
+    assert http.post("/api/v1/units/BA-900/return", json={"why": "found", "by": "K. Ito"}).json()["retired_at"] is None
+    table = http.get("/api/v1/register?format=csv").text
+    assert '\nBA-900,RA-9,"",Hangar 2,M. Sato,"",""\n' in table
+    changed = table.replace("Hangar 2", "Hangar 7")
+    sent = http.post("/api/v1/register", files={"file": ("r.csv", changed)}, data={"by": "K. Ito"})
+    assert sent.json() == {"new": 0, "changed": 2, "unchanged": 0}
+    refused = http.post("/api/v1/register", files={"file": ("r.csv", "serial\n\n")}, data={"by": "K. Ito"})
+    assert refused.status_code == 422
+
+
+def posted(http: httpx.Client, what: str, form: dict[str, str]) -> str:
+    """The page after a form of the unit."""
+    return http.post(f"/units/BA-900/{what}", data=form, follow_redirects=True).text
+
+
+def test_the_register_by_page(http: httpx.Client) -> None:
+    form = {"serial": "BA-900", "unit_type": "RA-9", "location": "Hangar 2", "by": "K. Ito"}
+    page = http.post("/register", data=form, follow_redirects=True)
+    assert "No calibration yet" in page.text
+    assert "Hangar 2" in page.text
+    form = {"location": "Hangar 3", "custodian": "M. Sato", "by": "K. Ito"}
+    assert "Hangar 2 → Hangar 3" in posted(http, "moves", form)
+    assert "BA-900" in http.get("/?condition=none&location=Hangar+3").text
+    retired = posted(http, "retire", {"why": "scrapped", "by": "K. Ito"})
+    assert "Retired since" in retired
+    assert "BA-900" not in http.get("/").text
+    assert "BA-900" in http.get("/?retired=only").text
+    assert "Retired since" not in posted(http, "return", {"why": "found", "by": "K. Ito"})
+    table = {"file": ("r.csv", "serial,unit_type\nX-1,RA-9\n")}
+    assert "New units: 1" in http.post("/register/import", files=table, data={"by": "K. Ito"}).text
+    wrong = {"file": ("r.csv", "serial,unit_type\nX-2,\n")}
+    assert http.post("/register/import", files=wrong, data={"by": "K. Ito"}).status_code == 422
+    assert http.get("/unit-types/RA-9").status_code == 200
+    assert http.get("/unit-types").status_code == 200
