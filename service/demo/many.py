@@ -18,6 +18,7 @@ from service.demo.blocks import SENSORS, TYPE_NAME, Change, unit_type
 from service.demo.cast import END, START, YEARS, DemoDrift, DemoMember, Intervention, Jump
 from service.demo.fill import UPLOADED_AFTER
 from service.demo.history import files_of
+from service.fleet.changes import summarise_all
 from service.kit.arriving_files import DEMONSTRATION
 from service.kit.measures import YEAR
 from service.opening import open_storage
@@ -133,6 +134,7 @@ def fill_many(settings: Settings, planned: ManyPlan, now: datetime, workers: int
         for serial in planned.retired:
             retire = Move(remark="Beyond repair.", step=CustodyStep.RETIRED)
             move_unit(storage, serial, retire, DEMONSTRATION, now)
+        summarise_all(storage, now)
 
 
 def _fill_beside(settings: Settings, life: Life, now: datetime) -> int:

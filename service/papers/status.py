@@ -12,7 +12,7 @@ from service.judging.records import Usable
 from service.judging.usable_reading import usable_of
 from service.judging.usable_words import next_in_words
 from service.judging.use import Use, in_words
-from service.kit.measures import HARD, THIN, day_of, number
+from service.kit.measures import THIN, day_of, number
 from service.languages.language import Language
 from service.papers.found_and_left import JudgedChange, moved
 from service.papers.typeset import typeset
@@ -61,6 +61,7 @@ class StatusPaper:
     why: str
     condition: Condition
     next: str
+    """When its next calibration is due; empty where something else must be done first."""
     facts: tuple[StatusFact, ...]
     reservations: tuple[str, ...]
     more: int
@@ -88,7 +89,7 @@ def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
         use=in_words(use.use, use.action),
         why=use.why,
         condition=condition_of(unit.verdict, is_reference=unit.is_reference),
-        next=next_in_words(use),
+        next="" if use.due is None else next_in_words(use),
         facts=tuple(_facts(unit, use, session)),
         reservations=said[:MOST_RESERVATIONS],
         more=max(0, len(said) - MOST_RESERVATIONS),
@@ -100,7 +101,7 @@ def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
 
 
 def closest(decisions: tuple[Decision, ...]) -> tuple[Decision, ...]:
-    """Those that matter, the worst first: least margin to tolerance, and before it what is not observed."""
+    """Those that matter, the worst first, then by least margin to tolerance."""
     ranked = sorted(decisions, key=lambda one: (-one.verdict.severity, one.margin if one.margin is not None else 0.0))
     return tuple(ranked[:MOST_PARAMETERS])
 
@@ -116,11 +117,11 @@ def _facts(unit: UnitSummary, use: Usable, session: StoredSession | None) -> lis
     found += [StatusFact(name, value, is_written=True) for name, value in custody if value]
     if session is not None:
         found.append(StatusFact("Latest session", day_of(session.started_at)))
-        found.append(StatusFact("Method", session.programme.replace("-", HARD)))
+        found.append(StatusFact("Method", session.programme.replace("-", " ")))
         found.append(StatusFact("Session", session.id, is_written=True))
         if session.stand:
             found.append(StatusFact("Stand", session.stand, is_written=True))
-    if use.due_reason:
+    if use.due is not None:
         found.append(StatusFact("Why due then", use.due_reason))
     return found
 

@@ -13,6 +13,7 @@ from estimator.message import say
 from service.errors import ConflictError, RefusedError
 from service.ingest.checked import CLOCK_LEEWAY
 from service.ingest.names import fault_of_name, fault_of_serial
+from service.kit.answer import answer
 from service.kit.measures import day_of
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -43,6 +44,7 @@ class Entering:
     remark: str = ""
 
 
+@answer
 @dataclass(frozen=True)
 class Entered:
     """What became of a list of units."""
@@ -52,6 +54,7 @@ class Entered:
     changed: int
     """Units of which something is different now."""
     unchanged: int
+    """Units of which everything was known already."""
 
 
 def enter(storage: Storage, entries: Sequence[NewEntry], by: Entering) -> Entered:

@@ -116,6 +116,17 @@ def test_a_unit_without_an_accepted_session_is_shown_without_a_verdict(measured:
     assert unit == {"sessions": 0, "verdict": None}
 
 
+def test_a_retired_unit_can_be_left_out(measured: Settings) -> None:
+    with http_client(create_app(measured)) as client:
+        client.put("/api/v1/units/BA-017/register", json={"location": "Hangar 2", "by": "K. Ito"}).raise_for_status()
+        client.post("/api/v1/units/BA-017/retire", json={"by": "K. Ito", "why": "scrapped"}).raise_for_status()
+    found = rows(measured.database, "SELECT unit, location, retired_at IS NULL AS used FROM health_units ORDER BY unit")
+    assert [(row["unit"], row["location"], bool(row["used"])) for row in found] == [
+        ("BA-017", "Hangar 2", False), ("BA-018", "", True),
+    ]  # fmt: skip
+    assert all(row["is_of_retired"] for row in rows(measured.database, "SELECT * FROM health_flags"))
+
+
 def documented() -> dict[str, list[str]]:
     """Views and their columns, as the page lists them."""
     sections = re.split(r"^### `(health_\w+)`", PAGE.read_text("utf-8"), flags=re.MULTILINE)[1:]
