@@ -230,11 +230,12 @@ def test_reading_needs_no_script(chromium: Browser, site: Site) -> None:
         assert "µg" in page.locator("#bias-accelerometer table tbody tr").first.inner_text()
 
 
-def test_a_chart_is_drawn_when_it_comes_near(chromium: Browser, site: Site) -> None:
+def test_a_folded_chart_is_drawn_when_it_comes_near(chromium: Browser, site: Site) -> None:
     last = "[...document.querySelectorAll('.chart')].at(-1)"
     with opened(chromium) as (_, page):
         page.goto(address(site, "/units/BA-017"))
         assert not page.evaluate(f"{last}.classList.contains('drawn')")
+        page.evaluate(OPEN_ALL)
         page.evaluate(f"{last}.scrollIntoView({{ behavior: 'instant' }})")
         page.wait_for_function(f"{last}.classList.contains('drawn')", polling=100)
 
