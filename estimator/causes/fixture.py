@@ -16,6 +16,7 @@ class FlipMisalignment(CommonCause):
     scope = "fixture"
     equation = "n → exp(−k×)·n in the flipped run"
     units = ("rad", "rad", "rad")
+    amplitude_words = ("about x", "about y", "about z")
     needs = frozenset({"stand", "both runs"})
     turns_flipped_run = True
     sentence = "The block was seated differently after it was turned over in its fixture."
@@ -36,6 +37,7 @@ class RemountRotation(CommonCause):
     scope = "fixture"
     equation = "all axes of the block turn together by the rotation vector k: e → exp(k×)·e since the history"
     units = ("rad", "rad", "rad")
+    amplitude_words = ("about x", "about y", "about z")
     needs = frozenset({"stand or directions", "history"})
     between = True
     turns_block = True

@@ -70,23 +70,33 @@ def log_information(chosen: Array) -> float:
 
 def exchanged(rows: NDArray[np.intp], candidates: Array) -> NDArray[np.intp]:
     """Rows (R,), numbers of candidates (C, m, 5), standard errors, after exchanges that raise the information."""
-    rows = rows.copy()
+    rows, per_sensor = rows.copy(), np.ascontiguousarray(candidates.swapaxes(0, 1))
     M = np.einsum("rmi,rmj->mij", candidates[rows], candidates[rows]) + PLAUSIBLE**-2 * np.eye(5)
+    spread, leverage = _leverages(per_sensor, M)
     for _ in range(PASSES):
         gained = 0.0
         for place, old in enumerate(rows):
-            spread = np.einsum("kmi,mij->kmj", candidates, np.linalg.inv(M))
-            leverage = (spread * candidates).sum(axis=-1)
-            across = (spread * candidates[old]).sum(axis=-1)
-            factor = np.log(np.maximum((1 + leverage) * (1 - leverage[old]) + across**2, 1e-12)).sum(axis=-1)
-            best = int(np.argmax(factor))
-            if factor[best] > SLIGHT:
+            across = (spread @ candidates[old][..., None])[..., 0]
+            factor = (1 + leverage) * (1 - leverage[:, old, None]) + across**2
+            gains = np.log(np.maximum(factor, 1e-12)).sum(axis=0)
+            best = int(np.argmax(gains))
+            if gains[best] > SLIGHT:
                 x, y = candidates[best], candidates[old]
                 M = M + x[:, :, None] * x[:, None, :] - y[:, :, None] * y[:, None, :]
-                rows[place], gained = best, gained + float(factor[best])
+                spread, leverage = _leverages(per_sensor, M)
+                rows[place], gained = best, gained + float(gains[best])
         if gained <= SLIGHT:
             break
     return rows
+
+
+def _leverages(per_sensor: Array, M: Array) -> tuple[Array, Array]:
+    """x'M⁻¹ (m, C, 5) and d_kk (m, C) of candidates x (m, C, 5), standard errors, by information M (m, 5, 5).
+
+    They hold until the next exchange: most rows of a pass are not exchanged.
+    """
+    spread = per_sensor @ np.linalg.inv(M)
+    return spread, np.einsum("mki,mki->mk", spread, per_sensor)
 
 
 def optimal_positions(schedule: CalibrationSession, sigma: Array) -> OptimalPositions:

@@ -172,7 +172,7 @@ def simulate_files(
         named = f"{letter}1 to {letter}{sensors}"
         raise typer.BadParameter(f"--drift names a sensor that is not there; the block has {named}")
     if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
-        raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the zeros of x and y")
+        raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the biases of x and y")
     levers = read_levers(lever_arm or [])
     if levers is not None and programme != ROTATION_ALIGNMENT:
         raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")

@@ -140,7 +140,7 @@ CAST = (
         handled=(
             DemoHandling(
                 datetime(2026, 11, 13, 10, 0, tzinfo=UTC), "A5", FlagState.RESOLVED, "R. Duarte",
-                "A5 was dropped with its box in May 2025; it has held its zero since.", Matter.JUMP,
+                "A5 was dropped with its box in May 2025; its bias has held since.", Matter.JUMP,
             ),
         ),
         hidden=DemoEffect("axis-creep", (5e-8, 3e-8), sensor=2),
@@ -202,7 +202,7 @@ CAST = (
         flown=Change(1, "bias", 120.0),
     ),
     DemoMember(
-        "RT-301", GYROSCOPE, "aligned on a turntable before use; the zero of x drifts up to its tolerance", 9,
+        "RT-301", GYROSCOPE, "aligned on a turntable before use; the bias of x drifts up to its tolerance", 9,
         drifts=(DemoDrift(Change(0, "bias", 48.5)),), programme=ROTATION_ALIGNMENT,
     ),
 )  # fmt: skip

@@ -22,6 +22,8 @@ from service.people.admission import PersonOf
 from service.people.dependencies import SEE_OTHER, By, Number, OptionalText, StorageOf, Why
 from service.people.view_store import SavedViews
 from service.people.views import ListPage
+from service.queue.store import PendingWork
+from service.queue.words import pending_in_words
 from service.sessions.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
 from service.web.dependencies import Now, Reading
 from service.web.fields import NO_NUL
@@ -110,10 +112,17 @@ class FlagsPage:
     """Whom a flag can be given to; empty where anybody may be named."""
     saved: Saved
     """Views of the list that were kept."""
+    pending: str
+    """What is still being worked out, and may change the list; empty where nothing is."""
 
 
 def flags_page(
-    found: Sequence[Flag], view: FlagsView, assigned: Mapping[str, str], people: Sequence[str], kept: Saved
+    found: Sequence[Flag],
+    view: FlagsView,
+    assigned: Mapping[str, str],
+    people: Sequence[str],
+    kept: Saved,
+    pending: str = "",
 ) -> FlagsPage:
     """One page of open flags."""
     shown = Shown.of(view, found, lambda flag: flag.id)
@@ -126,6 +135,7 @@ def flags_page(
         assigned=assigned,
         people=tuple(people),
         saved=kept,
+        pending=pending,
     )
 
 
@@ -168,7 +178,8 @@ def show_flags(request: Request, store: Reading, person: PersonOf, view: Asking)
     found = Flags(store).page(view.query(assignee_meant(store, view.assigned, person)))
     kept = saved(SavedViews(store).of(person.login, ListPage.FLAGS), view, ListPage.FLAGS, person)
     assigned = choices_of(Flags(store).assignees(), is_signed_in=bool(person.login))
-    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), kept))
+    pending = pending_in_words(PendingWork(store).counts())
+    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), kept, pending))
 
 
 @router.post("/assign")

@@ -260,7 +260,7 @@ def _words(decision: Decision, si: float, *, signed: bool = False) -> str:
 ALIKE = "with one another as at the calibration"
 SAME = say("The sensors agree {alike}", alike=ALIKE)
 CHANGED = say("The sensors do not agree {alike}", alike=ALIKE)
-TOO_MUCH_MOTION = "Too much motion for a decision"
+TOO_MUCH_MOTION = "Too much motion for a verdict"
 REST = 15
 """Blocks at rest that are asked for: twelve are needed, and the first and the last are never whole."""
 MOSTLY_MOTION = 0.5

@@ -268,7 +268,7 @@ def _remarks(notes: alt.NamedData) -> alt.Chart:
 
 def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
     shown = (*CONDITIONS, REFERENCE, NOT_JUDGED)
-    names = [c.formal for c in shown]
+    names = [c.word for c in shown]
 
     def by_verdict(values: list[Any]) -> Json:
         return {"legend": None, "scale": alt.Scale(domain=names, range=values)}
@@ -329,7 +329,7 @@ def _point(point: TrackPoint) -> Json:
         "y": _short(point.shown),
         "lo": _short(point.lower),
         "hi": _short(point.upper),
-        "verdict": point.condition.formal,
+        "verdict": point.condition.word,
         "epoch": point.epoch,
         "value": point.text,
         "date": point.day,

@@ -325,6 +325,7 @@ KEYS = (
     (("Enter",), "opens the row"),
     (("x",), "ticks the flag"),
     (("?",), "this page"),
+    (("Ctrl",), "with the mouse wheel zooms a chart; then drag it; a double click shows all of it again"),
 )
 """Keys, and what each does."""
 

@@ -76,9 +76,7 @@ class Workbook:
             kind: self._book.add_format({"num_format": kind.value}) for kind in CellKind
         }
         self._quoted = self._book.add_format({"quote_prefix": True})
-        self._tones = {
-            self._say(word): self._tone(c.key) for c in (*CONDITIONS, REFERENCE) for word in (c.formal, c.word)
-        }
+        self._tones = {self._say(c.word): self._tone(c.key) for c in (*CONDITIONS, REFERENCE)}
 
     def _tone(self, key: str) -> Format:
         return self._book.add_format({"font_color": "#ffffff", "bg_color": PALETTE[key]})

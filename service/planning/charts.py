@@ -82,6 +82,7 @@ def _rho(plan: Plan, degrees: Array) -> list[Panel]:
     return [panel]
 
 
+@cache
 def _spec(across: str) -> Json:
     points, chosen = (alt.NamedData(name=n) for n in (DATA_FORM, "chosen"))
     x = alt.X("x:Q", title=across, axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))

@@ -36,13 +36,13 @@ from service.sessions.words.conditions import Condition
 from service.web.render import render
 
 CONDITIONS = {
-    "enough": Condition("pass", "Enough", "enough", "circle", VERDICTS["enough"]),
-    "usable": Condition("conditional-pass", "Usable", "usable", "triangle", VERDICTS["usable"]),
-    "undecidable": Condition("undecidable", "Undecidable", "undecidable", "cross", VERDICTS["undecidable"]),
+    "enough": Condition("pass", "Enough", "circle", VERDICTS["enough"]),
+    "usable": Condition("conditional-pass", "Usable", "triangle", VERDICTS["usable"]),
+    "undecidable": Condition("undecidable", "Undecidable", "cross", VERDICTS["undecidable"]),
 }
-REACHED = Condition("pass", "Reached", "reached", "circle", "Every tolerance is reached.")
-MISSED = Condition("undecidable", "Not reached", "not reached", "cross", "Some tolerance is not reached.")
-OPEN = Condition("none", "Not judged", "not judged", "circle", "No tolerance was given.")
+REACHED = Condition("pass", "Reached", "circle", "Every tolerance is reached.")
+MISSED = Condition("undecidable", "Not reached", "cross", "Some tolerance is not reached.")
+OPEN = Condition("none", "Not judged", "circle", "No tolerance was given.")
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ class PlanQuestion(BaseModel):
     beta_error: Arcsec = Field(1.0, description="Error of the turn β, one sigma, arcsec.")
     noise: Amount = Field(None, description="Noise of a reading, one sigma, µg (gyros: °/h).")
     variation: Amount = Field(
-        None, description="Variation of the zero from position to position, one sigma, µg (gyros: °/h)."
+        None, description="Variation of the bias from position to position, one sigma, µg (gyros: °/h)."
     )
     elevation: Annotated[Elevation | None, BeforeValidator(blank)] = Field(
         None, description="Elevation of the head's axis, degrees; proposed where left out."
@@ -137,12 +137,12 @@ class PlanQuestion(BaseModel):
         return replace(errors, latitude=latitude, meridian=meridian, count_time=COUNT_TIME_SIGMA) if gyro else errors
 
     def spread(self, kind: str) -> float:
-        """Variation of the zero, SI."""
+        """Variation of the bias, SI."""
         stated = VARIATION[kind] if self.variation is None else self.variation
         return stated / MEASURES[kind, "bias"].factor
 
     def sigma(self, like: CalibrationSession) -> Array:
-        """(m,) one sigma of a reading at the input, variation of the zero included."""
+        """(m,) one sigma of a reading at the input, variation of the bias included."""
         noise = np.array([self._noise(s.kind) for s in like.sensors])
         return np.asarray(np.hypot(noise, [s.bias_repeatability for s in like.sensors]))
 
@@ -169,7 +169,7 @@ class ReadyQuestion(BaseModel):
     bias: Amount = Field(None, description="Tolerance of the bias, µg (gyros: °/h), instead of the type's.")
     scale: Amount = Field(None, description="Tolerance of the scale factor, ppm, instead of the type's.")
     coefficient: Amount = Field(
-        None, description="Temperature coefficient of the zeros at most, µg/K (gyros: °/h/K); without it none is used."
+        None, description="Temperature coefficient of the biases at most, µg/K (gyros: °/h/K); without it none is used."
     )
 
     def question(self, kind: str, tolerances: Mapping[tuple[str, str], float], usual: float | None) -> Question:

@@ -29,10 +29,10 @@ from service.web.dependencies import Reading
 from service.web.faults import fault_in_words
 from service.web.render import render
 
-READY = Condition("pass", "Ready", "ready", "circle", "The measurement may begin.")
-WAIT = Condition("conditional-pass", "Not yet", "not yet", "triangle-up", "Wait, or record for longer.")
-NOT_STILL = Condition("fail", "Not still", "not still", "square", "It moves or vibrates.")
-NOTHING = Condition("none", "No usable data", "no usable data", "stroke", "The record contains no information.")
+READY = Condition("pass", "Ready", "circle", "The measurement may begin.")
+WAIT = Condition("conditional-pass", "Not yet", "triangle-up", "Wait, or record for longer.")
+NOT_STILL = Condition("fail", "Not still", "square", "It moves or vibrates.")
+NOTHING = Condition("none", "No usable data", "stroke", "The record contains no information.")
 CONDITIONS = {
     ReadinessState.READY: READY,
     ReadinessState.NOT_STILL: NOT_STILL,
@@ -158,9 +158,7 @@ def missing_page(positions: int | None, runs: str, found: Missing | None = None)
         return MissingPage(positions, runs)
     first, *lines = missing_in_words(found)
     condition = READY if found.is_complete else WAIT
-    named = Condition(
-        condition.key, *(("Complete",) * 2 if found.is_complete else ("Incomplete",) * 2), "circle", first
-    )
+    named = Condition(condition.key, "Complete" if found.is_complete else "Incomplete", "circle", first)
     headings = tuple(map(heading, PARAMETERS)) if found.expected else ()
     return MissingPage(positions, runs, named, first, tuple(lines), headings, _known(found.expected))
 

@@ -71,10 +71,23 @@ class ChartSet:
     panels: tuple[Panel, ...]
 
 
+ZOOM: Json = {
+    "name": "zoom",
+    "select": {
+        "type": "interval",
+        "zoom": "wheel![event.ctrlKey || event.metaKey]",
+        "translate": "[pointerdown[event.pointerType === 'mouse'], window:pointerup] > window:pointermove!",
+    },
+    "bind": "scales",
+}
+"""Ctrl and the wheel zoom, the mouse drags, a double click resets; wheel and finger alone scroll the page."""
+
+
 def specification(layers: list[alt.Chart], height: int) -> Json:
-    """Layers as Vega-Lite that fills the width of its place."""
-    chart = alt.layer(*layers).properties(width="container", height=height)
-    return {**chart.to_dict(), "config": CONFIG, "autosize": {"type": "fit-x", "contains": "padding"}}
+    """Layers as Vega-Lite that fills the width of its place; the last one, of marks, can be zoomed."""
+    chart = alt.layer(*layers).properties(width="container", height=height).to_dict()
+    chart["layer"][-1]["params"] = [ZOOM]
+    return {**chart, "config": CONFIG, "autosize": {"type": "fit-x", "contains": "padding"}}
 
 
 def filled(part: Any, values: Mapping[str, Any]) -> Any:

@@ -83,7 +83,7 @@ SENSOR: Json = {
             "kind": {"enum": KINDS, "description": "Where it differs from `block`."},
             "nominal_offset": _number("Reading at zero input, reading units.", "sensors[].nominal_offset"),
             "bias_repeatability_m_s2": _number(
-                "One sigma of an accelerometer's zero from position to position.", "sensors[].bias_repeatability_m_s2"
+                "One sigma of an accelerometer's bias from position to position.", "sensors[].bias_repeatability_m_s2"
             ),
             "bias_repeatability_rad_s": _number("The same of a gyroscope.", "sensors[].bias_repeatability_rad_s"),
             "position_m": _vector("Where the sensor sits, m, block axes."),

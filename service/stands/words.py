@@ -11,7 +11,7 @@ from service.kit.measures import COVERAGE, day_of, deviation_measure, in_words, 
 from service.stands.records import StandCertificate, StandCondition, StandEvidence, StandSeating
 
 STEADY = "No change common to all units measured on it."
-TOO_FEW = "Measured with fewer than three units."
+TOO_FEW = "Fewer than three units have been measured on it at least twice."
 PENDING = "The results of its units are still being computed."
 JUDGED = "The units are judged without this effect."
 
@@ -124,9 +124,9 @@ def stand_word(
 
 def condition_in_words(condition: StandCondition | None, *, is_pending: bool) -> str:
     """What the units measured on it show; ``is_pending``: it is being worked out."""
-    if condition is None:
-        return PENDING if is_pending else TOO_FEW
-    return condition.reason
+    if is_pending and (condition is None or not condition.evidence):
+        return PENDING
+    return TOO_FEW if condition is None else condition.reason
 
 
 def _certificate_word(latest: StandCertificate | None, today: date) -> StandWord:

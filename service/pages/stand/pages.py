@@ -164,7 +164,7 @@ class StandPage:
     word: StandWord
     reasons: tuple[str, ...]
     is_pending: bool
-    """Whether what its units show is being worked out."""
+    """Whether what its units show is being worked out, and may change."""
     certificates: tuple[tuple[str, str, str, str], ...]
     """Number, issued by, issued on, valid until; the latest first."""
     flags: tuple[FlagCard, ...]
@@ -196,7 +196,7 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
         use=line.use,
         word=_word(line, now),
         reasons=(certificate, condition_in_words(condition, is_pending=line.is_pending)),
-        is_pending=condition is None and line.is_pending,
+        is_pending=line.is_pending,
         certificates=tuple(map(_certificate, reversed(line.certificates))),
         flags=flag_cards(report.flags[:MOST]),
         shifts=() if condition is None else _shifts(condition),

@@ -1,6 +1,6 @@
 """The page of one unit: its verdict now, and how every parameter of every sensor got there."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -185,6 +185,7 @@ class UnitView:
     failed: str
     """That what follows from its latest records could not be worked out, and why; empty else."""
     sections: tuple[ParameterSection, ...]
+    """Worst first."""
     sessions: tuple[SessionLine, ...]
     reference: str
     """What the next session is judged against, in words; empty when it becomes the reference itself."""
@@ -248,7 +249,10 @@ def unit_page(
         reason=_reason(report.summary.reason or condition.meaning, usable),
         failed=unit_failed(report.summary.failed) if report.summary.failed else "",
         condition=condition,
-        sections=tuple(_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
+        sections=_worst_first(
+            (_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
+            report.summary.worst_parameter,
+        ),
         sessions=session_lines(report.sessions),
         reference=_reference(report),
         drawn=len({point.session for point in history}),
@@ -282,6 +286,11 @@ def _reference(report: UnitReport) -> str:
     )
 
 
+def _worst_first(sections: Iterable[ParameterSection], worst: str | None) -> tuple[ParameterSection, ...]:
+    """By condition; among equals the parameter nearest to its tolerance leads."""
+    return tuple(sorted(sections, key=lambda one: (one.worst.rank, not one.anchor.startswith(f"{worst}-"))))
+
+
 def _section(
     tracks: Sequence[Track],
     services: Sequence[Service],
@@ -303,7 +312,9 @@ def _section(
         unit=tracks[0].unit.label,
         tolerance=tolerance_text(tracks[0]),
         worst=min(judged, key=lambda c: c.rank, default=NOT_JUDGED),
-        charts=history_charts(tracks, services, notes, trends),
+        charts=history_charts(
+            sorted(tracks, key=lambda track: track.points[-1].condition.rank), services, notes, trends
+        ),
         sensors=tuple(track.sensor for track in tracks),
         rows=_rows(tracks),
     )

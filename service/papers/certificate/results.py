@@ -70,7 +70,7 @@ def result_row(
         deviation=_deviation(decision, column),
         deviation_expanded=_spread(None if decision is None else decision.expanded, column.deviation),
         out=_chance(decision),
-        verdict="not judged" if condition is None else condition.formal,
+        verdict="not judged" if condition is None else condition.word,
         key="" if condition is None else condition.key,
     )
 

@@ -44,13 +44,13 @@ def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[Json]:
     for (left, condition), count in sorted(counts.items(), key=lambda item: (item[0][0], -item[0][1].rank)):
         below = top.get(left, 0)
         top[left] = below + count
-        rows.append({"left": left, "right": left + STEP, "low": below, "high": top[left], "verdict": condition.formal})
+        rows.append({"left": left, "right": left + STEP, "low": below, "high": top[left], "verdict": condition.word})
     return rows
 
 
 @cache
 def _spec() -> Json:
-    names = [condition.formal for condition in CONDITIONS]
+    names = [condition.word for condition in CONDITIONS]
     colours = [f"var(--{condition.key})" for condition in CONDITIONS]
     x = alt.X("left:Q", title=TITLE, scale=alt.Scale(domain=[0, LAST + STEP]), axis=alt.Axis(values=TICKS))
     y = alt.Y("low:Q", title="units", axis=alt.Axis(tickCount=4, format="d", tickMinStep=1))

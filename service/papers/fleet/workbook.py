@@ -99,7 +99,7 @@ def _parameter_row(serial: str, session: str, decision: Decision) -> tuple[Cell,
         serial, session, decision.sensor, decision.kind, decision.parameter, in_measure(decision.value, value),
         in_measure(decision.reference, value), value.label, in_measure(decision.deviation, deviation),
         in_measure(decision.expanded, deviation), decision.coverage_factor, in_measure(decision.tolerance, deviation),
-        deviation.label, decision.probability_out, decision.margin, condition_of(decision.verdict).formal,
+        deviation.label, decision.probability_out, decision.margin, condition_of(decision.verdict).word,
         decision.rule,
     )  # fmt: skip
 
@@ -110,7 +110,7 @@ def _history_row(serial: str, point: HistoryPoint) -> tuple[Cell, ...]:
         serial, point.at, point.sensor, point.kind, point.parameter, in_measure(point.value, value),
         in_measure(point.lower, value), in_measure(point.upper, value), value.label,
         in_measure(point.deviation, deviation), in_measure(point.expanded, deviation), deviation.label,
-        condition_of(point.verdict, is_reference=point.is_reference).formal, point.revision, point.session,
+        condition_of(point.verdict, is_reference=point.is_reference).word, point.revision, point.session,
     )  # fmt: skip
 
 

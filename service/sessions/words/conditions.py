@@ -17,9 +17,7 @@ class Condition:
 
     key: str
     word: str
-    """For a unit or a session, read from across the room."""
-    formal: str
-    """The name of the decision rule's state."""
+    """Of a unit, a session or a parameter, read from across the room."""
     shape: str
     """The mark in charts (Vega's name), the same as the icon's outline."""
     meaning: str
@@ -32,35 +30,32 @@ class Condition:
         return RANKS.get(self.key, len(CONDITIONS))
 
 
-UNFIT = Condition(
-    "fail", "Unfit", "fail", "square", "Out of tolerance, by more than the uncertainty of the measurement."
-)
+UNFIT = Condition("fail", "Unfit", "square", "Out of tolerance, by more than the uncertainty of the measurement.")
 PROBABLY_UNFIT = Condition(
-    "conditional-fail", "Probably unfit", "conditional fail", "diamond",
+    "conditional-fail", "Probably unfit", "diamond",
     "Out of tolerance, but by less than the uncertainty of the measurement.",
 )  # fmt: skip
 UNDECIDED = Condition(
-    "undecidable", "Undecided", "undecidable", "cross",
+    "undecidable", "Undecided", "cross",
     "The session does not observe this, or not well enough to judge it against the tolerance.",
 )  # fmt: skip
 PROBABLY_FIT = Condition(
-    "conditional-pass", "Probably fit", "conditional pass", "triangle-up",
+    "conditional-pass", "Probably fit", "triangle-up",
     "Within tolerance, but closer to it than the uncertainty of the measurement.",
 )  # fmt: skip
-FIT = Condition("pass", "Fit", "pass", "circle", "Within tolerance, by more than the uncertainty of the measurement.")
+FIT = Condition("pass", "Fit", "circle", "Within tolerance, by more than the uncertainty of the measurement.")
 REFERENCE = Condition(
-    "reference", "Reference set", "reference", "triangle-right",
+    "reference", "Reference set", "triangle-right",
     "Later sessions are judged against it; it is not judged itself.",
 )  # fmt: skip
-NOT_MEASURED = Condition("none", "No calibration yet", "no session", "stroke", "No session of it counts yet.")
+NOT_MEASURED = Condition("none", "No calibration yet", "stroke", "No session of it counts yet.")
 QUESTIONED = Condition(
     "none",
     "Questioned",
-    "questioned",
     "stroke",
     "It cannot be as its file states; it counts once an engineer accepts it.",
 )
-NOT_JUDGED = Condition("none", "Not judged", "not judged", "circle", "No tolerance or no reference is set.")
+NOT_JUDGED = Condition("none", "Not judged", "circle", "No tolerance or no reference is set.")
 
 CONDITIONS = (UNFIT, PROBABLY_UNFIT, UNDECIDED, PROBABLY_FIT, FIT)
 """Worst first, as they are listed."""
@@ -69,7 +64,7 @@ RANKS = {condition.key: rank for rank, condition in enumerate(CONDITIONS)}
 WITH_RESERVATION = "with reservation"
 """What is added to the word of a verdict that something speaks against."""
 RESERVED = Condition(
-    "reserved", "With reservation", WITH_RESERVATION, "stroke",
+    "reserved", "With reservation", "stroke",
     "A finding about the session qualifies the verdict; it is stated.",
 )  # fmt: skip
 

@@ -31,4 +31,7 @@ const watcher = new IntersectionObserver(
 
 const places = document.querySelectorAll(".chart");
 places.forEach((place) => watcher.observe(place));
-window.addEventListener("beforeprint", () => document.querySelectorAll(".chart:not(.drawn)").forEach(draw));
+const isFolded = (place) => place.closest("details:not([open])");
+window.addEventListener("beforeprint", () =>
+  [...document.querySelectorAll(".chart:not(.drawn)")].filter((place) => !isFolded(place)).forEach(draw),
+);

@@ -137,7 +137,7 @@ def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[t
 
 
 def draw_all(page: Page) -> None:
-    """Draws every chart, as before a page is printed, and waits for it.
+    """Draws every chart that is not folded, as before a page is printed, and waits for it.
 
     Nothing here waits for a frame: on a busy machine a headless browser may stop to paint for minutes.
     """
@@ -145,4 +145,4 @@ def draw_all(page: Page) -> None:
     page.wait_for_function(DRAWN, polling=100)
 
 
-DRAWN = "[...document.querySelectorAll('.chart')].every((c) => c.classList.contains('drawn'))"
+DRAWN = "[...document.querySelectorAll('.chart:not(.drawn)')].every((c) => c.closest('details:not([open])'))"

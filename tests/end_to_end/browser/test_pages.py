@@ -63,6 +63,10 @@ def address(site: Site, path: str) -> str:
     )
 
 
+OPEN_ALL = "document.querySelectorAll('details').forEach((one) => { one.open = true; })"
+HEIGHT = "document.documentElement.scrollHeight"
+SCREENS = 3 * 900
+"""Pixels: what the page of a unit, a session or a diagnosis takes at most on a wide screen, as it opens."""
 WIDTHS = (390, 1280)
 """A phone, on which a page is opened, and then a wide screen."""
 
@@ -82,8 +86,10 @@ class Seen:
     """Of its headings, in order."""
     nameless: int
     """Controls without a label."""
+    height: int
+    """Of the page as it opens on a wide screen, pixels."""
     barriers: tuple[str, ...]
-    """What axe finds, at each width, in light and in dark colours."""
+    """What axe finds with everything unfolded, at each width, in light and in dark colours."""
 
 
 IN_RUSSIAN = ("/", "/units/BA-017", "/sessions/{unfit}", "/sessions/{swayed}/diagnosis", "/flags", "/upload", "/help")
@@ -123,6 +129,10 @@ def visit(browser: Browser, site: Site, path: str) -> Seen:
         wire.send("Network.enable")
         wire.on("Network.loadingFinished", lambda event: received.append(event["encodedDataLength"]))
         page.goto(address(site, path))
+        page.set_viewport_size({"width": WIDTHS[1], "height": 900})
+        draw_all(page)
+        height = page.evaluate(HEIGHT)
+        page.evaluate(OPEN_ALL)
         for width in WIDTHS:
             page.set_viewport_size({"width": width, "height": 900})
             draw_all(page)
@@ -130,7 +140,7 @@ def visit(browser: Browser, site: Site, path: str) -> Seen:
             barriers += barriers_of(page, width)
         levels, nameless = (page.evaluate(script) for script in (LEVELS, NAMELESS))
     complaints, addresses = tuple(witness.complaints), tuple(witness.addresses)
-    return Seen(complaints, addresses, sum(received), tuple(overflow), tuple(levels), nameless, tuple(barriers))
+    return Seen(complaints, addresses, sum(received), tuple(overflow), tuple(levels), nameless, height, tuple(barriers))
 
 
 def barriers_of(page: Page, width: int) -> list[str]:
@@ -162,6 +172,10 @@ def test_the_console_is_quiet(seen: Seen, path: str) -> None:
 
 def test_only_our_own_service_is_asked(seen: Seen, site: Site) -> None:
     assert {address.startswith(site.url) for address in seen.addresses} == {True}
+
+
+def test_a_unit_a_session_a_diagnosis_take_three_screens_at_most(seen: Seen, path: str) -> None:
+    assert seen.height <= SCREENS or not path.startswith(("/units/", "/sessions/"))
 
 
 def test_axe_finds_no_barrier(seen: Seen) -> None:
@@ -219,11 +233,12 @@ def test_reading_needs_no_script(chromium: Browser, site: Site) -> None:
         assert "µg" in page.locator("#bias-accelerometer table tbody tr").first.inner_text()
 
 
-def test_a_chart_is_drawn_when_it_comes_near(chromium: Browser, site: Site) -> None:
+def test_a_folded_chart_is_drawn_when_it_comes_near(chromium: Browser, site: Site) -> None:
     last = "[...document.querySelectorAll('.chart')].at(-1)"
     with opened(chromium) as (_, page):
         page.goto(address(site, "/units/BA-017"))
         assert not page.evaluate(f"{last}.classList.contains('drawn')")
+        page.evaluate(OPEN_ALL)
         page.evaluate(f"{last}.scrollIntoView({{ behavior: 'instant' }})")
         page.wait_for_function(f"{last}.classList.contains('drawn')", polling=100)
 
@@ -248,6 +263,7 @@ def test_everything_can_be_reached_by_keyboard(chromium: Browser, site: Site) ->
 def test_two_sessions_are_chosen_on_the_unit_s_page(chromium: Browser, site: Site) -> None:
     with opened(chromium) as (_, page):
         page.goto(f"{site.url}/units/BA-017")
+        page.locator("#compare summary").click()
         page.locator("#compare select[name=a]").select_option(site.first_session)
         page.locator("#compare button").click()
         page.wait_for_url("**/compare?**")
@@ -261,6 +277,7 @@ def test_pages_in_russian_fit_and_hold_no_barrier(chromium: Browser, site: Site)
         witness.watch(page)
         for path in IN_RUSSIAN:
             page.goto(address(site, path))
+            page.evaluate(OPEN_ALL)
             assert page.locator("html").get_attribute("lang") == "ru"
             page.evaluate(AXE)
             for width in (390, 1024):

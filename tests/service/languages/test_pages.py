@@ -78,7 +78,7 @@ NAMES = frozenset(
             "sqlite",
             "rev",
         ),
-        *("accelerometer", "nbsp", "Enter"),
+        *("accelerometer", "nbsp", "Enter", "Ctrl"),
     )
 )
 """Words of a Russian page that are no English: names, file formats, units, the keys of roles and rules."""

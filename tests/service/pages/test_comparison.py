@@ -28,7 +28,7 @@ def test_the_parameter_that_moved_is_out_of_tolerance(flagged: httpx.Client) -> 
     page = flagged.get("/compare", params={"a": SECOND, "b": FIRST}).text
     row = re.search(r"A3 bias</th>(.*?)</tr>", page, re.DOTALL)
     assert row is not None
-    assert "fail: " in row.group(1)
+    assert "Unfit: " in row.group(1)
     assert "±50\u202fµg" in row.group(1)
     assert "1 Jan 2026</time> to" in page
 

@@ -60,8 +60,8 @@ def test_a_block_that_moves_too_much_is_told_so_and_what_to_do(holding: Holding)
     calibration, flight = moving_block()
     client = holding(calibration, flight)
     page = unescape(client.get(f"/sessions/{session_id(flight)}").text)
-    assert "Too much motion for a decision." in page
-    assert "Too much motion for a decision: the sensors disagree, possibly because of lever arms, delays" in page
+    assert "Too much motion for a verdict." in page
+    assert "Too much motion for a verdict: the sensors disagree, possibly because of lever arms, delays" in page
     assert "hold the unit still for 15 s while recording, or state where its sensors are (position_m)" in page
 
 

@@ -67,7 +67,7 @@ def test_it_states_every_decision(failed: httpx.Client) -> None:
     text = text_of(certificate(failed, ID))
     decisions = failed.get(f"/api/v1/sessions/{ID}").json()["decisions"]
     assert len(decisions) == 24
-    states = [condition_of(d["verdict"]).formal for d in decisions]
+    states = [condition_of(d["verdict"]).word for d in decisions]
     # The decision rule explains each state once.
     assert all(text.count(f"% {state}") == states.count(state) for state in set(states))
     [a3] = [d for d in decisions if (d["sensor"], d["parameter"]) == ("A3", "bias")]
@@ -151,7 +151,7 @@ def test_as_found_and_as_left_stand_beside_each_other(client: httpx.Client) -> N
     assert f"As found: session {found['id'][:12]} of 1 May 2026" in after
     assert "last service: adjustment, 20 May 2026" in after
     row = after[after.index("A3 bias") :][:60]
-    assert row.index("fail") < row.index("pass")
+    assert row.index("Unfit") < row.index("Fit")
 
 
 def test_a_recording_in_service_is_no_calibration(client: httpx.Client) -> None:

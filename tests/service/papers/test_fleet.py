@@ -63,14 +63,14 @@ def test_dates_and_numbers_are_dates_and_numbers(fleet: httpx.Client) -> None:
     assert sheets["Fleet"]["Next calibration due"].dtype.is_temporal()
     a3 = sheets["Parameters"].filter(Unit="BA-017", Sensor="A3", Parameter="bias")
     assert a3["Deviation"].to_list() == [pytest.approx(200.0, abs=8.0)]
-    assert (a3["Unit of deviation"][0], a3["Verdict"][0], a3["Tolerance"][0]) == ("µg", "fail", pytest.approx(50.0))
+    assert (a3["Unit of deviation"][0], a3["Verdict"][0], a3["Tolerance"][0]) == ("µg", "Unfit", pytest.approx(50.0))
 
 
 def test_every_parameter_and_every_session_is_there(fleet: httpx.Client) -> None:
     sheets = workbook(fleet)
     assert sheets["Parameters"].group_by("Unit").len()["len"].to_list() == [24, 24, 24]
     history = sheets["Histories"].filter(Unit="BA-017", Sensor="A3", Parameter="bias")
-    assert history["Verdict"].to_list() == ["reference", "fail"]
+    assert history["Verdict"].to_list() == ["Reference set", "Unfit"]
 
 
 def test_a_formula_stays_text(fleet: httpx.Client) -> None:
