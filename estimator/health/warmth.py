@@ -160,6 +160,11 @@ def _columns(temperature: Array) -> Array:
     return np.stack([warm, np.where(known, warm**2, (warm[known] ** 2).mean())], axis=1)
 
 
+def shown_columns(temperature: Array) -> Array:
+    """(n, q) of `_columns` that sessions at so many °C (n,) show: both where they can bend, else the line."""
+    return _columns(temperature)[:, : 2 if _can_bend(temperature) else 1]
+
+
 def _can_bend(temperature: Array) -> bool:
     """Whether the sessions show a parabola apart from level and line."""
     known = temperature[np.isfinite(temperature)]
