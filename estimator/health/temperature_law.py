@@ -199,13 +199,17 @@ def _unit(ones: Mapping[str, float | None], name: str, parameter: str) -> float:
 
 
 def _moved(sensor: SensorCalibration, ones: Mapping[str, float | None], steps: Steps) -> SensorCalibration:
-    own = {p: steps[sensor.name, p] for p in FOLLOW if (sensor.name, p) in steps}
-    return replace(sensor, **{p: _freed(getattr(sensor, p), s, _unit(ones, sensor.name, p)) for p, s in own.items()})
+    scale, bias = (steps.get((sensor.name, parameter)) for parameter in FOLLOW)
+    return replace(
+        sensor,
+        scale=_freed(sensor.scale, scale, _unit(ones, sensor.name, "scale")),
+        bias=_freed(sensor.bias, bias, 1.0),
+    )
 
 
-def _freed(estimate: Estimate, step: TemperatureStep, one: float) -> Estimate:
+def _freed(estimate: Estimate, step: TemperatureStep | None, one: float) -> Estimate:
     """An estimate without what temperature is worth in it; ``one`` in its unit for each unit of the step."""
-    if estimate.value is None or estimate.sigma is None:
+    if step is None or estimate.value is None or estimate.sigma is None:
         return estimate
     sigma = abs(step.sigma * one)
     dof = combined((estimate.sigma**2, estimate.dof), (sigma**2, step.dof))

@@ -1,28 +1,58 @@
 """What temperature does to a verdict, in words."""
 
-from estimator.message import say
+from estimator.health.temperature_law import TemperatureCorrection
+from estimator.message import joined, say
 from service.kit.measures import HARD, PARAMETER_NAMES, THIN, decimals, deviation_measure, in_measure, measured, number
 from service.sessions.decision import Decision
 
 
-def law_in_words(decision: Decision) -> str:
+def law_in_words(decision: Decision, step: TemperatureCorrection) -> str:
     """``A2 bias: change of 84 µg measured at 35 °C, 31 ± 9 µg at 20 °C by the law of 7 sessions.``"""
-    step = decision.temperature_correction
-    assert step is not None
-    largest = max(abs(step.measured), abs(step.corrected), decision.tolerance)
-    measure = deviation_measure(decision.kind, decision.parameter, largest)
-    digits = decimals(in_measure(step.expanded, measure))
+    as_measured, corrected = _changes(decision, step)
     return say(
         "{sensor} {parameter}: change of {measured} measured at {temperature}, {corrected} at {reference} by the law "
         "of {sessions} sessions.",
         sensor=decision.sensor,
         parameter=PARAMETER_NAMES[decision.parameter],
-        measured=number(in_measure(step.measured, measure), digits) + THIN + measure.label,
+        measured=as_measured,
         temperature=in_degrees(step.temperature),
-        corrected=measured(step.corrected, step.expanded, measure),
+        corrected=corrected,
         reference=in_degrees(step.reference_temperature),
         sessions=step.sessions,
     )
+
+
+def laws_in_words(decisions: tuple[Decision, ...]) -> tuple[str, ...]:
+    """One sentence on everything that temperature was taken off of in a session; none where it was not."""
+    taken = [(one, step) for one in decisions if (step := one.temperature_correction) is not None]
+    if not taken:
+        return ()
+    step = taken[0][1]
+    sentence = say(
+        "Measured at {temperature} and judged at {reference}, by the law of {sessions} sessions: {changes}.",
+        temperature=in_degrees(step.temperature),
+        reference=in_degrees(step.reference_temperature),
+        sessions=max(own.sessions for _, own in taken),
+        changes=joined("; ", (_short(*pair) for pair in taken)),
+    )
+    return (sentence,)
+
+
+def _short(decision: Decision, step: TemperatureCorrection) -> str:
+    """``A2 bias 84 µg → 31 ± 9 µg``."""
+    as_measured, corrected = _changes(decision, step)
+    name = PARAMETER_NAMES[decision.parameter]
+    parts = {"sensor": decision.sensor, "parameter": name, "measured": as_measured, "corrected": corrected}
+    return say("{sensor} {parameter} {measured} → {corrected}", **parts)
+
+
+def _changes(decision: Decision, step: TemperatureCorrection) -> tuple[str, str]:
+    """``84 µg``, as measured, and ``31 ± 9 µg``, at the reference's temperature."""
+    largest = max(abs(step.measured), abs(step.corrected), decision.tolerance)
+    measure = deviation_measure(decision.kind, decision.parameter, largest)
+    digits = decimals(in_measure(step.expanded, measure))
+    as_measured = number(in_measure(step.measured, measure), digits) + THIN + measure.label
+    return as_measured, measured(step.corrected, step.expanded, measure)
 
 
 def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
@@ -55,4 +85,5 @@ def at_about(celsius: float) -> str:
 
 
 def in_degrees(celsius: float) -> str:
+    """``35 °C``."""
     return f"{number(celsius, 0)}{HARD}°C"

@@ -145,15 +145,9 @@ def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
 def _by_law(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     """What temperature was worth, of the worst parameter, or of the one that it was worth most in; empty where nothing
     was taken off."""
-    taken = [d for d in decisions if d.temperature_correction is not None]
-    most = max(taken, key=_worth, default=None)
-    return "" if most is None else law_in_words(worst if worst in taken else most)
-
-
-def _worth(decision: Decision) -> float:
-    """Of the temperature, in tolerances."""
-    step = decision.temperature_correction
-    return 0.0 if step is None else abs(step.worth) / decision.tolerance
+    taken = [(one, step) for one in decisions if (step := one.temperature_correction) is not None]
+    most = max(taken, key=lambda pair: (pair[0] is worst, abs(pair[1].worth) / pair[0].tolerance), default=None)
+    return "" if most is None else law_in_words(*most)
 
 
 def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:

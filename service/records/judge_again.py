@@ -74,7 +74,7 @@ class Place:
         if not self.learned:
             return ""
         learned = ",".join(f"{one.id}@{one.revision}" for one in self.learned)
-        return f" law {sha256(learned.encode()).hexdigest()[:16]}"
+        return " law " + sha256(learned.encode()).hexdigest()[:16]
 
 
 def placed(

@@ -201,7 +201,7 @@ class Sessions(Queries):
         found: dict[str, dict[tuple[str, str], TemperatureCorrection]] = {}
         rows = self._session.execute(query.where(row.session_id.in_(tuple(ids)), taken.is_not(None)))
         for id, sensor, parameter, document in rows:
-            found.setdefault(id, {})[sensor, parameter] = TemperatureCorrection(**document)
+            found.setdefault(id, {})[sensor, parameter] = TemperatureCorrection(**(document or {}))
         return {**found}
 
     def judged(self, id: str) -> tuple[tuple[Decision, ...], tuple[CommonMotion, ...]]:
