@@ -33,7 +33,8 @@ from tests.blind.world import Session
 PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "temperature.md"
 HEADING = "## A session judged at its reference's temperature"
 NONE, LINE, PARABOLA, LOOSE = "none", "line", "parabola", "line with a small bend and lag"
-KINDS = (LINE, PARABOLA, LOOSE, NONE)
+CASES = ((LINE, 8), (PARABOLA, 8), (LOOSE, 8), (LOOSE, 16), (NONE, 8))
+"""Law, and sessions before, the reference among them."""
 TOLERANCES = {
     (ACCELEROMETER, "bias"): 50e-6 * STANDARD_GRAVITY,
     (ACCELEROMETER, "scale"): 100e-6,
@@ -43,8 +44,6 @@ TOLERANCES = {
 ROOM, WARM = 20.0, 35.0
 COLDEST, WARMEST = 10.0, 37.0
 """°C between which the sessions before are measured."""
-LEARNED = 8
-"""Sessions before, the reference among them."""
 EVERY = 60
 """Days between them."""
 LAG = 0.7
@@ -100,16 +99,16 @@ class Unit:
         return Seen(EVERY * number / 365.25, celsius, calibrate(read_session(document)))
 
 
-def judged(kind: str, seed: tuple[int, ...]) -> Judged:
-    """A unit of one kind of law."""
+def judged(kind: str, learned: int, seed: tuple[int, ...]) -> Judged:
+    """A unit of one kind of law, after so many sessions."""
     rng = np.random.default_rng(seed)
     world, law = draw_unit_at_room(rng), law_of(kind, rng)
     unit = Unit(world, law, LAG if kind == LOOSE else 0.0)
-    warm = (ROOM, *rng.uniform(COLDEST, WARMEST, LEARNED - 1))
+    warm = (ROOM, *rng.uniform(COLDEST, WARMEST, learned - 1))
     seen = [unit.at(float(t), i, rng) for i, t in enumerate(warm)]
-    last = unit.at(WARM, LEARNED, rng).calibration
+    last = unit.at(WARM, learned, rng).calibration
     changed, name = stepped(world, rng)
-    moved = Unit(changed, law, unit.lag).at(WARM, LEARNED, rng)
+    moved = Unit(changed, law, unit.lag).at(WARM, learned, rng)
     steps, reference = _steps(seen), seen[0].calibration
     sound = judge(last, reference, TOLERANCES, steps=steps)
     taken = [(j, own) for j in sound if (own := j.temperature_correction) is not None]
@@ -121,14 +120,14 @@ def judged(kind: str, seed: tuple[int, ...]) -> Judged:
         covered=tuple(abs(own.corrected) <= own.expanded for _, own in taken),
         shares=tuple(own.expanded / j.tolerance for j, own in taken),
         found=_moved(judge(moved.calibration, reference, TOLERANCES, steps=steps), name) in UNFIT,
-        excused=kind == NONE and _is_excused(world, changed, name, rng),
+        excused=kind == NONE and _is_excused(world, changed, (name, learned // 2), rng),
     )
 
 
-def _is_excused(world: Session, changed: Session, name: str, rng: np.random.Generator) -> bool:
-    """Whether a sensor that moved when the room became warmer for good passes in the last session there."""
-    nothing = np.zeros((2, world.unit.size, 2))
-    half = LEARNED // 2
+def _is_excused(world: Session, changed: Session, of: tuple[str, int], rng: np.random.Generator) -> bool:
+    """Whether a sensor that moved when the room became warmer for good passes in the last session there; ``of``: its
+    name, and how many sessions came before that."""
+    nothing, (name, half) = np.zeros((2, world.unit.size, 2)), of
     before = [Unit(world, nothing, 0.0).at(ROOM + rng.normal(0, 1), i, rng) for i in range(half)]
     after = [Unit(changed, nothing, 0.0).at(WARM + rng.normal(0, 1), half + i, rng) for i in range(half + 1)]
     seen, last = [*before, *after[:-1]], after[-1]
@@ -149,12 +148,16 @@ def _moved(found: Sequence[ParameterJudgement], name: str) -> str:
     return next(one.verdict for one in found if (one.sensor, one.parameter) == (name, "bias"))
 
 
-def rows(answers: dict[str, list[Judged]]) -> Iterator[tuple[str, ...]]:
+Answers = dict[tuple[str, int], list[Judged]]
+
+
+def rows(answers: Answers) -> Iterator[tuple[str, ...]]:
     """Of the table."""
-    for kind, units in answers.items():
+    for (kind, learned), units in answers.items():
         shares = [share for one in units for share in one.shares]
         yield (
             kind,
+            str(learned),
             str(rate([one.as_measured for one in units])),
             str(rate([one.by_law for one in units])),
             str(rate([one.undecided for one in units])),
@@ -166,16 +169,17 @@ def rows(answers: dict[str, list[Judged]]) -> Iterator[tuple[str, ...]]:
 
 
 COLUMNS = (
-    "law", "unfit as measured", "unfit by the law", "undecided by it", "150 µg moved, found by it", "U covers",
+    "law", "sessions before", "unfit as measured", "unfit by the law", "undecided by it", "150 µg moved, found by it",
+    "U covers",
     "median U", "moved with the room, excused",
 )  # fmt: skip
 
 
-def section(answers: dict[str, list[Judged]], command: str) -> str:
+def section(answers: Answers, command: str) -> str:
     """Markdown."""
     return (
-        f"{HEADING}\n\nMade by `{command}`. The reference is measured at {ROOM:.0f} °C, {LEARNED - 1} sessions between "
-        f"{COLDEST:.0f} and {WARMEST:.0f} °C, the judged one at {WARM:.0f} °C; nothing but temperature has changed. "
+        f"{HEADING}\n\nMade by `{command}`. The reference is measured at {ROOM:.0f} °C, the other sessions before "
+        f"between {COLDEST:.0f} and {WARMEST:.0f} °C, the judged one at {WARM:.0f} °C; nothing but temperature has changed. "
         "Without a law, or with fewer than six sessions before, a unit is judged as measured, with its reservation. "
         f"*{LOOSE.capitalize()}*: a fifth of a parabola's bend, sensors {LAG:g} °C (one sigma) off the stated "
         "temperature. U is that of the corrected change; of *none* it counts laws that are claimed by chance. "
@@ -199,8 +203,8 @@ def main() -> None:
     options = parser.parse_args()
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
         answers = {
-            kind: list(pool.map(partial(judged, kind), [(options.seed, i, k) for k in range(options.units)]))
-            for i, kind in enumerate(KINDS)
+            case: list(pool.map(partial(judged, *case), [(options.seed, i, k) for k in range(options.units)]))
+            for i, case in enumerate(CASES)
         }
     text = section(answers, f"python -m benchmarks.temperature_law --units {options.units} --seed {options.seed}")
     publish(with_section(published(PAGE), text), PAGE)

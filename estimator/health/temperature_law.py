@@ -6,8 +6,8 @@ The change y of a bias or scale since the reference, at sessions i measured at T
     y_i = a + d·f(t_i) + b·(T_i − T̄) + c·(T_i − T̄)² + e_i,    e_i ~ N(0, σ_i² + τ²)
 
 f is the likeliest change through time of the readings as they are: a law is found only where it shows beside it, so a
-sensor that changed when the room did is not taken for one that follows the room. Whether a law is found says `warmth`.
-c is fitted wherever the temperatures bend enough to show it, small or not: what it could be is then in the uncertainty.
+sensor that changed when the room did is not taken for one that follows the room. How likely chance makes one is said by
+`warmth`. c is fitted wherever the temperatures can show it, small or not: what it could be is then in the uncertainty.
 τ is what scatters about the law beyond the noise, hysteresis among it; χ² per degree of freedom is brought to 1 (Mandel
 and Paule 1982). A session and its reference each lie off the law by it, so with s the step in the columns
 
@@ -24,7 +24,7 @@ from estimator.coverage import combined, coverage_factor
 from estimator.health.detection import LEVEL, most_likely
 from estimator.health.deviation import deviation
 from estimator.health.fits import LEAST, Readings
-from estimator.health.warmth import ENOUGH_TO_BEND, WARMED, shown_columns, warmth_of
+from estimator.health.warmth import ENOUGH_TO_BEND, WARMED, chance_of, shown_columns
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 from estimator.significance import single_level
@@ -128,8 +128,7 @@ def _step(
     if likely is not None:
         base = np.concatenate([readings.base, likely.column[:, None]], axis=1)
         readings = replace(readings, base=base, now=np.append(_ONE, likely.column[-1]))
-    warmth = warmth_of(readings, celsius, None, level)
-    if warmth is None or not warmth.is_found:
+    if celsius.std() < WARMED or chance_of(readings, celsius) >= level:
         return None
     columns, step = shown_columns(celsius), np.array(between) - celsius.mean()
     worth, variance, dof = _worth(readings, columns, np.array([step[1] - step[0], step[1] ** 2 - step[0] ** 2]))

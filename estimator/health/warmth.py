@@ -110,6 +110,13 @@ def warmth_of(readings: Readings, temperature: Array, rival: Array | None, level
     return Warmth(_mean(temperature), own.size, own.covariance, p, bool(p < level and explains))
 
 
+def chance_of(readings: Readings, temperature: Array) -> float:
+    """Chance of readings of one component following the temperature (n,), °C, so well where they do not, by a line and,
+    where the sessions show one, a bend."""
+    columns = shown_columns(temperature)
+    return float(p_value(_fitted(readings, columns).explained, columns.shape[1]))
+
+
 @dataclass(frozen=True, eq=False)
 class _Fitted:
     """Some columns acting, at the walk that suits them best."""

@@ -66,6 +66,13 @@ def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holdin
     assert abs(own["corrected"]) < own["expanded"] < 20 * MICRO_G
     assert (own["temperature"], own["reference_temperature"], own["sessions"]) == (33.0, 20.0, 7)
     assert [place for place, one in taken.items() if one is not None] == [("A3", "bias")]
+    assert "Measured at 33 °C and judged at 20 °C, by the law of 7 sessions: A3 bias 80.0 µg → " in plain(
+        client.get(f"/sessions/{warm['id']}").text
+    )
+    (law,) = client.get(f"/api/v1/sessions/{warm['id']}/correction").json()["temperature_laws"]
+    assert (law["sensor"], law["parameter"], law["worth"]) == ("A3", "bias", own["worth"])
+    certificate = client.get(f"/api/v1/sessions/{warm['id']}/certificate?format=dcc").text
+    assert "deviation at 33.0 °C, before the law of 7 sessions over temperature" in certificate
     (moved,) = [d for d in drifted["decisions"] if d["verdict"] == "fail"]
     assert moved["deviation"] == pytest.approx(150 * MICRO_G, abs=20 * MICRO_G)
 
