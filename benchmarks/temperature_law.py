@@ -170,8 +170,7 @@ def rows(answers: Answers) -> Iterator[tuple[str, ...]]:
 
 COLUMNS = (
     "law", "sessions before", "unfit as measured", "unfit by the law", "undecided by it", "150 µg moved, found by it",
-    "U covers",
-    "median U", "moved with the room, excused",
+    "U covers", "median U", "moved with the room, excused",
 )  # fmt: skip
 
 
@@ -179,11 +178,11 @@ def section(answers: Answers, command: str) -> str:
     """Markdown."""
     return (
         f"{HEADING}\n\nMade by `{command}`. The reference is measured at {ROOM:.0f} °C, the other sessions before "
-        f"between {COLDEST:.0f} and {WARMEST:.0f} °C, the judged one at {WARM:.0f} °C; nothing but temperature has changed. "
-        "Without a law, or with fewer than six sessions before, a unit is judged as measured, with its reservation. "
-        f"*{LOOSE.capitalize()}*: a fifth of a parabola's bend, sensors {LAG:g} °C (one sigma) off the stated "
-        "temperature. U is that of the corrected change; of *none* it counts laws that are claimed by chance. "
-        "*Moved with the room*: a bias moves by 150 µg when the room becomes 15 °C warmer for good.\n\n"
+        f"between {COLDEST:.0f} and {WARMEST:.0f} °C, the judged one at {WARM:.0f} °C; nothing but temperature has "
+        "changed. Without a law, or with fewer than six sessions before, a unit is judged as measured, with its "
+        f"reservation. *{LOOSE.capitalize()}*: a fifth of a parabola's bend, sensors {LAG:g} °C (one sigma) off the "
+        "stated temperature. U is that of the corrected change. *Moved with the room*: a bias moves by 150 µg when the "
+        "room becomes 15 °C warmer for good.\n\n"
         f"{table(COLUMNS, rows(answers))}\n"
     )
 
