@@ -22,30 +22,22 @@ import numpy as np
 from benchmarks.details import publish
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
+from benchmarks.temperature_law import LINE, NONE, PAGE, PARABOLA, ROOM, TOLERANCES, WARM, law_of, with_section
 from estimator import calibrate, diagnose, read_session
-from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes import cause as hidden
 from estimator.health import judge
 from estimator.health.deviation import deviation
 from estimator.health.pooled import general_prior
 from estimator.health.prognosis import Outlook, Track, prognosis
-from estimator.results import ARCSEC, Calibration
+from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array
 from tests.blind.cases import draw_case
-from tests.blind.warmth import at_temperature, draw_law, draw_unit_at_room
+from tests.blind.warmth import at_temperature, draw_unit_at_room
 
-PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "temperature.md"
-NONE, LINE, PARABOLA = "none", "line", "parabola"
 STRAIGHT, CURVE = "bias-temperature", "bias-temperature-curve"
 OF_TEMPERATURE = frozenset({STRAIGHT, "scale-temperature", "unexplained"})
-TOLERANCES = {
-    (ACCELEROMETER, "bias"): 50e-6 * STANDARD_GRAVITY,
-    (ACCELEROMETER, "scale"): 100e-6,
-    (ACCELEROMETER, "axis"): 20 * ARCSEC,
-}
-"""Those that hold until an engineer sets others."""
-ROOM, WARM, SWING = 20.0, 35.0, 10.0
-"""°C; to either side of the room through the year."""
+SWING = 10.0
+"""°C to either side of the room through the year."""
 SESSIONS = 12
 STEADY = 0.05
 """°C by which the room wanders within a session of a history: what it does to a session is asked apart."""
@@ -96,11 +88,6 @@ class Named:
     first: bool
     told: bool
     """Named or listed; or what it is without its bend."""
-
-
-def law_of(kind: str, rng: np.random.Generator) -> Array:
-    """(2, 4, 2) as `draw_law` has it."""
-    return draw_law(4, rng, curved=kind == PARABOLA) * (kind != NONE)
 
 
 def lived(kind: str, seed: tuple[int, ...]) -> Lived:
@@ -259,7 +246,7 @@ def main() -> None:
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
         answers = performed(pool.map, options.units, options.seed)
     text = page(answers, f"python -m benchmarks.temperature --units {options.units} --seed {options.seed}")
-    publish(text, options.out)
+    publish(with_section(text) if options.out == PAGE else text, options.out)
     print(f"\n{text}")
 
 

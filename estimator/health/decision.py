@@ -1,10 +1,11 @@
 """A session judged against the unit's reference session: every parameter of every sensor. The rule: see `rule`.
 
-What all sensors did together (`common_motion`) is taken off first: a sensor is judged on its residual.
+What temperature is worth by the unit's law (`temperature_law`), then what all sensors did together (`common_motion`) is
+taken off first: a sensor is judged on its residual.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from estimator.health.common_motion import AXES, CommonMotion, Split, common_mot
 from estimator.health.deviation import NOT_SEEN, Deviation, axis_offset, deviation
 from estimator.health.disc import judge_length
 from estimator.health.rule import SESSION_LEVEL, UNDECIDABLE, critical_factors, state
+from estimator.health.temperature_law import NO_STEPS, Steps, TemperatureCorrection, at_reference, corrections
 from estimator.results import COVERAGE, Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 
@@ -63,6 +65,8 @@ class ParameterJudgement:
     """k."""
     dof: float | None = None
     """Effective degrees of freedom of u; None when the noise is known."""
+    temperature_correction: TemperatureCorrection | None = None
+    """What was taken off for the session's temperature before it was judged; None where nothing was."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +119,7 @@ def judge(
     coverage_factor: float = COVERAGE,
     level: float = SESSION_LEVEL,
     splits: tuple[Split, ...] | None = None,
+    steps: Steps = NO_STEPS,
 ) -> tuple[ParameterJudgement, ...]:
     """Judge every parameter that has a tolerance, sensor after sensor.
 
@@ -125,8 +130,12 @@ def judge(
     tolerances : T by (kind of sensor, parameter): relative for scale, else SI. A parameter without one is not judged.
     coverage_factor : k for known noise; with few degrees of freedom Student's t of the same probability.
     level : α, chance that a unit exactly at its reference is called out of tolerance in this session.
-    splits : of `common_motion` over the two calibrations; found here when None.
+    splits : of `common_motion` over the two calibrations, at one temperature; found here when None.
+    steps : what the session's temperature is worth, where a law says it.
     """
+    measured = calibration
+    if reference is not None:
+        calibration = at_reference(measured, reference, steps)
     if splits is None:
         splits = () if reference is None else common_motion(calibration, reference, tolerances)
     parts = {(s.motion.kind, "axis" if s.motion.quantity == AXES else "scale"): s for s in splits if s.residuals}
@@ -139,7 +148,21 @@ def judge(
     ]
     assessed = [None if reference is None else _assess(case, coverage_factor) for case in cases]
     judged = sum(a is not None and a.k * a.u <= case.tolerance for a, case in zip(assessed, cases, strict=True))
-    return tuple(_judgement(case, a, coverage_factor, (judged, level)) for case, a in zip(cases, assessed, strict=True))
+    together = (judged, level)
+    found = tuple(_judgement(case, a, coverage_factor, together) for case, a in zip(cases, assessed, strict=True))
+    if reference is None or not steps:
+        return found
+    taken = corrections((measured, calibration), reference, steps, coverage_factor)
+    return tuple(_as_measured(one, measured, taken.get((one.sensor, one.parameter))) for one in found)
+
+
+def _as_measured(
+    one: ParameterJudgement, session: Calibration, taken: TemperatureCorrection | None
+) -> ParameterJudgement:
+    """A judgement at the reference's temperature, with the value as the session measured it."""
+    if taken is None:
+        return one
+    return replace(one, value=_value(session.sensor(one.sensor), one.parameter), temperature_correction=taken)
 
 
 def _assess(case: _Case, k: float) -> _Assessed | None:

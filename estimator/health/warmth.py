@@ -110,6 +110,13 @@ def warmth_of(readings: Readings, temperature: Array, rival: Array | None, level
     return Warmth(_mean(temperature), own.size, own.covariance, p, bool(p < level and explains))
 
 
+def chance_of(readings: Readings, temperature: Array) -> float:
+    """Chance of readings of one component following the temperature (n,), °C, so well where they do not, by a line and,
+    where the sessions show one, a bend."""
+    columns = shown_columns(temperature)
+    return float(p_value(_fitted(readings, columns).explained, columns.shape[1]))
+
+
 @dataclass(frozen=True, eq=False)
 class _Fitted:
     """Some columns acting, at the walk that suits them best."""
@@ -158,6 +165,11 @@ def _columns(temperature: Array) -> Array:
     """(n, 2) °C about their mean and its square, °C²; a session without one is usual."""
     warm, known = centred(temperature), np.isfinite(temperature)
     return np.stack([warm, np.where(known, warm**2, (warm[known] ** 2).mean())], axis=1)
+
+
+def shown_columns(temperature: Array) -> Array:
+    """(n, q) of `_columns` that sessions at so many °C (n,) show: both where they can bend, else the line."""
+    return _columns(temperature)[:, : 2 if _can_bend(temperature) else 1]
 
 
 def _can_bend(temperature: Array) -> bool:

@@ -5,10 +5,11 @@ from math import dist
 
 from estimator.health import ParameterJudgement
 from estimator.health import judge as judge_parameters
-from estimator.health.common_motion import common_motion
+from estimator.health.common_motion import Split, common_motion
 from estimator.health.parity import RULE as PARITY_RULE
 from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
+from estimator.health.temperature_law import NO_STEPS, Steps, at_reference
 from estimator.message import say
 from estimator.results import Calibration
 from service.judging.calibrate import ReferenceComparison
@@ -30,14 +31,19 @@ def judge(
     coverage_factor: float,
     *,
     opening: Opening = Opening.FIRST,
+    steps: Steps = NO_STEPS,
 ) -> Judged:
-    """Every parameter judged, and the session by its worst.
+    """Every parameter judged, and the session by its worst; ``steps`` are what its temperature is worth.
 
     Without a reference it becomes the reference, unless it gives no uncertainty that later ones could be judged with.
     """
     tolerances = tolerances_of(unit_type)
-    splits = () if reference is None else common_motion(calibration, reference, tolerances)
-    found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
+    splits: tuple[Split, ...] = ()
+    if reference is not None:
+        splits = common_motion(at_reference(calibration, reference, steps), reference, tolerances)
+    found = judge_parameters(
+        calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits, steps=steps
+    )
     decisions = _decisions(found, RULE, unit_type)
     blind = too_few(calibration)
     first = reference is None and not blind
@@ -51,10 +57,14 @@ def judge(
 
 
 def decisions_of(
-    calibration: Calibration, reference: Calibration, unit_type: UnitType, coverage_factor: float
+    calibration: Calibration,
+    reference: Calibration,
+    unit_type: UnitType,
+    coverage_factor: float,
+    steps: Steps = NO_STEPS,
 ) -> tuple[Decision, ...]:
     """Every parameter judged against any calibration of the unit, by the same rule as an upload."""
-    return judge(calibration, reference, unit_type, coverage_factor).decisions
+    return judge(calibration, reference, unit_type, coverage_factor, steps=steps).decisions
 
 
 @outside_writing

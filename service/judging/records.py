@@ -41,6 +41,8 @@ class Counted:
     basis: str | None
     """What its verdict rests on; empty where it is to be judged, None where it was judged before this was kept. Heads
     by `UNWEIGHED` where its diagnosis is still to be weighed beside the verdict."""
+    temperature: float | None = None
+    """°C"""
 
     @property
     def is_unweighed(self) -> bool:

@@ -5,8 +5,8 @@ alternative that the readings leave standing. Where they agree, and nothing that
 it is plain.
 """
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,12 +18,14 @@ from estimator.diagnosis.results import NoiseScale, Structure
 from estimator.health.detection import LEVEL, warmed
 from estimator.health.fits import Readings
 from estimator.health.prognosis import Track
+from estimator.health.temperature_law import Steps
 from estimator.health.warmth import Warmth
 from estimator.results import Calibration, Residuals
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.diagnosis.words.causes import UNKNOWN_CAUSE
 from service.judging.cause_sizes import Size, Yardstick, size_of_cause, size_of_structure
 from service.judging.judge import judge
+from service.judging.temperature_words import at_about, elsewhere, worth_in
 from service.judging.words import (
     ADD,
     CORRECT,
@@ -34,14 +36,11 @@ from service.judging.words import (
     TOO_FEW,
     advice_on,
     advice_on_structure,
-    at_about,
-    elsewhere,
     named,
     otherwise,
     size_in_words,
     unexplained,
     within,
-    worth_in,
 )
 from service.kit.measures import COVERAGE
 from service.outlook.rules.histories import TrackKey, histories
@@ -131,10 +130,12 @@ class Basis:
     reference: Calibration
     unit_type: UnitType
     coverage_factor: float
+    steps: Steps = field(default_factory=dict)
+    """What the session's temperature is worth."""
 
     def verdict_of(self, calibration: Calibration) -> Verdict:
         """By the same rule as an upload."""
-        return judge(calibration, self.reference, self.unit_type, self.coverage_factor).verdict
+        return judge(calibration, self.reference, self.unit_type, self.coverage_factor, steps=self.steps).verdict
 
 
 @dataclass(frozen=True)
@@ -265,15 +266,16 @@ def reservations_at(temperatures: Covered | None) -> tuple[Reservation, ...]:
     return tuple(_of_temperature(temperatures, worth_at(temperatures)))
 
 
-def worth_at(temperatures: Covered | None) -> tuple[Size, ...] | None:
-    """What a step out of the temperatures that a unit covers is worth in every parameter; None where there is none, or
-    where that is not known."""
-    return None if temperatures is None or not temperatures.is_far else worth_of(temperatures)
+def worth_at(temperatures: Covered | None, taken: Collection[tuple[str, str]] = ()) -> tuple[Size, ...] | None:
+    """What a step out of the temperatures that a unit covers is worth in every parameter but those that it was taken
+    off of; None where there is none, or where that is not known."""
+    each = None if temperatures is None or not temperatures.is_far else worth_of(temperatures)
+    return None if each is None else tuple(one for one in each if (one.sensors[0], one.parameter) not in taken)
 
 
 def _of_temperature(seen: Covered | None, each: tuple[Size, ...] | None) -> Iterator[Reservation]:
     """Where the session lies outside what its unit covers, unless that is known to be worth little."""
-    if seen is None or not seen.is_far:
+    if seen is None or not seen.is_far or each == ():
         return
     worth = None if each is None else max(each, key=_at_most)
     if worth is not None and _at_most(worth) <= WORTH_SAYING:

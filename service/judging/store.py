@@ -47,14 +47,14 @@ SESSIONS: Select[*tuple[Any, ...]] = (
     select(
         literal_column("'session'").label("what"), SessionRow.id, SessionRow.block, SessionRow.programme,
         SessionRow.started_at.label("at"), SessionRow.revision.label("number"), SessionRow.is_reference,
-        SessionRow.basis, SessionRow.state, DiagnosisRow.session_id.label("diagnosed"),
+        SessionRow.basis, SessionRow.temperature, SessionRow.state, DiagnosisRow.session_id.label("diagnosed"),
         WorkRow.key.label("waiting"),
     )
     .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
     .outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS.value) & (WorkRow.key == SessionRow.id))
     .where(SessionRow.unit_id == UNIT)
 )  # fmt: skip
-NOTHING = (null(),) * 5
+NOTHING = (null(),) * 6
 BREAKS: Select[*tuple[Any, ...]] = select(
     literal_column("'break'"), null(), null(), null(), ServiceRow.at, null(), *NOTHING
 ).where(ServiceRow.unit_id == UNIT, IS_BREAK)
@@ -69,7 +69,7 @@ def unit_records(transaction: Session, unit: int) -> UnitRecords:
     """Read in one statement."""
     rows = transaction.execute(ALL, {"unit": unit}).all()
     sessions, breaks, choices = ([row for row in rows if row.what == what] for what in ("session", "break", "choice"))
-    accepted = (Counted(*row[1:8]) for row in sessions if row.state == RecordState.ACCEPTED)
+    accepted = (Counted(*row[1:9]) for row in sessions if row.state == RecordState.ACCEPTED)
     return UnitRecords(
         counted=tuple(sorted(accepted, key=lambda one: (one.at, one.id))),
         breaks=tuple(sorted({row.at for row in breaks})),
@@ -87,7 +87,7 @@ class Derivations(Queries):
         """The accepted sessions of a unit in order of time."""
         query = select(
             SessionRow.id, SessionRow.block, SessionRow.programme, SessionRow.started_at, SessionRow.revision,
-            SessionRow.is_reference, SessionRow.basis,
+            SessionRow.is_reference, SessionRow.basis, SessionRow.temperature,
         ).where(SessionRow.unit_id == unit, IS_ACCEPTED)  # fmt: skip
         rows = self._session.execute(query.order_by(SessionRow.started_at, SessionRow.id))
         return tuple(Counted(*row) for row in rows)
@@ -272,7 +272,9 @@ def _judged_under(one: Decided) -> dict[str, Any]:
 def _decision_rows(one: Decided) -> Iterator[dict[str, Any]]:
     own = {"session_id": one.session, "revision": one.revision}
     for position, decision in enumerate(one.judged.decisions):
-        yield {**own, "position": position, "guard_band": decision.guard_band, **vars(decision)}
+        taken = decision.temperature_correction
+        kept = {"guard_band": decision.guard_band, "temperature_correction": None if taken is None else vars(taken)}
+        yield {**own, "position": position, **vars(decision), **kept}
 
 
 def _motion_rows(one: Decided) -> Iterator[dict[str, Any]]:

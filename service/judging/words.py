@@ -12,9 +12,9 @@ from estimator.results import Calibration
 from service.diagnosis.words.causes import cause_on, choice_of
 from service.diagnosis.words.findings import MIXED_UP
 from service.fleet.condition import UnitSummary
+from service.judging.temperature_words import at_about, in_degrees, law_in_words
 from service.kit.measures import (
     COVERAGE,
-    HARD,
     PARAMETER_NAMES,
     THIN,
     deviation_measure,
@@ -103,39 +103,6 @@ def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], t
     return say("{value}, {tolerance}", value=measured(value, COVERAGE * sigma, measure), tolerance=allowed)
 
 
-def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
-    """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
-    parts = {"temperature": _degrees(now), "difference": _degrees(abs(outside)), "earlier": _between(*covered)}
-    above = "it was measured at {temperature}, {difference} above its reference and earlier sessions ({earlier})"
-    below = "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})"
-    away = say(above if outside > 0 else below, **parts)
-    if worth:
-        return say("{away}; temperature alone may account for {worth}", away=away, worth=worth)
-    return say("{away}; temperature alone can cause or hide a change of unknown size", away=away)
-
-
-def worth_in(parameter: str, sensor: str, size: str) -> str:
-    """``A2 bias: 80 ± 10 µg, tolerance 50 µg``."""
-    return say(
-        "{sensor} {parameter_names}: {size}", sensor=sensor, parameter_names=PARAMETER_NAMES[parameter], size=size
-    )
-
-
-def _between(lowest: float, highest: float) -> str:
-    """``19–22 °C``."""
-    low, high = number(lowest, 0), number(highest, 0)
-    return _degrees(lowest) if low == high else f"{low}–{_degrees(highest)}"
-
-
-def at_about(celsius: float) -> str:
-    """Where to measure again."""
-    return say("measure again at about {celsius}, or calibrate over temperature", celsius=_degrees(celsius))
-
-
-def _degrees(celsius: float) -> str:
-    return f"{number(celsius, 0)}{HARD}°C"
-
-
 def within(sentence: str) -> str:
     """A sentence as a clause within another: names of sensors keep their capitals."""
     clause, head = without_stop(sentence), sentence.split()[0].rstrip(".")
@@ -172,7 +139,15 @@ def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
         return blind or NOTHING_JUDGED
     if blind and worst.expanded is None:
         return blind
-    return _sentence(worst, decisions)
+    return joined(" ", filter(None, (_sentence(worst, decisions), _by_law(worst, decisions))))
+
+
+def _by_law(worst: Decision, decisions: tuple[Decision, ...]) -> str:
+    """What temperature was worth, of the worst parameter, or of the one that it was worth most in; empty where nothing
+    was taken off."""
+    taken = [(one, step) for one in decisions if (step := one.temperature_correction) is not None]
+    most = max(taken, key=lambda pair: (pair[0] is worst, abs(pair[1].worth) / pair[0].tolerance), default=None)
+    return "" if most is None else law_in_words(*most)
 
 
 def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
@@ -220,6 +195,16 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
 
 
 def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
+    step = worst.temperature_correction
+    if step is not None and worst.expanded is not None and worst.expanded > worst.tolerance:
+        return say(
+            "{place} has U {spread} at {reference}, more than its tolerance of ±{tolerance}: {again}.",
+            place=place,
+            spread=spread,
+            reference=in_degrees(step.reference_temperature),
+            tolerance=allowed,
+            again=at_about(step.reference_temperature),
+        )
     if worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
             "{place} has U {spread}, more than its tolerance of ±{tolerance}: measure more positions, average longer, "

@@ -11,6 +11,7 @@ from estimator.health.error_laws import FREEDOMS
 from estimator.health.fits import PART_KINDS, PARTS, WALKS
 from estimator.health.pooled import Evidence
 from estimator.health.shapes import Kind
+from estimator.health.temperature_law import FOLLOW
 from estimator.json_object import Json
 from estimator.session import IN_SERVICE
 from service.outlook.populations import Placed, Population
@@ -119,8 +120,6 @@ class ReferenceRow:
     """Of its values that follow the temperature, by sensor and parameter."""
 
 
-FOLLOW = ("scale", "bias")
-"""Parameters that follow the temperature by a law of the sensor's own."""
 OWN = (
     (ParameterRow.session_id == DecisionRow.session_id)
     & (ParameterRow.revision == DecisionRow.revision)

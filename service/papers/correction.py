@@ -9,6 +9,7 @@ from estimator.applied_vector import magnitude, stand_geometry
 from estimator.calibration.calibrate import averaged
 from estimator.codec import json_numbers
 from estimator.correction import BlockCorrection, Correction, SensorCorrection, correction_of
+from estimator.health.temperature_law import NO_STEPS, Steps, TemperatureStep
 from estimator.json_object import Json
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array, CalibrationSession
@@ -50,6 +51,8 @@ class Corrected:
     found: Correction
     revisions: tuple[ModelRevision, ...]
     """Accepted causes in the estimation of the parameters."""
+    steps: Steps
+    """What the session's temperature is worth, where a law says it."""
 
 
 def corrected(storage: Storage, id: str) -> Corrected:
@@ -57,13 +60,14 @@ def corrected(storage: Storage, id: str) -> Corrected:
     with storage.database.reading() as store:
         stored, calibration = Sessions(store).get(id), Calibrations(store).get(id)
         revisions = tuple(r for r in Models(store).of_session(id) if r.id <= stored.revision)
+        steps = Sessions(store).temperature_steps((id,)).get(id, NO_STEPS)
     if stored.programme not in CALIBRATIONS:
         raise NotFoundError(f"Session {id!r} gives no correction: {stored.programme} does not calibrate a block.")
     session = averaged(read_upload(storage.files.content(stored.sha256), stored.filename))
     correction = correction_of(session, calibration)
     if not correction.blocks:
         raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(correction))}.")
-    return Corrected(stored, calibration, session, correction, revisions)
+    return Corrected(stored, calibration, session, correction, revisions, steps)
 
 
 def correction_document(storage: Storage, id: str) -> Json:
@@ -76,6 +80,7 @@ def correction_document(storage: Storage, id: str) -> Json:
         "left_out": [{"sensor": name, "why": why} for name, why in result.found.left_out],
         "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in result.found.blocks if _assumed(block)],
         "extended_model": [_revision(revision) for revision in result.revisions],
+        "temperature_laws": [_law(*place, step) for place, step in result.steps.items()],
     }
 
 
@@ -205,4 +210,18 @@ def _revision(revision: ModelRevision) -> Json:
         "sensors": list(revision.sensors),
         **{name: evidence.get(name) for name in ("amplitude", "sigma", "units")},
         "note": "taken out of the readings before the parameters were estimated; the formula does not correct it",
+    }
+
+
+def _law(sensor: str, parameter: str, step: TemperatureStep) -> Json:
+    """What a parameter owes to the session's temperature: the formula does not take it off."""
+    return {
+        "sensor": sensor,
+        "parameter": parameter,
+        "temperature_c": step.temperature,
+        "reference_temperature_c": step.reference_temperature,
+        "worth": step.worth,
+        "sigma": step.sigma,
+        "unit": "relative" if parameter == "scale" else "SI",
+        "sessions": step.sessions,
     }

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from estimator.health.temperature_law import NO_STEPS
 from estimator.message import say
 from estimator.session import AS_FOUND, AS_LEFT, CALIBRATIONS
 from service.judging.judge import decisions_of
@@ -12,7 +13,7 @@ from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Decision
 from service.sessions.records import StoredSession
 from service.sessions.states import RecordState
-from service.sessions.store import reference_query
+from service.sessions.store import Sessions, reference_query
 from service.sessions.words.conditions import Condition, condition_of
 from service.storage.queries import Store
 from service.types.records import UnitType
@@ -82,12 +83,14 @@ def found_and_left(
     reference, calibrations = Calibrations(store).beside_reference(
         pair, reference_query(unit, unit_type.block, since, until)
     )
+    steps = Sessions(store).temperature_steps((found.id,))
 
     def judged(session: StoredSession | None) -> tuple[Decision, ...]:
-        """By the current tolerances."""
+        """By the current tolerances; as found at the reference's temperature where a law tells."""
         if session is None or reference is None:
             return ()
-        return decisions_of(calibrations[session.id], calibrations[reference], unit_type, coverage_factor)
+        own = steps.get(session.id, NO_STEPS) if session is found else NO_STEPS
+        return decisions_of(calibrations[session.id], calibrations[reference], unit_type, coverage_factor, own)
 
     return FoundAndLeft(None if reference == found.id else reference, found, left, _paired(judged(found), judged(left)))
 

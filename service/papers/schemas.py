@@ -45,6 +45,9 @@ class CorrectionDocument(BaseModel):
     extended_model: list[Json] = Field(
         description="Accepted causes in force: the parameters are free of them, the formula does not correct them."
     )
+    temperature_laws: list[Json] = Field(
+        description="What the session's temperature is worth, by the unit's law; the formula does not correct it."
+    )
 
 
 class NewCustomer(BaseModel):

@@ -188,7 +188,16 @@ NOT_STORED = 0
 def foresee_upload(store: Store, way: Deriving, new: StoredSession, made: Calibrated, but: str | None) -> Foreseen:
     """The verdict of a session that is to be stored; ``but`` is the session that it supersedes."""
     unit, block = Units(store).find(new.unit), made.checked.session.block
-    own = Counted(new.id, block, new.programme, new.started_at, new.revision, is_reference=False, basis=NOT_JUDGED)
+    own = Counted(
+        new.id,
+        block,
+        new.programme,
+        new.started_at,
+        new.revision,
+        is_reference=False,
+        basis=NOT_JUDGED,
+        temperature=new.temperature,
+    )
     if unit is None:
         known = KnownUnit(store, NOT_STORED, replace(NOTHING_STORED, counted=(own,)), {new.id: made.calibration})
         by = _of_new_unit(store, way, made)

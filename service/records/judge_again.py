@@ -6,8 +6,10 @@ from bisect import bisect_right
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
+from hashlib import sha256
 
 from estimator.errors import SessionError
+from estimator.health.temperature_law import NO_STEPS, Seen, Steps, can_tell, temperature_steps
 from estimator.message import say
 from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
@@ -16,9 +18,10 @@ from estimator.session import IN_SERVICE
 from service.ingest import read_upload
 from service.judging.calibrate import ReferenceComparison
 from service.judging.judge import judge, judge_recording
-from service.judging.records import Counted, Decided
+from service.judging.records import Counted, Decided, Moment
 from service.judging.reference import KnownUnit, alike
 from service.judging.store import Derivations
+from service.kit.measures import YEAR
 from service.records.flagging.fold import verdict_evidence
 from service.records.keep import Made, made
 from service.sessions.calibrations_store import Calibrations
@@ -29,10 +32,13 @@ from service.sessions.store import Sessions
 from service.storage import Files
 from service.storage.files import LOST
 from service.types.records import UnitType
+from service.types.rules import tolerances_of
 from service.types.store import TypeThroughTime, UnitTypes, held_at
 
 Group = tuple[str, tuple[str, ...], int]
 """Block, programmes that have one reference together, and which epoch."""
+MOST_LEARNED = 30
+"""Sessions, the newest before one, that a law over temperature is learned from: each is another calibration to read."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +52,8 @@ class Place:
     """When its epoch began; None in the unit's first one."""
     is_chosen: bool = False
     """Whether an engineer ever chose it for the reference."""
+    learned: tuple[Counted, ...] = ()
+    """Sessions that may tell what its temperature is worth, in order of time; empty where they cannot."""
 
     @property
     def is_reference(self) -> bool:
@@ -58,7 +66,15 @@ class Place:
         own, known = self.session, self.reference
         against = "-" if known is None else f"{known.id}@{known.revision}"
         chosen = " chosen" if self.is_chosen and self.is_reference else ""
-        return f"{against} {own.revision} {'-' if self.since is None else self.since.isoformat()}{chosen}"
+        since = "-" if self.since is None else self.since.isoformat()
+        return f"{against} {own.revision} {since}{chosen}{self._law}"
+
+    @property
+    def _law(self) -> str:
+        if not self.learned:
+            return ""
+        learned = ",".join(f"{one.id}@{one.revision}" for one in self.learned)
+        return " law " + sha256(learned.encode()).hexdigest()[:16]
 
 
 def placed(
@@ -78,10 +94,28 @@ def placed(
             groups.setdefault(_group(one, breaks), []).append(one)
     rank = {id: number for number, id in enumerate(chosen)}
     references = {group: _reference(own, rank, is_blind) for group, own in groups.items()}
-    return tuple(
-        Place(one, references.get(_group(one, breaks)), _since(one.at, breaks), one.id in rank)
-        for one in sorted(sessions, key=lambda s: (s.at, s.id))
-    )
+
+    def place(one: Counted) -> Place:
+        group = _group(one, breaks)
+        reference = references.get(group)
+        learned = () if reference is None else _learned(one, reference, groups[group])
+        return Place(one, reference, _since(one.at, breaks), one.id in rank, learned)
+
+    return tuple(place(one) for one in sorted(sessions, key=_moment))
+
+
+def _learned(one: Counted, reference: Counted, group: Sequence[Counted]) -> tuple[Counted, ...]:
+    """The sessions before one, and its reference, that may tell what its temperature is worth."""
+    if one.temperature is None or reference.temperature is None or one.programme == IN_SERVICE or one is reference:
+        return ()
+    before = [s for s in group if s.temperature is not None and s is not reference and _moment(s) < _moment(one)]
+    own = sorted([reference, *sorted(before, key=_moment)[-MOST_LEARNED:]], key=_moment)
+    warm = [s.temperature for s in own if s.temperature is not None]
+    return tuple(own) if can_tell(warm, reference.temperature, one.temperature) else ()
+
+
+def _moment(one: Counted) -> Moment:
+    return one.at, one.id
 
 
 def needs_judging(places: Sequence[Place], since: datetime) -> tuple[Place, ...]:
@@ -116,7 +150,7 @@ def _reference(own: Sequence[Counted], rank: dict[str, int], is_blind: Callable[
     chosen = max((one for one in own if one.id in rank), key=lambda one: rank[one.id], default=None)
     if chosen is not None:
         return chosen
-    in_order = sorted(own, key=lambda one: (one.at, one.id))
+    in_order = sorted(own, key=_moment)
     return next((one for one in in_order if not is_blind(one)), None)
 
 
@@ -179,7 +213,8 @@ def judging(
 def judged(known: KnownUnit, by: Judging, places: Sequence[Place]) -> Foreseen:
     """The numerical part, on what is stored."""
     against = [p.reference for p in places if p.reference is not None]
-    known.read_all([*(p.session.id for p in places), *(one.id for one in against)])
+    learned = {one.id for p in places for one in p.learned}
+    known.read_all([*(p.session.id for p in places), *(one.id for one in against), *learned])
     return Foreseen(
         {place.session.id: _outcome(known, by, place) for place in places},
         {(one.id, one.revision): known.calibration(one.id) for one in against},
@@ -193,7 +228,25 @@ def _outcome(known: KnownUnit, by: Judging, place: Place) -> Rejudgement:
     own = known.calibration(place.session.id)
     against = None if place.is_reference or place.reference is None else known.calibration(place.reference.id)
     opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
-    return Rejudgement(place.basis, unit_type, judge(own, against, unit_type, by.coverage_factor, opening=opening))
+    steps = NO_STEPS if against is None else _steps(known, place, against, unit_type)
+    decided = judge(own, against, unit_type, by.coverage_factor, opening=opening, steps=steps)
+    return Rejudgement(place.basis, unit_type, decided)
+
+
+def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: UnitType) -> Steps:
+    """What the temperature of a session is worth, by the sessions before it."""
+    if not place.learned or place.reference is None:
+        return NO_STEPS
+    start = place.learned[0].at
+    seen = [
+        Seen((one.at - start) / YEAR, one.temperature, known.calibration(one.id))
+        for one in place.learned
+        if one.temperature is not None
+    ]
+    between = place.reference.temperature, place.session.temperature
+    assert between[0] is not None
+    assert between[1] is not None
+    return temperature_steps(seen, reference, (between[0], between[1]), tolerances_of(unit_type))
 
 
 def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitType) -> Rejudgement:

@@ -1,9 +1,10 @@
 """Step: what a diagnosis means for its session's verdict: the verdict with the named causes, and the reservations."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from estimator.errors import SessionError
+from estimator.health.temperature_law import Steps
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
 from service.diagnosis.records import Diagnosed
@@ -30,7 +31,7 @@ from service.models.rules import in_force, places_of
 from service.models.store import Models
 from service.outlook.store import Outlooks
 from service.sessions.calibrations_store import Calibrations
-from service.sessions.decision import Verdict, nominal_factor_of
+from service.sessions.decision import Verdict, nominal_factor_of, steps_in
 from service.sessions.doubt import Reservation
 from service.sessions.records import DiagnosisState, StoredSession
 from service.sessions.store import Sessions
@@ -58,6 +59,8 @@ class Weighing:
     """Causes in the model in force, with the sensor or an empty name."""
     temperatures: Covered | None
     """Of the session, beside those of its unit; None where nothing says them."""
+    steps: Steps = field(default_factory=dict)
+    """What its temperature is worth, taken off before it was judged."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,8 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
     is_judged = bool(decisions) and found.session is not None and not stored.is_reference
     basis, temperatures = None, None
     if is_judged and found.session is not None:
-        basis = Basis(Calibrations(store).get(found.session), unit_type, nominal_factor_of(decisions))
+        reference, k = Calibrations(store).get(found.session), nominal_factor_of(decisions)
+        basis = Basis(reference, unit_type, k, steps_in(decisions))
         temperatures = _temperatures(store, stored, basis.reference, found.since)
     accepted = in_force([r for r in Models(store).of_session(id) if r.id <= stored.revision])
     sensors = Calibrations(store).get(id).sensors if accepted else ()
@@ -89,6 +93,7 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
         tolerances=tolerances_of(unit_type),
         known=frozenset((r.cause, place) for r in accepted for place in places_of(r, sensors)),
         temperatures=temperatures,
+        steps=steps_in(decisions),
     )
 
 
@@ -125,7 +130,7 @@ def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighe
         otherwise=others,
         known=by.known,
         temperatures=by.temperatures,
-        worth=worth_at(by.temperatures),
+        worth=worth_at(by.temperatures, by.steps.keys()),
     )
     return Weighed(after, reservations_of(doubted))
 

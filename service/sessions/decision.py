@@ -8,6 +8,7 @@ from math import inf
 from estimator.coverage import nominal_factor
 from estimator.health import ParameterJudgement
 from estimator.health.common_motion import CommonMotion
+from estimator.health.temperature_law import Steps
 from estimator.results import COVERAGE, Calibration
 
 
@@ -66,6 +67,12 @@ class Decision(ParameterJudgement):
 def nominal_factor_of(decisions: tuple[Decision, ...]) -> float:
     """The k for known noise that a session was judged with; the common one of a session that was not judged."""
     return decisions[0].nominal_factor if decisions else COVERAGE
+
+
+def steps_in(decisions: tuple[Decision, ...]) -> Steps:
+    """What was taken off for temperature, by sensor and parameter."""
+    each = ((one.sensor, one.parameter, one.temperature_correction) for one in decisions)
+    return {(sensor, parameter): taken for sensor, parameter, taken in each if taken is not None}
 
 
 def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:

@@ -48,6 +48,22 @@ def said_session(session: StoredSession) -> SaidSession:
     return SaidSession(**said(session))
 
 
+class TemperatureCorrectionSchema(BaseModel):
+    """A change from the reference without what temperature is worth in it, by the law of the unit's sessions before."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    measured: float = Field(description="Change at the session's temperature: relative for scale, else SI.")
+    corrected: float = Field(description="The same at the reference's temperature: what is judged.")
+    expanded: float = Field(description="U of the corrected change, that of the law in it.")
+    worth: float = Field(description="What the difference in temperature is worth: measured minus corrected.")
+    sigma: float = Field(description="Standard uncertainty of it, with what the sessions scatter about the law.")
+    dof: float | None = Field(description="Degrees of freedom of that; null where they scatter by no more than noise.")
+    temperature: float = Field(description="Of the session, mean, °C.")
+    reference_temperature: float = Field(description="Of the reference session, mean, °C.")
+    sessions: int = Field(description="How many sessions the law was learned from.")
+
+
 class DecisionSchema(BaseModel):
     """One parameter of one sensor, judged."""
 
@@ -84,6 +100,9 @@ class DecisionSchema(BaseModel):
     )
     common_sigma: float | None = Field(description="Standard uncertainty of it.")
     common_p: float | None = Field(description="Chance of a common change as large when nothing moved together.")
+    temperature_correction: TemperatureCorrectionSchema | None = Field(
+        description="What was taken off for the session's temperature before it was judged; null where nothing was."
+    )
 
 
 class CommonMotionSchema(BaseModel):

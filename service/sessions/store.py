@@ -9,6 +9,7 @@ from sqlalchemy import ColumnElement, Select, and_, bindparam, or_, select, upda
 from sqlalchemy.orm import InstrumentedAttribute
 
 from estimator.health.common_motion import CommonMotion
+from estimator.health.temperature_law import Steps, TemperatureCorrection
 from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.diagnosis.tables import DiagnosisRow
@@ -191,6 +192,18 @@ class Sessions(Queries):
         )
         return tuple(decision_record(row) for row in rows)
 
+    def temperature_steps(self, ids: Collection[str]) -> dict[str, Steps]:
+        """What was taken off for temperature of sessions, of those of which anything was."""
+        row, taken = DecisionRow, DecisionRow.temperature_correction
+        query = select(row.session_id, row.sensor, row.parameter, taken).join(
+            SessionRow, (SessionRow.id == row.session_id) & (SessionRow.revision == row.revision)
+        )
+        found: dict[str, dict[tuple[str, str], TemperatureCorrection]] = {}
+        rows = self._session.execute(query.where(row.session_id.in_(tuple(ids)), taken.is_not(None)))
+        for id, sensor, parameter, document in rows:
+            found.setdefault(id, {})[sensor, parameter] = TemperatureCorrection(**(document or {}))
+        return {**found}
+
     def judged(self, id: str) -> tuple[tuple[Decision, ...], tuple[CommonMotion, ...]]:
         """Both, in one query."""
         of, revision = lists("decisions", "motions"), SessionRow.revision
@@ -265,8 +278,10 @@ def session_record(
 
 def decision_record(row: DecisionRow) -> Decision:
     """A stored decision."""
-    own = {f.name: _plain(getattr(row, f.name)) for f in fields(Decision) if f.name != "verdict"}
-    return Decision(verdict=Verdict(row.verdict), **own)
+    own = {f.name: _plain(getattr(row, f.name)) for f in fields(Decision)}
+    taken = row.temperature_correction
+    own["temperature_correction"] = None if taken is None else TemperatureCorrection(**taken)
+    return Decision(**own | {"verdict": Verdict(row.verdict)})
 
 
 def motion_record(row: CommonMotionRow) -> CommonMotion:

@@ -121,6 +121,7 @@ class DecisionRow(Base):
     common_sigma: Mapped[float | None]
     common_p: Mapped[float | None]
     dof: Mapped[float | None]
+    temperature_correction: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
 
 
 class CommonMotionRow(Base):

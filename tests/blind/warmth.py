@@ -33,13 +33,20 @@ def draw_law(m: int, rng: np.random.Generator, *, curved: bool) -> Array:
 
 
 def at_temperature(
-    world: Session, law: Array, celsius: float, day: str, rng: np.random.Generator, wander: float = WANDER
+    world: Session,
+    law: Array,
+    celsius: float,
+    day: str,
+    rng: np.random.Generator,
+    wander: float = WANDER,
+    lag: float = 0.0,
 ) -> dict[str, Any]:
-    """The file of a session of a unit that obeys a law, measured at a temperature on some day."""
+    """The file of a session of a unit that obeys a law, measured at a temperature on some day; its sensors are warmer
+    than the file says by ``lag``, °C."""
     rows = world.schedule.rows
     warm = np.round(celsius + wander * np.sin(np.linspace(0, 2 * np.pi, rows) + rng.uniform(0, 6)), 2)
     world = replace(world, schedule=replace(world.schedule, temperature=warm), started_at=f"{day}T09:00:00Z")
-    away = warm[:, None] - ROOM
+    away = warm[:, None] + lag - ROOM
     bias, scale = (part[:, 0] * away + part[:, 1] * away**2 for part in law)
     inside = measure(world, (), rng)[0] / world.unit.scale
     return session_file(world, world.unit.scale * (1 + scale) * (inside + bias))

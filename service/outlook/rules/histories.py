@@ -9,10 +9,11 @@ import numpy as np
 
 from estimator.health.pooled import Evidence
 from estimator.health.prognosis import Track, evidence
+from estimator.health.temperature_law import FOLLOW
 from estimator.health.warmth import shows_temperature
 from estimator.session import comparable
 from service.kit.measures import YEAR
-from service.outlook.store import FOLLOW, ChangeRow, ReferenceRow
+from service.outlook.store import ChangeRow, ReferenceRow
 from service.sessions.records import HistoryPoint
 from service.units.records import Service
 

@@ -12,6 +12,7 @@ from service.diagnosis.sections import DiagnosisLine, diagnosis_line
 from service.diagnosis.words.causes import cause_on
 from service.judging.parity_words import agreement_in_words
 from service.judging.sections import ParityView, parity_view
+from service.judging.temperature_words import laws_in_words
 from service.kit.measures import (
     HARD,
     THIN,
@@ -99,6 +100,8 @@ class SessionView:
     """Whether its programme calibrates every sensor of the block."""
     motions: tuple[MotionLine, ...]
     """What all sensors did together, in words."""
+    laws: tuple[str, ...]
+    """What was taken off for its temperature, in words."""
     state: str
     """What became of it, said before everything else; empty where it counts."""
     states: tuple[str, ...]
@@ -156,6 +159,7 @@ def session_page(
         diagnosis=diagnosis_line(diagnosis, failed),
         gives_correction=report.session.programme in CALIBRATIONS,
         motions=motions_in_words(report.motions, coverage),
+        laws=laws_in_words(decisions),
         state=_state(report),
         states=tuple(state_in_words(line) for line in reversed(report.states)),
         remedies=remedies,

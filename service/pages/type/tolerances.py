@@ -9,6 +9,7 @@ from datetime import datetime
 from math import isclose, isfinite
 
 from estimator.errors import Problem
+from estimator.health.temperature_law import NO_STEPS, Steps
 from estimator.message import say
 from estimator.parity import ParityResult
 from estimator.results import Calibration
@@ -28,6 +29,7 @@ from service.records.derive_again import Deriving
 from service.records.follow import date
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.records import PARAMETERS
+from service.sessions.store import Sessions
 from service.sessions.words.conditions import Condition, condition_of
 from service.storage import Storage
 from service.storage.audit import Audit
@@ -344,7 +346,13 @@ def preview_tolerances(
     alone = {one.session for one in latest.values() if _is_uncompared(one, known_of, calibrations)}
     compared = {session: reference for session, reference in known_of.items() if session not in alone}
     judged = [latest[serial] for serial in serials if serial in latest and latest[serial].session in compared]
-    found = (_change(one, compared, calibrations, other, coverage_factor) for one in judged)
+    steps = Sessions(store).temperature_steps(compared)
+    found = (
+        _change(
+            one, tuple(calibrations[id] for id in (one.session, compared[one.session])), other, coverage_factor, steps
+        )
+        for one in judged
+    )
     return TolerancePreview(
         units=units,
         judged=len(judged),
@@ -370,14 +378,15 @@ def _is_uncompared(one: LatestSession, against: Mapping[str, str], calibrations:
 
 def _change(
     one: LatestSession,
-    against: Mapping[str, str],
-    calibrations: Mapping[str, Calibration],
+    pair: tuple[Calibration, ...],
     other: UnitType,
     coverage_factor: float,
+    steps: Mapping[str, Steps],
 ) -> VerdictChange | None:
-    own, reference = calibrations[one.session], calibrations[against[one.session]]
+    """A session and its reference are the pair."""
+    own, reference = pair
     if own.parity is None:
-        found = judge(own, reference, other, coverage_factor)
+        found = judge(own, reference, other, coverage_factor, steps=steps.get(one.session, NO_STEPS))
     else:
         seen = ReferenceComparison(reference, ParityResult.from_dict(own.parity))
         found = judge_recording(own, seen, other, coverage_factor)

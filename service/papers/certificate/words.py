@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from estimator.health.rule import WITH_SESSION_LEVEL
 from estimator.message import say
+from service.judging.temperature_words import laws_in_words
 from service.kit.measures import coverage_in_words, day_of, spaced
 from service.papers.certificate.facts import CertifiedCause, Fact, causes_of, facts_of, record_of, title_of
 from service.papers.certificate.paper import Paper, paper_of
@@ -155,7 +156,7 @@ def certificate(found: CertifiedSession, issue: Issue) -> Certificate:
         whole_level=any(d.rule.startswith(WITH_SESSION_LEVEL) for d in decisions),
         states=tuple(reversed(CONDITIONS)),
         tables=result_tables(found, k),
-        together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
+        together=(*(line.text for line in motions_in_words(found.report.motions, k)), *laws_in_words(decisions)),
         stage=spaced(session.stage or ""),
         pair=None if found.pair is None else pair_of(found.pair),
         known=tuple(Fact(name, words) for name, words in known),

@@ -220,7 +220,12 @@ def _deviation(decision: Decision, deviation: float) -> Element:
 
 
 def _limits(decision: Decision, unit: str) -> Iterator[Element]:
-    """Limits of the decision."""
+    """Limits of the decision, and what was taken off before it."""
+    step = decision.temperature_correction
+    if step is not None:
+        name = f"deviation at {step.temperature:.1f} °C, before the law of {step.sessions} sessions over temperature"
+        yield bare_quantity(name, step.measured, unit)
+        yield bare_quantity(f"taken off for {step.reference_temperature:.1f} °C", step.worth, unit)
     yield bare_quantity("tolerance", decision.tolerance, unit)
     if decision.guard_band is not None:
         yield bare_quantity("guard band", decision.guard_band, unit)

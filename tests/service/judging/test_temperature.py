@@ -2,9 +2,11 @@
 
 import json
 
+import pytest
+
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
-from tests.service.made_sessions import session_bytes, session_id
+from tests.service.made_sessions import MICRO_G, session_bytes, session_id
 from tests.service.recordings import recording_document
 
 SAYS = "it was measured at 35 °C, 11 °C above its reference and earlier sessions (20–24 °C)"
@@ -42,6 +44,47 @@ def test_it_is_said_with_the_verdict_and_no_replacement_is_advised(holding: Hold
     pages = [client.get(path).text for path in (f"/sessions/{warm['id']}", "/units/BA-017", "/flags")]
     assert SAYS in plain(pages[0])
     assert "replacement" not in "".join(pages)
+
+
+PER_DEGREE = 6.0
+"""µg by which the bias of A3 follows the room."""
+LEARNED = tuple(at(t, month, moved=PER_DEGREE * (t - 20)) for month, t in enumerate((20, 34, 22, 12, 30, 16, 26), 1))
+WARM, DRIFTED = at(33.0, 8, moved=PER_DEGREE * 13), at(33.0, 9, moved=PER_DEGREE * 13 + 150)
+
+
+def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holding: Holding) -> None:
+    """In any order of arrival; what moved beside the law fails."""
+    client = holding(WARM, *LEARNED[3:], DRIFTED, *LEARNED[:3])
+    warm, drifted = (client.get(f"/api/v1/sessions/{session_id(s)}").json() for s in (WARM, DRIFTED))
+    assert (warm["verdict"], drifted["verdict"]) == ("pass", "fail")
+    assert "A3 bias: change of 8" in warm["reason"]
+    assert plain(warm["reason"]).endswith(" at 20 °C by the law of 7 sessions.")
+    taken = {(d["sensor"], d["parameter"]): d["temperature_correction"] for d in warm["decisions"]}
+    own = taken["A3", "bias"]
+    assert own["measured"] == pytest.approx(own["worth"] + own["corrected"])
+    assert abs(own["measured"] - PER_DEGREE * 13 * MICRO_G) < 5 * MICRO_G
+    assert abs(own["corrected"]) < own["expanded"] < 20 * MICRO_G
+    assert (own["temperature"], own["reference_temperature"], own["sessions"]) == (33.0, 20.0, 7)
+    assert [place for place, one in taken.items() if one is not None] == [("A3", "bias")]
+    assert "Measured at 33 °C and judged at 20 °C, by the law of 7 sessions: A3 bias 80.0 µg → " in plain(
+        client.get(f"/sessions/{warm['id']}").text
+    )
+    (law,) = client.get(f"/api/v1/sessions/{warm['id']}/correction").json()["temperature_laws"]
+    assert (law["sensor"], law["parameter"], law["worth"]) == ("A3", "bias", own["worth"])
+    certificate = client.get(f"/api/v1/sessions/{warm['id']}/certificate?format=dcc").text
+    assert "deviation at 33.0 °C, before the law of 7 sessions over temperature" in certificate
+    (moved,) = [d for d in drifted["decisions"] if d["verdict"] == "fail"]
+    assert moved["deviation"] == pytest.approx(150 * MICRO_G, abs=20 * MICRO_G)
+
+
+def test_a_session_taken_back_is_no_longer_learned_from(holding: Holding) -> None:
+    client = holding(*LEARNED, WARM)
+    for gone in LEARNED[1:3]:
+        why = {"by": "K. Ito", "why": "wrong unit"}
+        client.post(f"/api/v1/sessions/{session_id(gone)}/withdraw", json=why).raise_for_status()
+    warm = client.get(f"/api/v1/sessions/{session_id(WARM)}").json()
+    assert warm["verdict"] == "fail"
+    assert not any(d["temperature_correction"] for d in warm["decisions"])
 
 
 def recorded(celsius: float, month: int) -> bytes:

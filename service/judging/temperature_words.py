@@ -1,0 +1,89 @@
+"""What temperature does to a verdict, in words."""
+
+from estimator.health.temperature_law import TemperatureCorrection
+from estimator.message import joined, say
+from service.kit.measures import HARD, PARAMETER_NAMES, THIN, decimals, deviation_measure, in_measure, measured, number
+from service.sessions.decision import Decision
+
+
+def law_in_words(decision: Decision, step: TemperatureCorrection) -> str:
+    """``A2 bias: change of 84 µg measured at 35 °C, 31 ± 9 µg at 20 °C by the law of 7 sessions.``"""
+    as_measured, corrected = _changes(decision, step)
+    return say(
+        "{sensor} {parameter}: change of {measured} measured at {temperature}, {corrected} at {reference} by the law "
+        "of {sessions} sessions.",
+        sensor=decision.sensor,
+        parameter=PARAMETER_NAMES[decision.parameter],
+        measured=as_measured,
+        temperature=in_degrees(step.temperature),
+        corrected=corrected,
+        reference=in_degrees(step.reference_temperature),
+        sessions=step.sessions,
+    )
+
+
+def laws_in_words(decisions: tuple[Decision, ...]) -> tuple[str, ...]:
+    """One sentence on everything that temperature was taken off of in a session; none where it was not."""
+    taken = [(one, step) for one in decisions if (step := one.temperature_correction) is not None]
+    if not taken:
+        return ()
+    step = taken[0][1]
+    sentence = say(
+        "Measured at {temperature} and judged at {reference}, by the law of {sessions} sessions: {changes}.",
+        temperature=in_degrees(step.temperature),
+        reference=in_degrees(step.reference_temperature),
+        sessions=max(own.sessions for _, own in taken),
+        changes=joined("; ", (_short(*pair) for pair in taken)),
+    )
+    return (sentence,)
+
+
+def _short(decision: Decision, step: TemperatureCorrection) -> str:
+    """``A2 bias 84 µg → 31 ± 9 µg``."""
+    as_measured, corrected = _changes(decision, step)
+    name = PARAMETER_NAMES[decision.parameter]
+    parts = {"sensor": decision.sensor, "parameter": name, "measured": as_measured, "corrected": corrected}
+    return say("{sensor} {parameter} {measured} → {corrected}", **parts)
+
+
+def _changes(decision: Decision, step: TemperatureCorrection) -> tuple[str, str]:
+    """``84 µg``, as measured, and ``31 ± 9 µg``, at the reference's temperature."""
+    largest = max(abs(step.measured), abs(step.corrected), decision.tolerance)
+    measure = deviation_measure(decision.kind, decision.parameter, largest)
+    digits = decimals(in_measure(step.expanded, measure))
+    as_measured = number(in_measure(step.measured, measure), digits) + THIN + measure.label
+    return as_measured, measured(step.corrected, step.expanded, measure)
+
+
+def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
+    """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
+    parts = {"temperature": in_degrees(now), "difference": in_degrees(abs(outside)), "earlier": _between(*covered)}
+    above = "it was measured at {temperature}, {difference} above its reference and earlier sessions ({earlier})"
+    below = "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})"
+    away = say(above if outside > 0 else below, **parts)
+    if worth:
+        return say("{away}; temperature alone may account for {worth}", away=away, worth=worth)
+    return say("{away}; temperature alone can cause or hide a change of unknown size", away=away)
+
+
+def worth_in(parameter: str, sensor: str, size: str) -> str:
+    """``A2 bias: 80 ± 10 µg, tolerance 50 µg``."""
+    return say(
+        "{sensor} {parameter_names}: {size}", sensor=sensor, parameter_names=PARAMETER_NAMES[parameter], size=size
+    )
+
+
+def _between(lowest: float, highest: float) -> str:
+    """``19–22 °C``."""
+    low, high = number(lowest, 0), number(highest, 0)
+    return in_degrees(lowest) if low == high else f"{low}–{in_degrees(highest)}"
+
+
+def at_about(celsius: float) -> str:
+    """Where to measure again."""
+    return say("measure again at about {celsius}, or calibrate over temperature", celsius=in_degrees(celsius))
+
+
+def in_degrees(celsius: float) -> str:
+    """``35 °C``."""
+    return f"{number(celsius, 0)}{HARD}°C"
