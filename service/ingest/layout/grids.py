@@ -243,13 +243,13 @@ def _headed(
     width = max(map(len, rows), default=0)
     rows = [row + [None] * (width - len(row)) for row in rows]
     first = int(stated.get("first_row") or _first_row(rows)) - 1
-    header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
     if not 0 <= first < len(rows):
         raise refusal(
             filename,
             "has no row of numbers below its headings; a table has one for every position; state the row of the first",
             "table",
         )
+    header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
     headings = _headings(rows[header - 1 : first] if header else [], width)
     columns = tuple([row[k] for row in rows[first:]] for k in range(width))
     if sum(any(not is_nothing(cell) for cell in cells) for cells in columns) < FEWEST:

@@ -75,6 +75,6 @@ def test_the_page_counts_a_batch_and_shows_first_what_needs_a_person(client: htt
     table, good = tables.text_table(tables.own_document()).encode(), tables.xlsx_table(tables.own_document())
     files = [("files", (name, content)) for name, content in (("t.csv", table), ("t.xlsx", good), ("p.pdf", b"%PDF-"))]
     page = client.post("/upload", files=files).text
-    assert "Failed: <b>1</b>" in page
-    assert "To be checked or being read: <b>2</b>" in page
+    assert "Failed: <b>1</b>." in page
+    assert "To be checked or being read: <b>2</b>." in page
     assert page.index("p.pdf cannot be used") < page.index("t.csv is a table")
