@@ -6,45 +6,7 @@ within the range of floating-point numbers, so that no later step overflows or d
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from estimator.reading.problems import shown
-
-SMALLEST = 1e-60
-"""Size of a number other than 0: no instrument resolves it, and its fourth power still differs from 0."""
-
-
-@dataclass(frozen=True)
-class Interval:
-    """The numbers that a field may hold: 0, where it lies between the ends, or anything between them of some size."""
-
-    low: float
-    high: float
-    unit: str = ""
-    smallest: float = SMALLEST
-    """Size of a number other than 0."""
-
-    def __contains__(self, value: float) -> bool:
-        return self.low <= value <= self.high and (value == 0 or abs(value) >= self.smallest)
-
-    def held_by(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(R,) which of the values it holds; none that is NaN."""
-        with np.errstate(invalid="ignore"):
-            inside: NDArray[np.bool_] = (values >= self.low) & (values <= self.high)
-            return inside & ((values == 0) | (np.abs(values) >= self.smallest))
-
-    def fault(self, value: float) -> str:
-        """What is wrong with a number that it does not hold, and what to do."""
-        if self.low <= value <= self.high:
-            return f"is {shown(value)}; must be 0 or at least {self.smallest:g} in size; write 0 for none"
-        if value <= 0 < self.low:
-            return f"is {shown(value)}; must be above 0, {self}"
-        return f"is {shown(value)}; must be {self}; check the number and its unit"
-
-    def __str__(self) -> str:
-        unit = f" {self.unit}" if self.unit else ""
-        return f"from {self.low:g} to {self.high:g}{unit}"
+from estimator.reading.interval import Interval
 
 
 @dataclass(frozen=True)

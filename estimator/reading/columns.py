@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.message import joined, say
-from estimator.reading.bounds import COMPONENT, WITHIN, Interval
+from estimator.reading.bounds import COMPONENT, WITHIN
 from estimator.reading.fields import NUMBERS, Fields, number_in
+from estimator.reading.interval import Interval
 from estimator.reading.problems import Problems, shown
 from estimator.session import Array
 

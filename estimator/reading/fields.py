@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.message import joined, say
-from estimator.reading.bounds import Interval
+from estimator.reading.interval import Interval
 from estimator.reading.problems import Problems, shown
 
 UNSTORABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
@@ -41,7 +41,7 @@ class Fields:
         """Whether the key is given; null is the same as leaving it out."""
         return self.values.get(key) is not None
 
-    def text(self, key: str, advice: str) -> str:
+    def required_text(self, key: str, advice: str) -> str:
         """A required name: one line, not empty."""
         if not self.has(key):
             self.add(key, say("missing; {advice}", advice=advice))

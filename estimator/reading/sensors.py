@@ -68,13 +68,13 @@ def _read_sensor(entry: Fields, block: str) -> Sensor:
     check_keys(entry, SENSOR)
     kind = entry.choice("kind", KINDS) if entry.has("kind") else block
     return Sensor(
-        name=entry.text("name", "give each sensor the name of its column"),
+        name=entry.required_text("name", "give each sensor the name of its column"),
         kind=kind,
         nominal_axis=_read_axis(entry),
         nominal_scale=entry.number(
             "nominal_scale", WITHIN["sensors[].nominal_scale"], "give the reading units per m/s² or rad/s"
         ),
-        reading_unit=entry.text("reading_unit", "give the unit of the readings, for instance V"),
+        reading_unit=entry.required_text("reading_unit", "give the unit of the readings, for instance V"),
         bias_repeatability=_read_repeatability(entry, kind),
         nominal_offset=entry.optional_number("nominal_offset", WITHIN["sensors[].nominal_offset"]),
         position=_read_position(entry),

@@ -52,7 +52,7 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
     problems = document.problems
     _check_format(document)
     check_keys(document, TOP)
-    unit = document.text("unit", "give the unit's serial number")
+    unit = document.required_text("unit", "give the unit's serial number")
     block = document.choice("block", KINDS)
     programme = document.choice("programme", PROGRAMMES)
     started_at = read_moment(document, "started_at")

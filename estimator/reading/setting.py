@@ -8,9 +8,10 @@ import numpy as np
 
 from estimator.message import say
 from estimator.moments import DAY, moment, written
-from estimator.reading.bounds import WITHIN, Interval
+from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import vector
 from estimator.reading.fields import Fields
+from estimator.reading.interval import Interval
 from estimator.reading.keys import SIGMA, SITE, STAND, check_keys
 from estimator.reading.problems import Problems, shown
 from estimator.session import (
@@ -67,7 +68,7 @@ def read_stand(document: Fields, programme: str, kinds: set[str]) -> Stand | Non
     check_keys(stand, STAND)
     needed = kinds if programme == TWO_AXIS_STAND else set()
     return Stand(
-        id=stand.text("id", "give the stand's name or number"),
+        id=stand.required_text("id", "give the stand's name or number"),
         alpha=_read_elevation(stand, "alpha_deg", ACCELEROMETER in needed, programme),
         chi=_read_elevation(stand, "chi_deg", GYROSCOPE in needed, programme),
         sigma=_read_sigma(stand),

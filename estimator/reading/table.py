@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.message import joined, say
-from estimator.reading.bounds import WITHIN, Interval
+from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import Columns
 from estimator.reading.fields import Fields
+from estimator.reading.interval import Interval
 from estimator.reading.keys import DIRECTIONS
 from estimator.reading.shape import check_unknown, read_columns
 from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, TWO_AXIS_STAND, Array, Sensor

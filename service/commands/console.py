@@ -20,7 +20,7 @@ from rich.table import Table
 
 from estimator.errors import SessionError
 from service.commands.speech import UNUSABLE, problems_in_words, say
-from service.errors import RefusedError
+from service.errors import RefusedError, TooLargeError
 
 T = TypeVar("T")
 
@@ -72,10 +72,12 @@ def deliver(content: bytes, out: Path | None) -> None:
         out.write_bytes(content)
 
 
-def say_unusable(file: Path, fault: SessionError | RefusedError | OSError) -> None:
+def say_unusable(file: Path, fault: SessionError | RefusedError | TooLargeError | OSError) -> None:
     """All problems of a file on one line: the file, then each field, row and what to do."""
     if isinstance(fault, OSError):
         say(f"{file}: file: {fault.strerror or fault}; check the name and that it can be read")
+    elif isinstance(fault, TooLargeError):
+        say(f"{file}: file: {fault.detail}")
     else:
         say(f"{file}: {problems_in_words(fault.problems)}")
 
@@ -91,18 +93,29 @@ def usable(file: Path) -> Iterator[None]:
 
 
 def for_each(
-    files: list[Path], work: Callable[[Path], T], show: Callable[[T], None], doing: str, *, quiet: bool = False
+    files: list[Path],
+    work: Callable[[Path], T],
+    show: Callable[[T], None],
+    doing: str,
+    *,
+    quiet: bool = False,
+    has_bar: bool = True,
+    summary: Callable[[], str] = str,
 ) -> None:
-    """Processes every file in order and shows each result; unusable ones get a line, and exit code 2 at the end."""
-    unusable = 0
-    with progress(len(files), doing, quiet=quiet, is_long=are_large(files)) as advance:
+    """Processes every file in order and shows each result; unusable ones get a line, and exit code 2 at the end.
+    Unless ``quiet``, several files end with a line of summary: those that failed, then ``summary``."""
+    unusable: list[Path] = []
+    with progress(len(files), doing, quiet=quiet or not has_bar, is_long=are_large(files)) as advance:
         for file in files:
             try:
                 show(work(file))
-            except (SessionError, RefusedError, OSError) as fault:
+            except (SessionError, RefusedError, TooLargeError, OSError) as fault:
                 say_unusable(file, fault)
-                unusable += 1
+                unusable.append(file)
             advance()
+    if len(files) > 1 and not quiet:
+        names = f": {', '.join(map(str, unusable))}" if unusable else ""
+        say("; ".join(filter(None, (f"{len(unusable)} of {len(files)} files failed{names}", summary()))) + ".")
     if unusable:
         raise typer.Exit(UNUSABLE)
 

@@ -2,6 +2,7 @@
 Long work is followed by a progress bar on standard error, which can be interrupted while the work goes on."""
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -28,7 +29,7 @@ from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
 from service.commands.speech import output_language, say, translated
-from service.errors import RefusedError, ServiceError
+from service.errors import RefusedError
 from service.jobs.records import KILOBYTE, OPEN, JobKind, JobState
 from service.sessions.decision import Verdict
 from service.sessions.words.conditions import Condition, condition_of
@@ -68,7 +69,8 @@ class Uploader:
             raise RefusedError(f"{job['subject']} cannot be used.", problems)
         if job["state"] != JobState.DONE:
             reasons = " ".join(item["reason"] for item in job["failures"])
-            raise ServiceError(f"Job {job['id']} is {job['state']}. {reasons}".strip())
+            fault = f"job {job['id']} is {job['state']}. {reasons}".strip()
+            raise RefusedError(f"{job['subject']} was not stored.", (Problem("file", fault),))
         receipt: Json = self.client.get(f"/uploads/{job['upload']}").json()["session"]
         return receipt | {"created": True, "url": f"{self.client.server}/api/v1/sessions/{receipt['id']}"}
 
@@ -174,16 +176,40 @@ def upload_files(
     mapping: Mapping = None,
     check: Check = False,
 ) -> None:
-    """Upload session files and print the verdict of each; a file that is already there is stored once."""
+    """Upload session files and print the verdict of each; a file that is already there is stored once. Exit code 2
+    where one of them was not stored."""
     if supersedes and len(files) > 1:
         raise typer.BadParameter("one corrected file supersedes one session", param_hint="--supersedes")
     read_by = None if mapping is None else mapping.read_text(encoding="utf-8")
     fields = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
     stated = {name: text for name, text in fields.items() if text}
     show: Callable[[Json], None] = print_json if as_json else _print_line
+    outcomes: Counter[str] = Counter()
     with connect(server, language=output_language()) as client:
         sending = Uploader(client, stated, wait=wait, quiet=as_json)
-        for_each(files, lambda file: _verdict_of(sending, file), show, "uploading", quiet=as_json or are_large(files))
+
+        def work(file: Path) -> Json:
+            answer = _verdict_of(sending, file)
+            outcomes[_outcome(answer)] += 1
+            return answer
+
+        has_bar, counts = not are_large(files), lambda: _counts(outcomes)
+        for_each(files, work, show, "uploading", quiet=as_json, has_bar=has_bar, summary=counts)
+
+
+UNFINISHED, STORED, BEFORE = "not read yet", "stored", "stored before"
+"""What became of a file that did not fail."""
+
+
+def _outcome(answer: Json) -> str:
+    if "verdict" not in answer:
+        return UNFINISHED
+    return STORED if answer["created"] else BEFORE
+
+
+def _counts(outcomes: Counter[str]) -> str:
+    """``1 not read yet, 3 stored``."""
+    return ", ".join(f"{outcomes[one]} {one}" for one in (UNFINISHED, STORED, BEFORE) if outcomes[one])
 
 
 def _verdict_of(uploader: Uploader, file: Path) -> Json:
@@ -201,7 +227,8 @@ def _print_line(answer: Json) -> None:
         screen().print(f"[bold]{escape(answer['subject'])}[/] was received: job {answer['id']} works on it")
         return
     verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
-    said = " ".join(filter(None, (translated(answer["reason"]), translated(answer.get("remark", "")))))
+    reason = answer["reason"] if answer["created"] else f"already stored as session {answer['id']}, nothing was stored"
+    said = " ".join(filter(None, (translated(reason), translated(answer.get("remark", "")))))
     line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(said)}"
     screen().print(line, soft_wrap=True)
 

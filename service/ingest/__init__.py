@@ -8,12 +8,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from estimator.errors import SessionError
+from estimator.errors import Problem, SessionError
 from estimator.json_object import Json
 from estimator.on_demand import function_on_demand
 from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
+from service.ingest.foreign import require_table
 from service.ingest.formats import BINARY, is_binary
 from service.kit.lock_order import outside_writing
 
@@ -35,6 +36,7 @@ def read_upload(content: bytes | Path, filename: str) -> CalibrationSession:
 
     A raw log with more cells than the limit is returned as its averaged positions.
     """
+    require_table(content, filename)
     if isinstance(content, Path) or _is_apart(content):
         return apart_session(content, filename)
     return read_session(content, name=filename, most=in_force().extent)
@@ -42,6 +44,7 @@ def read_upload(content: bytes | Path, filename: str) -> CalibrationSession:
 
 def read_first_rows(content: bytes | Path, filename: str) -> CalibrationSession:
     """The first rows of a session, which need not be enough for its programme; samples of a raw log as they are."""
+    require_table(content, filename)
     if isinstance(content, Path) or _is_apart(content):
         return apart_session(content, filename, "first-rows")
     return read_session(content, name=filename, most=in_force().extent, part=True)
@@ -71,19 +74,39 @@ def apart_session(content: bytes | Path, filename: str, job: str = "session") ->
 
 def look_at(content: bytes | Path, filename: str) -> Json:
     """Preview of a table of custom layout; ``session`` is true where the file is a session file."""
+    require_table(content, filename)
     preview: Json = read_apart("look", content, filename)
     return preview
 
 
 def is_own_layout(content: bytes | Path, filename: str) -> bool:
     """Whether a file is a table without a session's metadata; False for a file that cannot be read."""
-    head = content[:1024] if isinstance(content, bytes) else start_of(content, 1024)
-    if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[", b""):
-        return False
     try:
-        return not look_at(content, filename)["session"]
+        return _claims_nothing(content) and not look_at(content, filename)["session"]
     except SessionError:
         return False
+
+
+OWN_LAYOUT = (
+    "is a table of your own layout: choose it on the upload page, which asks what its columns are, or send a mapping "
+    "with it (imu-health upload --mapping FILE)"
+)
+
+
+def said_as_table(content: bytes | Path, filename: str, problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
+    """The problems of a file that cannot be read at all, said of the table that it rather is."""
+    if any(problem.field != "file" for problem in problems) or not _claims_nothing(content):
+        return problems
+    try:
+        return problems if look_at(content, filename)["session"] else (Problem("file", OWN_LAYOUT),)
+    except SessionError as fault:
+        return fault.problems
+
+
+def _claims_nothing(content: bytes | Path) -> bool:
+    """Whether a file neither is empty nor begins as a session file in JSON or CSV does."""
+    head = content[:1024] if isinstance(content, bytes) else start_of(content, 1024)
+    return head.lstrip(b"\xef\xbb\xbf \t\r\n#")[:1] not in (b"{", b"[", b"")
 
 
 def start_of(path: Path, count: int) -> bytes:
@@ -95,8 +118,8 @@ def start_of(path: Path, count: int) -> bytes:
 def read_file(path: Path, *, part: bool = False) -> CalibrationSession:
     """The session of a local file; the metadata of a CSV table may stand in a JSON file next to it. ``part``: only its
     first rows, which need not be enough for its programme."""
-    with path.open("rb") as file:
-        head = file.read(max(map(len, BINARY)))
+    require_table(path, str(path))
+    head = start_of(path, max(map(len, BINARY)))
     is_long = path.stat().st_size > LARGEST_FILE
     if is_binary(head) or is_long:
         return apart_session(path, str(path), "first-rows" if part else "session")

@@ -14,10 +14,12 @@ import fastexcel
 import numpy as np
 import polars as pl
 
+from estimator.errors import FormatError
 from estimator.message import say
 from estimator.reading.columns import Column
 from estimator.reading.csv_text import named_columns
 from estimator.reading.problems import Problems, Where
+from service.ingest.foreign import require_workbook
 from service.ingest.in_russian import CHOSEN, IN_ENGLISH, heading_in_english, key_in_english, value_in_english
 from service.ingest.metadata import TEXTS, last_step, nested
 from service.kit.limits import check_table, in_force, refusal
@@ -46,9 +48,11 @@ def check_workbook(content: bytes, filename: str) -> None:
     shared: Counter[int] = Counter()
     extents: list[tuple[int, int]] = []
     try:
-        _check_members(content, lengths, shared, extents)
+        _check_members(content, filename, lengths, shared, extents)
     except TooMuchError as error:
         raise refusal(filename, say("{error}; average or split it", error=error)) from error
+    except FormatError:
+        raise  # it is another kind of archive
     except DAMAGED as error:
         raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
     for rows, columns in extents:
@@ -57,12 +61,15 @@ def check_workbook(content: bytes, filename: str) -> None:
         raise refusal(filename, "contains far too much text; labels should be short")
 
 
-def _check_members(content: bytes, lengths: list[int], shared: Counter[int], extents: list[tuple[int, int]]) -> None:
+def _check_members(
+    content: bytes, filename: str, lengths: list[int], shared: Counter[int], extents: list[tuple[int, int]]
+) -> None:
     left = in_force().unpacked
     with ZipFile(BytesIO(content)) as archive:
         members = archive.infolist()
         if len(members) > MOST_MEMBERS:
             raise TooMuchError(say("has {members} parts; a workbook has about twenty", members=len(members)))
+        require_workbook((member.filename for member in members), filename)
         for member in members:
             part = _XmlPart(lengths, shared)
             left -= _streamed(archive, member, part, left)

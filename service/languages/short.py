@@ -22,7 +22,7 @@ WORDS = tuple(
     refuse | stand-certificate | question | acknowledge | resolve | assigned | check | attach
     Jan | Feb | Mar | Apr | May | Jun | Jul | Aug | Sep | Oct | Nov | Dec
     {first} and {last} | {first} or {last} | {first}; and {last}
-    {unit} per {input} | {rate} a year | ppm | arcsec
+    {unit} per {input} | {rate} a year | ppm | arcsec | degrees
     a steady change of a parameter; a step is a sudden one
     """.strip().splitlines()
     for word in line.split("|")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from enum import StrEnum
 
 from estimator.errors import Problem
 from service.diagnosis.sections import DiagnosisLine, diagnosis_line
@@ -16,6 +17,17 @@ from service.sessions.states import RecordState
 from service.sessions.words.conditions import QUESTIONED, Condition, condition_of
 from service.settings import Settings
 from service.uploads.layout.form import Carried
+
+
+class Became(StrEnum):
+    """What became of an uploaded file, what needs a person first."""
+
+    FAILED = "failed"
+    OPEN = "open"
+    """A table that is to be checked, or a large file that is being read."""
+    STORED = "stored"
+    BEFORE = "before"
+    """Stored by an earlier upload."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +49,13 @@ class Outcome:
     """The job for a large file."""
     progress: str = ""
     """Progress of the job."""
+
+    @property
+    def became(self) -> Became:
+        """What became of the file."""
+        if self.receipt is not None:
+            return Became.STORED if self.receipt.created else Became.BEFORE
+        return Became.OPEN if self.is_table or (self.job is not None and self.job.is_open) else Became.FAILED
 
     @property
     def condition(self) -> Condition:
@@ -73,6 +92,11 @@ class UploadPage:
     def refused(self) -> int:
         """Number of refused files."""
         return sum(o.receipt is None and not o.is_table and o.job is None for o in self.outcomes)
+
+    @property
+    def tally(self) -> dict[str, int]:
+        """Number of files by what became of them."""
+        return {became: sum(o.became is became for o in self.outcomes) for became in Became}
 
 
 def outcomes_of(
@@ -114,7 +138,8 @@ def upload_page(outcomes: Sequence[Outcome], settings: Settings, unit_types: Seq
     """The page before (no outcomes) or after an upload."""
     follows = settings.diagnosis_workers > 0
     limit, log_limit = _limit(in_force().whole), _limit(in_force().log)
-    return UploadPage(tuple(outcomes), limit, log_limit, follows, tuple(unit_types))
+    in_order = sorted(outcomes, key=lambda outcome: list(Became).index(outcome.became))
+    return UploadPage(tuple(in_order), limit, log_limit, follows, tuple(unit_types))
 
 
 def _limit(size: int) -> str:

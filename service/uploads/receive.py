@@ -13,7 +13,7 @@ from estimator.errors import Problem, SessionError
 from estimator.json_object import Json
 from estimator.message import changed, say
 from service.errors import RefusedError
-from service.ingest import in_turn, look_at
+from service.ingest import in_turn, look_at, said_as_table
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.ingest.layout.envelope import wrapped
@@ -146,7 +146,8 @@ def upload(
     try:
         calibrated = _calibrated(storage, _checked(storage, content, received))
     except SessionError as fault:
-        raise refuse(storage, received, fault.problems, hooks) from fault
+        problems = said_as_table(where(content), received.filename, fault.problems)
+        raise refuse(storage, received, problems, hooks) from fault
     hooks.keeping()
     storage.files.keep(content)
     prepared = _ready(storage, derivation, received, calibrated)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from estimator.message import say
 from service.ingest import hdf5, logs, mat, parquet
+from service.ingest.foreign import require_table
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
 from service.ingest.layout.understand import joined
 from service.ingest.layout.vocabulary import unit_of
@@ -29,6 +30,7 @@ CODE_PAGES = ["cp1251", "cp1252", "koi8_r", "cp866"]
 """Code pages, distinguished by frequencies of letters."""
 SAMPLE_BYTES = 64 * 1024
 """Bytes from which the encoding is detected: headings stand at the beginning."""
+NO_TEXT = "is neither text nor in a known format; upload XLSX, CSV, JSON, Parquet, HDF5 or MAT"
 UTF16_ZEROS = 0.2
 """Share of zero bytes at even or odd places from which text is UTF-16 without a mark."""
 
@@ -39,6 +41,8 @@ def decoded(content: bytes, filename: str, chosen: str | None = None) -> tuple[s
     try:
         return content.decode(encoding).lstrip("\ufeff"), encoding.removesuffix("-sig")
     except (UnicodeDecodeError, LookupError) as error:
+        if chosen is None:
+            raise refusal(filename, NO_TEXT) from error
         raise refusal(filename, say("is not {encoding} text; choose another encoding", encoding=encoding)) from error
 
 
@@ -122,6 +126,7 @@ class Grid:
 
 def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
     """The table in a file; ``stated`` are the settings of ``taken`` that were chosen by hand."""
+    require_table(content, filename)
     if content.startswith(XLSX):
         return _workbook(content, filename, stated)
     for magic, read in ((PARQUET, _parquet), (HDF5, _hdf5), (MAT, _mat)):
@@ -238,11 +243,13 @@ def _headed(
     width = max(map(len, rows), default=0)
     rows = [row + [None] * (width - len(row)) for row in rows]
     first = int(stated.get("first_row") or _first_row(rows)) - 1
-    header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
     if not 0 <= first < len(rows):
         raise refusal(
-            filename, "has no row of numbers below its headings; state the row where the readings begin", "table"
+            filename,
+            "has no row of numbers below its headings; a table has one for every position; state the row of the first",
+            "table",
         )
+    header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
     headings = _headings(rows[header - 1 : first] if header else [], width)
     columns = tuple([row[k] for row in rows[first:]] for k in range(width))
     if sum(any(not is_nothing(cell) for cell in cells) for cells in columns) < FEWEST:

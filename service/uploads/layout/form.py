@@ -3,10 +3,11 @@
 import base64
 import binascii
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from math import cos, pi, radians, sin
+from math import cos, radians, sin
 from typing import Annotated, Any
 
 from fastapi import Depends, Request
@@ -15,6 +16,8 @@ from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
 from estimator.json_object import Json
+from estimator.message import say
+from estimator.simulate import cone
 from service.errors import RefusedError
 from service.ingest.layout.understand import run_words, split_unit
 from service.kit.arriving_files import held
@@ -42,8 +45,17 @@ NUMBERS = (
 )  # fmt: skip
 """Facts of the session in the form."""
 ORTHOGONAL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-HALF_ANGLE = radians(54.735610317245346)
-"""Of the cone on which three axes are orthogonal: its cosine is 1/√3."""
+HALF_ANGLE = 54.735610317245346
+"""Degrees, of the cone on which three axes are orthogonal: its cosine is 1/√3."""
+CONES = {"cone": (1.0, 1.0, -1.0), "cone-simulated": (1.0, 1.0, 1.0)}
+"""Arrangements on a cone about y, the first axis towards x, with the signs of their components against `cone`: the
+next axes towards z, or away from it."""
+CONE_ANGLE = "Half-angle of the cone"
+"""Label of a field that no mapping has."""
+DIRECTION = 2
+"""Numbers of an azimuth and an elevation."""
+AXIS = re.compile(r"sensor\..+\.axis")
+"""Field of an input axis."""
 
 
 @dataclass(frozen=True)
@@ -232,9 +244,9 @@ def _put(session: Json, key: str, value: Any) -> None:
 
 def _value(text: str) -> float | str | None:
     """A number, with a decimal comma too; any other text is kept, so that it is refused under its name."""
-    text = text.strip()
+    text = text.strip().removesuffix("°").rstrip()
     try:
-        return float(text.replace(",", ".")) if text else None
+        return float(text.replace(",", ".").replace("−", "-")) if text else None
     except ValueError:
         return text
 
@@ -243,7 +255,7 @@ def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: lis
     """One sensor per column of readings, with known facts and what was written."""
     known = {s.get("name"): s for s in session.get("sensors") or () if isinstance(s, dict)}
     sensor_columns = [column for column in columns if column["as"] and is_sensor(column["as"])]
-    axes = _arranged(fields.get("arrangement", ""), len(sensor_columns))
+    axes = _arranged(fields, len(sensor_columns))
     sensors = []
     for column, axis in zip(sensor_columns, axes, strict=True):
         name = column["as"]
@@ -252,9 +264,9 @@ def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: lis
         if written["kind"]:
             sensor["kind"] = written["kind"]
         if written["axis"] is not None:
-            sensor["nominal_axis"] = _components(written["axis"])
+            sensor["nominal_axis"] = _axis(written["axis"])
         if axis is not None:
-            sensor["nominal_axis"] = list(axis)
+            sensor["nominal_axis"] = axis
         if written["scale"] is not None:
             sensor["nominal_scale"] = _value(written["scale"])
         if written["unit"]:
@@ -263,21 +275,62 @@ def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: lis
     return sensors
 
 
-def _arranged(arrangement: str, count: int) -> list[tuple[float, float, float] | None]:
+def _arranged(fields: Mapping[str, str], count: int) -> list[list[float] | None]:
     """Axes of a usual arrangement; None where they are as written."""
+    arrangement, half_angle = fields.get("arrangement", ""), half_angle_of(fields)
     if arrangement == "orthogonal" and count == len(ORTHOGONAL):
-        return list(ORTHOGONAL)
-    if arrangement == "cone" and count:
-        turns = [2 * pi * i / count for i in range(count)]
-        along, aside = cos(HALF_ANGLE), sin(HALF_ANGLE)
-        return [(round(aside * cos(t), 10) + 0.0, round(along, 10), round(aside * sin(t), 10) + 0.0) for t in turns]
+        return [list(axis) for axis in ORTHOGONAL]
+    if arrangement in CONES and count and half_angle is not None:
+        axes = cone(count, radians(half_angle)) * CONES[arrangement]
+        return [[round(component, 10) + 0.0 for component in axis] for axis in axes.tolist()]
     return [None] * count
 
 
-def _components(text: str) -> list[float | str]:
-    """``1 0 0`` or ``1; 0; 0`` or ``1, 0, 0``; with decimal commas where spaces or semicolons separate them."""
-    parts = text.replace(";", " ").split() if ";" in text or text.count(",") != 2 else text.replace(",", " ").split()
-    return [number for part in parts if (number := _value(part.strip(","))) is not None]
+def half_angle_of(fields: Mapping[str, str]) -> float | None:
+    """Degrees, of the cone; None where what is written is no angle of one."""
+    angle = _value(fields.get("cone_angle", ""))
+    if angle is None:
+        return HALF_ANGLE
+    return angle if isinstance(angle, float) and 0 < angle < 90 else None
+
+
+def _axis(text: str) -> list[float | str]:
+    """Components of ``1 0 0`` or ``1; 0; 0`` or ``1, 0, 0``, with decimal commas where spaces or semicolons separate
+    them; of two numbers, azimuth and elevation in degrees, those of their direction."""
+    parts = text.replace(";", " ").split()
+    parts = text.split(",") if len(parts) == 1 else parts
+    numbers = [number for part in parts if (number := _value(part.strip(","))) is not None]
+    if _fault_of_direction(numbers) or len(numbers) != DIRECTION or not all(isinstance(one, float) for one in numbers):
+        return numbers
+    azimuth, elevation = (radians(float(number)) for number in numbers)
+    direction = (cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation))
+    return [round(component, 10) + 0.0 for component in direction]
+
+
+def _fault_of_direction(numbers: Sequence[float | str]) -> str:
+    """What is wrong with an azimuth and an elevation; empty where nothing is, or where they are none."""
+    if len(numbers) != DIRECTION or isinstance(numbers[0], str) or isinstance(numbers[1], str):
+        return ""
+    azimuth, elevation = numbers
+    if not abs(azimuth) <= 360:
+        return say("{angle}° is no azimuth (−360 to 360°)", angle=f"{azimuth:g}")
+    if not abs(elevation) <= 90:
+        return say("{angle}° is no elevation (−90 to 90°)", angle=f"{elevation:g}")
+    return ""
+
+
+def faults_of(form: LayoutForm) -> tuple[Problem, ...]:
+    """What is wrong with numbers that are only in the form, and not in the mapping that is made from it."""
+    fields = form.fields
+    faults = [
+        Problem(say("{name}: input axis", name=key.split(".")[1]), fault)
+        for key, text in fields.items()
+        if AXIS.fullmatch(key) and (fault := _fault_of_direction(_axis(text)))
+    ]
+    if fields.get("arrangement") in CONES and half_angle_of(fields) is None:
+        said = say("{angle}° is no angle of a cone (0 to 90°)", angle=fields["cone_angle"].strip().removesuffix("°"))
+        faults.append(Problem(CONE_ANGLE, said))
+    return tuple(faults)
 
 
 def filled_in(session: Mapping[str, Any], facts: Mapping[str, Any]) -> Json:

@@ -13,7 +13,8 @@ from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
 from service.ingest.layout.grids import ENCODINGS
 from service.ingest.session_keys import COLUMN_HINTS
 from service.kit.measures import number
-from service.uploads.layout.form import Carried, LayoutForm, moment
+from service.uploads.layout.form import Carried, LayoutForm, half_angle_of, moment
+from service.uploads.layout.words import FACTS, LABELS, PLACES, RARE, said_on_page
 from service.uploads.preview import Preview, felt_length, first_rows, is_sensor
 
 MOST_SHOWN = 30
@@ -27,29 +28,13 @@ UNITS = (
 """Offered units."""
 SEPARATORS = {";": "semicolon ;", ",": "comma ,", "\t": "tab", "|": "bar |"}
 DECIMALS = {".": "point 0.5", ",": "comma 0,5"}
-OFFSETS = ("Z", *(f"{sign}{h:02}:00" for sign, hours in (("+", range(1, 15)), ("-", range(1, 13))) for h in hours))
-LABELS = {
-    "run": "run: direct or flipped", "beta_deg": "β, turn of the head", "time_s": "time",
-    "temperature_c": "temperature",
-    "vibration_m_s2": "vibration", "turn_angle_deg": "angle of the turntable", "turn_rate_deg_s": "rate of the table",
-    "position": "position", "direction_x": "direction x", "direction_y": "direction y", "direction_z": "direction z",
-}  # fmt: skip
-"""Names of columns on this page."""
-FACTS = (
-    ("fact.operator", "Operator", "operator"), ("fact.notes", "Notes", "notes"),
+OFFSETS = (
+    "-12:00", "-11:00", "-10:00", "-09:30", "-09:00", "-08:00", "-07:00", "-06:00", "-05:00", "-04:00", "-03:30",
+    "-03:00", "-02:30", "-02:00", "-01:00", "Z", "+01:00", "+02:00", "+03:00", "+03:30", "+04:00", "+04:30", "+05:00",
+    "+05:30", "+05:45", "+06:00", "+06:30", "+07:00", "+08:00", "+08:45", "+09:00", "+09:30", "+10:00", "+10:30",
+    "+11:00", "+12:00", "+12:45", "+13:00", "+13:45", "+14:00",
 )  # fmt: skip
-PLACES = (
-    ("stand.id", "Stand: name or number", "text"), ("stand.alpha_deg", "Elevation of the head's axis α, °", "decimal"),
-    ("site.latitude_deg", "Latitude, °", "decimal"), ("site.gravity_m_s2", "or measured gravity, m/s²", "decimal"),
-)  # fmt: skip
-"""Fields of the stand and the site."""
-RARE = (
-    ("time_since_power_on_s", "From switching on to the first row, s", "decimal"),
-    ("stand.chi_deg", "Gyroscopes: elevation χ, °", "decimal"), ("count_time_s", "Pulses: count time, s", "decimal"),
-    ("sample_rate_hz", "Raw log: samples a second", "decimal"),
-    ("direction_sigma_deg", "Directions: known to, °", "decimal"),
-)  # fmt: skip
-"""Fields that only some sessions need."""
+"""Of the time zones in use."""
 
 
 @dataclass(frozen=True)
@@ -133,6 +118,9 @@ class LayoutPage:
     preview: tuple[tuple[str, ...], ...]
     headings: tuple[str, ...]
     felt: str
+    cone_angle: str
+    arrangement: str
+    """Chosen before, where it could not be followed."""
     units: tuple[str, ...] = UNITS
     can_store: bool = False
     changed: bool = False
@@ -148,7 +136,7 @@ def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Seq
     columns = tuple(_columns(preview))
     filled_columns = tuple(column for column in columns if not column.empty)
     shown = tuple(column for column in filled_columns if column.meaning or column.place < MOST_SHOWN)
-    problems = _dated(preview.problems, day)
+    problems = said_on_page(_dated(preview.problems, day), mapping)
     return LayoutPage(
         filename=form.file.filename,
         carried=carried,
@@ -166,7 +154,7 @@ def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Seq
         types=_choices(types, like),
         day=day,
         clock=clock,
-        offsets=_choices(OFFSETS, offset or "Z"),
+        offsets=_choices(tuple(dict.fromkeys((*OFFSETS, offset or "Z"))), offset or "Z"),
         texts=tuple(
             FactField(key.removeprefix("fact."), label, str(session.get(s) or ""), "text") for key, label, s in FACTS
         ),
@@ -176,6 +164,8 @@ def layout_page(carried: Carried, preview: Preview, form: LayoutForm, types: Seq
         rare=_fields(RARE, session),
         sensors=tuple(_sensor(s, session) for s in session.get("sensors") or () if isinstance(s, dict)),
         problems=problems,
+        arrangement=form.fields.get("arrangement", "") if half_angle_of(form.fields) is None else "",
+        cone_angle=form.fields.get("cone_angle", ""),
         can_store=not problems,
         changed=form.fields.get("do") == "store" and not problems,
         **_first(preview),

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from estimator.errors import Problem
+from estimator.json_object import Json
 from service.errors import RefusedError
 from service.ingest.layout.mapping import PER_FILE_FIELDS
 from service.kit.arriving_files import held
@@ -15,7 +16,7 @@ from service.records.dependencies import ReceptionOf
 from service.sessions.records import MARKS, marks_said
 from service.storage import Storage
 from service.storage.aside import drop_aside
-from service.uploads.layout.form import LayoutForm, LayoutFormOf, carried, corrected, filled_in
+from service.uploads.layout.form import LayoutForm, LayoutFormOf, carried, corrected, faults_of, filled_in
 from service.uploads.layout.page import layout_page
 from service.uploads.preview import Preview, facts_of, preview
 from service.uploads.receive import receive_mapped
@@ -45,7 +46,7 @@ def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, no
             file = replace(form.file, **marks_said((action,)))
             receipt = receive_mapped(reception, file, preview_shown.mapping, now)
         except RefusedError as fault:
-            failed = Preview(**{**vars(preview_shown), "problems": fault.problems, "session": None})
+            failed = replace(preview_shown, problems=fault.problems, session=None)
             return render(request, "layout.html", layout_page(carried_file, failed, form, types), fault.status)
         drop_aside(files, form.owner, carried_file.aside)
         return RedirectResponse(f"/sessions/{receipt.id}", SEE_OTHER)
@@ -53,14 +54,30 @@ def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, no
 
 
 def _preview(storage: Storage, form: LayoutForm) -> Preview:
-    """The preview under the corrected mapping, with the facts of another unit or type where chosen."""
-    mapping = corrected(form)
-    if mapping is not None and (form.is_other_type or form.is_other_unit):
-        facts, session = facts_of(storage, form.unit, form.like), mapping["session"]
-        stated = {key: session[key] for key in PER_FILE_FIELDS if key in session}
-        if form.is_other_type and facts:
-            mapping = {**mapping, "session": {**facts, **stated}}
-        else:
-            mapping = {**mapping, "session": filled_in(session, facts)}
-    name, content = form.file.filename, held(form.file.content)
+    """The preview under the corrected mapping; where that reads no table, with the columns as they were before."""
+    faults = faults_of(form)
+    try:
+        shown = _shown(storage, form)
+    except RefusedError as fault:
+        if form.mapping is None:
+            raise
+        kept = {key: text for key, text in form.fields.items() if not key.startswith(("table.", "as."))}
+        shown, faults = _shown(storage, replace(form, fields=kept)), (*faults, *fault.problems)
+    return replace(shown, problems=(*faults, *shown.problems), session=None) if faults else shown
+
+
+def _shown(storage: Storage, form: LayoutForm) -> Preview:
+    name, content, mapping = form.file.filename, held(form.file.content), _with_facts(storage, form)
     return preview(storage, content, name, mapping=mapping, unit=form.unit, unit_type=form.like)
+
+
+def _with_facts(storage: Storage, form: LayoutForm) -> Json | None:
+    """The corrected mapping, with the facts of another unit or type where chosen."""
+    mapping = corrected(form)
+    if mapping is None or not (form.is_other_type or form.is_other_unit):
+        return mapping
+    facts, session = facts_of(storage, form.unit, form.like), mapping["session"]
+    stated = {key: session[key] for key in PER_FILE_FIELDS if key in session}
+    if form.is_other_type and facts:
+        return {**mapping, "session": {**facts, **stated}}
+    return {**mapping, "session": filled_in(session, facts)}

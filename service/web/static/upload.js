@@ -3,6 +3,7 @@
 const form = document.getElementById("upload");
 const input = document.getElementById("files");
 const outcomes = document.getElementById("outcomes");
+const tally = document.getElementById("tally");
 const queue = [];
 let busy = false;
 
@@ -25,10 +26,22 @@ function waiting(file) {
 
 function failed(card, message) {
   card.className = "outcome refused";
+  card.dataset.became = "failed";
   card.querySelector("progress")?.remove();
   const words = document.createElement("p");
   words.textContent = message;
   card.append(words);
+}
+
+// How many files became what; what needs a person comes first.
+function count() {
+  const cards = (became) => outcomes.querySelectorAll(`[data-became=${became}]`);
+  for (const part of tally.children) {
+    part.querySelector("b").textContent = cards(part.dataset.became).length;
+    part.hidden = !cards(part.dataset.became).length;
+  }
+  tally.hidden = outcomes.children.length < 2;
+  outcomes.prepend(...cards("failed"), ...cards("open"));
 }
 
 function show(card, request) {
@@ -52,6 +65,7 @@ function follow(card, pause = 1000) {
       const found = new DOMParser().parseFromString(await answer.text(), "text/html").querySelector(".outcome");
       if (answer.ok && found) {
         if (found.textContent !== card.textContent) card.replaceWith(found);
+        if (found.dataset.became !== card.dataset.became) count();
         next = found.ownerDocument === document ? found : card;
         if (!found.dataset.follow) return;
       }
@@ -84,7 +98,10 @@ function send(file, card) {
 async function work() {
   if (busy) return;
   busy = true;
-  while (queue.length) await send(...queue.shift());
+  while (queue.length) {
+    await send(...queue.shift());
+    count();
+  }
   busy = false;
 }
 

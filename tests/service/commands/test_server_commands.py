@@ -55,6 +55,14 @@ def test_a_refused_file_names_field_and_row_and_stops_no_other(
         assert part in ran.err
 
 
+def test_a_batch_ends_with_a_line_that_counts_the_failed_first(
+    run: Run, address: str, bad_file: Path, good_file: Path
+) -> None:
+    ran = run("upload", good_file, good_file, bad_file, "--server", address)
+    assert (ran.code, "already stored as session" in ran.out) == (2, True)
+    assert ran.err.splitlines()[-1] == f"1 of 3 files failed: {bad_file}; 1 stored, 1 stored before."
+
+
 def test_a_missing_file_is_unusable_input(run: Run, address: str, tmp_path: Path) -> None:
     ran = run("upload", tmp_path / "missing.json", "--server", address)
     assert ran.code == 2

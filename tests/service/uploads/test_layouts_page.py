@@ -8,6 +8,7 @@ from typing import Any
 import httpx
 import pytest
 
+from service.demo.blocks import sensors_of
 from service.storage import Storage
 from service.storage.aside import FOLDER, MOST, RETENTION, aside, drop_stale, set_aside
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
@@ -76,6 +77,12 @@ def test_what_was_shown_is_stored(client: httpx.Client) -> None:
     assert (session["unit"], session["started_at"][:19]) == ("MY-1", "2026-03-01T09:00:00")
 
 
+def test_what_was_shown_in_russian_is_stored(client: httpx.Client) -> None:
+    client.headers["Accept-Language"] = "ru"
+    answer = sent(client, looked_at(client), do="store")
+    assert answer.status_code == 303, answer.text
+
+
 def test_what_was_changed_since_is_shown_first(client: httpx.Client) -> None:
     answer = sent(client, looked_at(client), **{"fact.stand.alpha_deg": "41", "do": "store"})
     assert answer.status_code == 200
@@ -87,6 +94,79 @@ def test_what_is_missing_cannot_be_stored(client: httpx.Client) -> None:
     page = sent(client, shown(first_page(client)), do="store").text
     assert "Something is still missing" in page
     assert 'value="store"' not in page
+
+
+def faults(page: str) -> dict[str, str]:
+    """What is wrong, by the label of its field."""
+    rows = re.findall(r"<tr><td>([^<]*)</td><td[^>]*>[^<]*</td><td>([^<]*)</td></tr>", page)
+    return {unescape(label): unescape(said) for label, said in rows}
+
+
+def refused(client: httpx.Client, **changes: str) -> dict[str, str]:
+    """What is wrong with the form after these changes."""
+    page = sent(client, shown(first_page(client)), **{**SAID, **changes, "do": "look"})
+    assert (page.status_code, 'value="store"' in page.text) == (200, False)
+    return faults(page.text)
+
+
+def test_what_is_missing_is_called_as_the_form_calls_it(client: httpx.Client) -> None:
+    found = faults(first_page(client))
+    axes = {f"A{k}: {what}" for k in (1, 2, 3) for what in ("input axis", "scale factor")}
+    asked = {"Serial number of the unit", "Measured on", "Stand: name or number", "Elevation of the head's axis α, °"}
+    assert found.keys() == axes | asked | {"Measured gravity, m/s²"}
+    assert not re.search(r"[a-z]_[a-z]|\[\d", " ".join(found.values()))
+
+
+@pytest.mark.parametrize(
+    ("field", "text", "label", "said"),
+    [
+        ("fact.stand.alpha_deg", "999", "Elevation of the head's axis α, °", "is 999; must be from -90 to 90 degrees"),
+        ("fact.site.latitude_deg", "north", "Latitude, °", "is 'north'; write a number"),
+        ("fact.count_time_s", "1", "Pulses: count time, s", "empty this field"),
+        ("fact.programme", "rate-table", "rate of the table", "no column is read as this yet"),
+        ("fact.offset", "+99:00", "Measured on", "state the day"),
+        ("cone_angle", "999", "Half-angle of the cone", "999° is no angle of a cone (0 to 90°)"),
+        ("sensor.A1.axis", "30 95", "A1: input axis", "is not three numbers; give x y z in block axes, or azimuth"),
+        ("sensor.A2.scale", "much", "A2: scale factor", "is 'much'; write a number"),
+        ("as.3", "", "A2: input axis", ""),
+        ("as.4", "A1", "column Датчик 2, мВ", "another column is also read as 'A1'; leave one out"),
+        ("table.header_row", "x", "Headings in row", "is 'x'; must be a whole number"),
+        ("table.first_row", "999", "Table", "has no row of numbers"),
+        ("unit.1", "furlong", "β, turn of the head", "choose the unit of column 'Угол, град'"),
+        ("word.0.0", "", "run: direct or flipped", ""),
+    ],
+)  # fmt: skip
+def test_a_fault_of_a_field_is_said_under_its_label(
+    client: httpx.Client, field: str, text: str, label: str, said: str
+) -> None:
+    changes = {field: text} if field == "cone_angle" or "axis" not in field else {field: text, "arrangement": ""}
+    changes |= {"arrangement": ""} if field == "as.3" else {}
+    assert said in refused(client, **changes)[label]
+
+
+@pytest.mark.parametrize(
+    ("written", "axis"),
+    [
+        ("0 0", "1.0 0.0 0.0"), ("90; 0", "0.0 1.0 0.0"), ("−90°, 0°", "0.0 -1.0 0.0"), ("12 90", "0.0 0.0 1.0"),
+        ("0,6 0,8 0", "0.6 0.8 0.0"), ("0.6, 0.8, 0", "0.6 0.8 0.0"), ("1,0,0", "1.0 0.0 0.0"),
+    ],
+)  # fmt: skip
+def test_an_axis_is_written_as_components_or_as_two_angles(client: httpx.Client, written: str, axis: str) -> None:
+    fields = looked_at(client, arrangement="", **{"sensor.A1.axis": written})
+    assert fields["sensor.A1.axis"] == axis
+
+
+def test_the_cone_is_that_of_the_simulator(client: httpx.Client) -> None:
+    block = sensors_of("accelerometer", 6)
+    names = [sensor.name for sensor in block]
+    said = SAID | {f"sensor.{name}.{key}": value for name in names for key, value in (("scale", "0.12"), ("unit", "V"))}
+    table = "run;beta, deg;" + ";".join(f"{name}, V" for name in names)
+    rows = [f"{run};{30 * k};" + ";".join(f"{k}{i}" for i in range(6)) for run in ("direct", "flipped") for k in (1, 2)]
+    page = first_page(client, "\n".join((table, *rows)).encode())
+    fields = shown(sent(client, shown(page), **{**said, "arrangement": "cone-simulated", "do": "look"}).text)
+    for sensor in block:
+        found = [float(component) for component in fields[f"sensor.{sensor.name}.axis"].split()]
+        assert found == pytest.approx(sensor.nominal_axis, abs=1e-9)
 
 
 def test_a_column_can_be_left_out_and_a_unit_corrected(client: httpx.Client) -> None:
