@@ -28,6 +28,7 @@ from service.papers.changes import (
     signature_of,
 )
 from service.papers.dcc import certificate_dcc
+from service.papers.dcc.inputs import inputs_json
 from service.papers.records import CertificateFile, Issue, Laboratory, Meaning, Signature
 from service.papers.sealing import Seal
 from service.papers.store import Certificates, Signatures
@@ -53,6 +54,7 @@ def statement_of(found: CertifiedSession) -> Statement:
         found.calibration_json,
         repr(found.report.decisions).encode(),
         repr(found.history).encode(),
+        inputs_json(found).encode(),
     )
     digest = sha256(b"".join(sha256(part).digest() for part in parts)).hexdigest()
     return Statement(session.unit, session.id, session.revision, digest, is_specimen=session.simulated)

@@ -152,8 +152,8 @@ def _temperature(source: CalibrationSession) -> str:
 
 def _judged_against(found: CertifiedSession) -> str:
     if found.reference is not None:
-        reference = found.reference.session
-        return say("session {id} of {started_at}", id=reference.id[:12], started_at=day_of(reference.started_at))
+        reference = found.reference
+        return say("session {id} of {started_at}", id=reference.session[:12], started_at=day_of(reference.started_at))
     return "nothing: it is the reference of later sessions" if found.report.session.is_reference else "no reference"
 
 
