@@ -8,14 +8,13 @@ from base64 import b64encode
 from collections.abc import Sequence
 
 from service.kit.printable import Element, document
-from service.papers.certificate.words import UNSIGNED, Signed
 from service.papers.certified import CertifiedSession, StatedSession
 from service.papers.dcc.administrative import administrative, signers_of
 from service.papers.dcc.digest import with_digest
 from service.papers.dcc.elements import DCC, NAMESPACES, english
 from service.papers.dcc.inputs import inputs_json
 from service.papers.dcc.measurement import measurement
-from service.papers.records import Issue
+from service.papers.records import UNSIGNED, Issue, Signed
 
 SCHEMA = "3.3.0"
 """Release of the DCC by PTB; it uses D-SI 2.2.1."""

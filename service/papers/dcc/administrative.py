@@ -9,10 +9,9 @@ from estimator.applied_vector import gravity
 from estimator.session import ACCELEROMETER, CalibrationSession
 from service.kit.measures import day_of
 from service.kit.printable import Element
-from service.papers.certificate.words import Signed
 from service.papers.certified import StatedSession
 from service.papers.dcc.elements import DCC, INPUT, bare_quantity, conformity, english, plain, software
-from service.papers.records import NOT_STATED, Issue, Meaning, Signature, Traceability, TraceState
+from service.papers.records import NOT_STATED, Issue, Meaning, Signature, Signed, Traceability, TraceState
 from service.papers.words import (
     BOUND,
     RELATES,

@@ -11,7 +11,6 @@ from estimator.results import SensorCalibration
 from estimator.session import ACCELEROMETER
 from service.kit.measures import spaced
 from service.kit.printable import Element
-from service.papers.certificate.facts import title_of
 from service.papers.certified import StatedSession
 from service.papers.dcc.administrative import conditions
 from service.papers.dcc.elements import (
@@ -28,6 +27,7 @@ from service.papers.dcc.elements import (
     software,
     value_measure,
 )
+from service.papers.words import title_of
 from service.sessions.decision import Decision, nominal_factor_of
 
 FACTOR = re.compile(r"((?:\\milli)?\\(?!milli|tothe|one)[a-z]+)(?:\\tothe\{(-?\d+)\})?")
