@@ -96,4 +96,5 @@ def _text(element: Element) -> str:
 
 def _name(element: Element) -> str:
     """What it is called; empty where it has no name."""
-    return element.findtext("dcc:name/dcc:content", "", NAMESPACES)
+    found: str = element.findtext("dcc:name/dcc:content", "", NAMESPACES)
+    return found
