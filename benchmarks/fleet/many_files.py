@@ -7,10 +7,11 @@ from hashlib import sha256
 
 from sqlalchemy import Connection, inspect, text
 
+from service.sessions.records import ID_DIGITS
 from service.storage import Storage
 from service.storage.engine import open_engine
 from service.storage.waits import PATIENT
-from service.uploads.receive import ID_DIGITS, upload
+from service.uploads.receive import upload
 from tests.builders import accelerometer_block
 
 TEMPLATES, SESSIONS = 10, 10

@@ -81,6 +81,10 @@ CATALOGUE = {
         "Attach files to a unit or a session: photographs, protocols. They are kept as they are and never opened.",
     ),
     "certificate": CommandEntry("documents.certificate", "Write the certificate of a session."),
+    "verify": CommandEntry(
+        "verify.verify_certificate",
+        "Compute a certificate's every number again from the session's file: 0 agrees, 1 differs, 2 cannot be checked.",
+    ),
     "sign": CommandEntry(
         "sign.sign",
         "Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password.",

@@ -57,6 +57,8 @@ note 3f9a0c5be1d24786aa10 "the room was warm" --by "K. Ito"  # on a session
 attach photo.jpg protocol.pdf --to BA-017 --by "K. Ito" --text "connector J2"  # kept as they are
 certificate 3f9a0c5be1d24786aa10 --out certificate.pdf  # for people
 certificate 3f9a0c5be1d24786aa10 --format dcc --out certificate.xml  # for programs
+verify certificate.xml session.json  # every number again from the session's file, without a service
+verify certificate.xml session.json --trust seal-certificate.pem --schema schema  # whose seal it is, and PTB's schema
 sign 3f9a0c5be1d24786aa10 --meaning reviewed  # then --meaning approved, by somebody else
 seal trial --out seal.p12  # a key to try the seal with
 customer BA-017 "Northern Airways" --address "2 Field Road, Oslo" --by "K. Ito"  # whom its certificates name

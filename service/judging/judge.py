@@ -81,6 +81,11 @@ def judge_recording(
 def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:
     """Judgements with the rule and the revision of the tolerances that they rest on."""
     basis = say("{rule} ({name} rev {revision})", rule=rule, name=unit_type.name, revision=unit_type.revision)
+    return as_decisions(judgements, basis)
+
+
+def as_decisions(judgements: Iterable[ParameterJudgement], basis: str) -> tuple[Decision, ...]:
+    """Judgements by a rule of a version, with tolerances of a revision."""
     return tuple(Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), rule=basis) for own in judgements)
 
 

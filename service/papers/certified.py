@@ -1,17 +1,20 @@
 """Everything stated in a certificate of a session, read from the store."""
 
-from dataclasses import dataclass
-from datetime import timedelta
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+
+import numpy as np
 
 from estimator.message import say
-from estimator.results import Calibration
+from estimator.results import Calibration, Residuals
 from estimator.session import AS_LEFT, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis
 from service.errors import ConflictError
 from service.ingest import read_upload
 from service.judging.reference import reference_of
-from service.models.records import ModelRevision
-from service.models.rules import in_force
+from service.judging.words import verdict_in_words
+from service.models.records import Model, ModelRevision
+from service.models.rules import in_force, model_of
 from service.models.store import Models
 from service.papers.found_and_left import FoundAndLeft, found_and_left
 from service.papers.records import Laboratory, Traceability
@@ -22,7 +25,9 @@ from service.sessions.decision import nominal_factor_of
 from service.sessions.records import HistoryPoint, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
+from service.sessions.words.conditions import condition_of
 from service.settings import VERSION, Settings
+from service.stands.records import StandCertificate
 from service.stands.store import StandCertificates
 from service.storage import Storage
 from service.storage.queries import Store
@@ -52,36 +57,62 @@ JUST_AFTER = timedelta(microseconds=1)
 class ReferenceSession:
     """The reference of a judged session."""
 
-    session: StoredSession
+    session: str
+    """Id."""
+    sha256: str
+    """Of its file."""
+    started_at: datetime
+    model: Model
+    """That its calibration was made under."""
     calibration: Calibration
-    traceability: Traceability
+    """Without residuals and repeatability, which decide nothing."""
+    stand: str | None
+    stand_certificate: StandCertificate | None
+
+    @property
+    def traceability(self) -> Traceability:
+        """By the certificate of its stand at the day of measurement, UTC."""
+        return traceability(self.stand, self.stand_certificate, self.started_at.date())
 
 
-@dataclass(frozen=True)
-class CertifiedSession:
-    """Everything stated in a certificate. It depends on the session and earlier ones, never on later ones."""
+@dataclass(frozen=True, eq=False)
+class StatedSession:
+    """What the certificate for programs states."""
 
     report: SessionReport
     source: CalibrationSession
     """The session in the file."""
-    unit_type: UnitType
+    type_name: str
     reference: ReferenceSession | None
     """None for a reference."""
+    said: str
+    """The verdict with its reservations."""
+    finding: str
+    """The diagnosis in one line."""
+    laboratory: Laboratory
+    customer: Customer
+    traceability: Traceability
+    software: str
+    """Version."""
+
+
+@dataclass(frozen=True, eq=False)
+class CertifiedSession(StatedSession):
+    """Everything stated in a certificate. It depends on the session and earlier ones, never on later ones."""
+
+    unit_type: UnitType
     pair: FoundAndLeft | None
     """Of a session as left: with the one as found."""
     diagnosis: StoredDiagnosis
     revisions: tuple[ModelRevision, ...]
     """The accepted causes in its calibration."""
+    model: Model
+    """Composed of them."""
     services: tuple[Service, ...]
     """Of the unit, up to the session."""
     history: tuple[HistoryPoint, ...]
-    laboratory: Laboratory
-    customer: Customer
-    traceability: Traceability
     calibration_json: bytes
     """imu-calibration/1 as it was written: the numbers behind the certificate."""
-    software: str
-    """Version."""
 
 
 def laboratory_of(settings: Settings) -> Laboratory:
@@ -103,14 +134,19 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
         if stored.state is not RecordState.ACCEPTED:
             raise ConflictError(say(NOT_ACCEPTED, state=stored.state))
         until = stored.started_at + JUST_AFTER
+        revisions, unit_type = _revisions(store, stored), UnitTypes(store).of_unit(stored.unit)
         return CertifiedSession(
             report=report,
             source=read_upload(storage.files.content(stored.sha256), stored.filename),
-            unit_type=UnitTypes(store).of_unit(stored.unit),
+            unit_type=unit_type,
+            type_name=unit_type.name,
+            said=verdict_in_words(condition_of(stored.verdict, is_reference=stored.is_reference), stored.reservations),
+            finding=diagnosis.summary,
             reference=_reference(store, stored),
             pair=_pair(store, report),
             diagnosis=diagnosis,
-            revisions=in_force([r for r in Models(store).of_session(id) if r.id <= stored.revision]),
+            revisions=in_force(revisions),
+            model=_model(revisions, stored),
             services=tuple(s for s in Services(store).of_unit(stored.unit) if s.at < until),
             history=recent_history(store, stored.unit, MOST_POINTS, until=until),
             laboratory=laboratory,
@@ -121,6 +157,16 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
         )
 
 
+def _revisions(store: Store, stored: StoredSession) -> tuple[ModelRevision, ...]:
+    """Those that concern it, up to the one of its calibration."""
+    return tuple(r for r in Models(store).of_session(stored.id) if r.id <= stored.revision)
+
+
+def _model(revisions: tuple[ModelRevision, ...], stored: StoredSession) -> Model:
+    """That its calibration was made under."""
+    return replace(model_of(revisions, stored.started_at), revision=stored.revision)
+
+
 def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
     """The reference of the session."""
     if stored.is_reference:
@@ -129,8 +175,18 @@ def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
     reference_id = reference_of(store, unit, block, stored.programme, stored.started_at).session
     if reference_id is None:
         return None
-    session = Sessions(store).get(reference_id)
-    return ReferenceSession(session, Calibrations(store).get(reference_id), traceability_of(store, session))
+    session, calibration = Sessions(store).get(reference_id), Calibrations(store).get(reference_id)
+    nothing = np.empty((0, 0))
+    no_rows = Residuals(value=nothing, sigma=nothing, beta=None, flipped=None, time=None, temperature=None)
+    return ReferenceSession(
+        session=session.id,
+        sha256=session.sha256,
+        started_at=session.started_at,
+        model=_model(_revisions(store, session), session),
+        calibration=replace(calibration, residuals=no_rows, repeatability=nothing),
+        stand=session.stand,
+        stand_certificate=traceability_of(store, session).certificate,
+    )
 
 
 def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:

@@ -16,7 +16,7 @@ from service.errors import ConflictError, DamagedError, NotFoundError, RefusedEr
 from service.kit.answer import answer
 from service.languages.language import Language
 from service.papers.certificate import certificate_pdf
-from service.papers.certificate.words import Signed, certificate
+from service.papers.certificate.words import certificate
 from service.papers.certified import CertifiedSession, certified_session
 from service.papers.changes import (
     Signing,
@@ -28,7 +28,8 @@ from service.papers.changes import (
     signature_of,
 )
 from service.papers.dcc import certificate_dcc
-from service.papers.records import CertificateFile, Issue, Laboratory, Meaning, Signature
+from service.papers.dcc.inputs import inputs_json
+from service.papers.records import CertificateFile, Issue, Laboratory, Meaning, Signature, Signed
 from service.papers.sealing import Seal
 from service.papers.store import Certificates, Signatures
 from service.papers.words import CHANGED_HASH, NO_LONGER, NOT_COUNTED
@@ -53,6 +54,7 @@ def statement_of(found: CertifiedSession) -> Statement:
         found.calibration_json,
         repr(found.report.decisions).encode(),
         repr(found.history).encode(),
+        inputs_json(found).encode(),
     )
     digest = sha256(b"".join(sha256(part).digest() for part in parts)).hexdigest()
     return Statement(session.unit, session.id, session.revision, digest, is_specimen=session.simulated)

@@ -101,6 +101,19 @@ class Signature:
 
 
 @dataclass(frozen=True)
+class Signed:
+    """Signatures of an issue, and the owner of its seal."""
+
+    signatures: tuple[Signature, ...] = ()
+    sealed_by: str = ""
+    """Empty without a seal."""
+
+
+UNSIGNED = Signed()
+"""An issue without signatures."""
+
+
+@dataclass(frozen=True)
 class CertificateFile:
     """An approved issue as it is handed out, byte by byte."""
 
@@ -110,3 +123,22 @@ class CertificateFile:
     sha256: str
     sealed_by: str
     """Subject of the certificate of the laboratory's key; empty where it has none."""
+
+
+@answer
+@dataclass(frozen=True)
+class RestingCertificate:
+    """An issued certificate whose numbers rest on a stand."""
+
+    number: str
+    """Of the certificate."""
+    unit: str
+    """Serial number."""
+    session: str
+    """Id of the session."""
+    started_at: datetime
+    """When it was measured, UTC."""
+    issued_at: datetime
+    """UTC."""
+    is_measured_there: bool
+    """Whether the session was measured on the stand; if not, its reference was."""

@@ -1,16 +1,20 @@
 """Numbers of certificates, their signatures, and approved certificates."""
 
 from collections.abc import Sequence
-from datetime import datetime
+from datetime import UTC, date, datetime, time, timedelta
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, func, or_, select
 
 from estimator.message import say
 from service.errors import ConflictError, NotFoundError
-from service.papers.records import CertificateFile, Issue, Meaning, Signature
+from service.papers.records import CertificateFile, Issue, Meaning, RestingCertificate, Signature
 from service.papers.tables import CertificateFileRow, CertificateRow, SignatureRow
 from service.people.tables import AccountRow
+from service.sessions.records import ID_DIGITS, UNWEIGHED
+from service.sessions.tables import SessionRow
+from service.stands.tables import StandRow
 from service.storage.queries import Queries
+from service.units.tables import UnitRow
 
 
 class Certificates(Queries):
@@ -20,6 +24,26 @@ class Certificates(Queries):
         """Every issue of a session's certificate, the first one first."""
         query = select(CertificateRow).where(CertificateRow.session_id == id).order_by(CertificateRow.id)
         return tuple(_issue(row) for row in self._session.scalars(query))
+
+    def resting_on(self, stand: str, since: date, until: date) -> tuple[RestingCertificate, ...]:
+        """Every issue of sessions that were measured on a stand in these days, or judged against one that was."""
+        first, last = (datetime.combine(day, time(), UTC) for day in (since, until + timedelta(days=1)))
+        there = (
+            select(SessionRow.id)
+            .join(StandRow, StandRow.id == SessionRow.stand_id)
+            .where(StandRow.name == stand, SessionRow.started_at >= first, SessionRow.started_at < last)
+        )
+        against = (func.substr(SessionRow.basis, start, ID_DIGITS).in_(there) for start in (1, 1 + len(UNWEIGHED)))
+        own = SessionRow.id.in_(there)
+        issued = (CertificateRow.number, UnitRow.serial, SessionRow.id, SessionRow.started_at, CertificateRow.issued_at)
+        query = (
+            select(*issued, own)
+            .join(SessionRow, SessionRow.id == CertificateRow.session_id)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .where(or_(own, *against))
+            .order_by(SessionRow.started_at, CertificateRow.id)
+        )
+        return tuple(RestingCertificate(*row[:-1], bool(row[-1])) for row in self._session.execute(query))
 
     def add(self, issue: Issue) -> None:
         """Stores an issue; its number is unique."""

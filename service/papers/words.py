@@ -5,8 +5,10 @@ from datetime import date, datetime
 from estimator.coverage import chance
 from estimator.message import joined, say
 from estimator.results import Calibration
+from estimator.session import IN_SERVICE
 from service.kit.measures import coverage_in_words, day_of, minute_of, noise_is_estimated, number
 from service.papers.records import NOT_STATED, Laboratory, Meaning, Traceability, TraceState
+from service.sessions.records import StoredSession
 from service.stands.records import StandCertificate
 from service.units.records import Customer
 
@@ -60,6 +62,13 @@ NO_LONGER = (
 )
 CHANGED_HASH = "Certificate {number} was signed for other content than is stored: the database was changed."
 NOT_COUNTED = "The session no longer counts: certificate {number} should not be used."
+
+
+def title_of(session: StoredSession) -> str:
+    """A recording in service checks a calibration, but is none. A simulation certifies nothing."""
+    if session.simulated:
+        return "Specimen, not a certificate"
+    return "Check in service" if session.programme == IN_SERVICE else "Calibration certificate"
 
 
 def done_by(meaning: Meaning) -> str:

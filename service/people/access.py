@@ -100,6 +100,7 @@ GET {API}/plan
 GET {API}/session-template
 GET {API}/stands
 GET {API}/stands/{{name:path}}/certificates
+GET {API}/stands/{{name:path}}/resting-certificates
 GET {API}/stands/{{name:path}}/diagnosis
 GET {API}/flags
 GET {API}/feeds/due.ics

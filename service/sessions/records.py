@@ -17,6 +17,8 @@ from service.sessions.states import RecordState
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """What a calibration gives of every sensor."""
+ID_DIGITS = 20
+"""Digits of the file's SHA-256: 80 bits; among a million sessions two share them with probability 4e-13."""
 
 
 ALL_PARAMETERS = (*PARAMETERS, "misalignment")

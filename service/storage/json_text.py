@@ -1,7 +1,7 @@
 """JSON as stored in the database: the one place where results of the estimator become text."""
 
 import json
-from datetime import datetime
+from datetime import date, datetime
 from typing import Any
 
 import numpy as np
@@ -24,4 +24,10 @@ def _plain(value: object) -> object:
     raise TypeError(say("{name} is not kept as JSON", name=type(value).__name__))
 
 
-STORED = Codec({datetime: Form(datetime.isoformat, datetime.fromisoformat), **WITH_PARTS})
+STORED = Codec(
+    {
+        datetime: Form(datetime.isoformat, datetime.fromisoformat),
+        date: Form(date.isoformat, date.fromisoformat),
+        **WITH_PARTS,
+    }
+)

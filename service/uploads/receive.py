@@ -38,7 +38,7 @@ from service.records.register import retired_in_words
 from service.records.supersede import give_way, settled_by, supersede
 from service.sessions.decision import Verdict
 from service.sessions.doubt import remedies_among
-from service.sessions.records import Digests, Receipt, StoredSession
+from service.sessions.records import ID_DIGITS, Digests, Receipt, StoredSession
 from service.sessions.sent import NOTHING_STATED, Received, Replaced, SentFile, Stated
 from service.sessions.store import Sessions
 from service.storage import Storage
@@ -72,10 +72,6 @@ def refuse(
 def _text(message: str) -> str:
     """Printable, for any database and reader."""
     return "".join(c if c.isprintable() else "\ufffd" for c in message)[:LONGEST_MESSAGE]
-
-
-ID_DIGITS = 20
-"""Digits of the file's SHA-256: 80 bits; among a million sessions two share them with probability 4e-13."""
 
 
 def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:

@@ -1,8 +1,13 @@
 """Stands over HTTP: their own health, and their certificates."""
 
-from fastapi import APIRouter
+from datetime import date
+from typing import Annotated
+
+from fastapi import APIRouter, Query
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.papers.records import RestingCertificate
+from service.papers.store import Certificates
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.stands.changes import record_stand_certificate
@@ -39,6 +44,15 @@ class StandCertificateList(BaseModel):
     certificates: tuple[StandCertificate, ...] = Field(description="As they were last recorded.")
 
 
+FIRST_DAY, LAST_DAY = date(1900, 1, 1), date(2999, 12, 31)
+
+
+class RestingCertificateList(BaseModel):
+    """Certificates whose numbers rest on a stand, in order of measurement."""
+
+    certificates: tuple[RestingCertificate, ...] = Field(description="Every issue, replaced ones too.")
+
+
 router = APIRouter(prefix="/stands", tags=["stands"])
 
 
@@ -53,6 +67,18 @@ def list_stand_certificates(name: StandName, store: Reading) -> StandCertificate
     """The certificates of a stand's own calibration, oldest first; sessions are traceable while one holds."""
     found = StandCertificates(store).known(name)
     return StandCertificateList(certificates=found)
+
+
+@router.get("/{name:path}/resting-certificates", responses=errors(404, 422))
+def list_resting_certificates(
+    name: StandName,
+    store: Reading,
+    since: Annotated[date, Query(description="First day of measurement.")] = FIRST_DAY,
+    until: Annotated[date, Query(description="Last day of measurement.")] = LAST_DAY,
+) -> RestingCertificateList:
+    """Every certificate to look at again where the stand was at fault: of sessions on it, or with a reference on it."""
+    StandCertificates(store).known(name)
+    return RestingCertificateList(certificates=Certificates(store).resting_on(name, since, until))
 
 
 @router.put("/{name:path}/certificate", responses=errors(400, 404, 422))

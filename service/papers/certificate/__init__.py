@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 from service.languages.language import Language
 from service.papers.certificate.drawings import Drawing, histories_of, residuals_of
-from service.papers.certificate.words import UNSIGNED, Certificate, SignatureLine, Signed, certificate, lines_of
+from service.papers.certificate.words import Certificate, SignatureLine, certificate, lines_of
 from service.papers.certified import CertifiedSession
-from service.papers.records import Issue
+from service.papers.records import UNSIGNED, Issue, Signed
 from service.papers.typeset import typeset
 
 

@@ -5,14 +5,13 @@ from math import degrees
 
 from estimator.applied_vector import gravity
 from estimator.message import joined, say
-from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
+from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.wording import counted
 from service.diagnosis.words.causes import cause_on
 from service.diagnosis.words.findings import FindingView, finding_view
 from service.kit.measures import THIN, day_of, method_name, minute_of, number, size_in_words, spaced
 from service.papers.certified import CertifiedSession
 from service.papers.words import stated
-from service.sessions.records import StoredSession
 from service.sessions.words.readings import switched_on
 
 
@@ -64,13 +63,6 @@ def _corrected(view: FindingView) -> str:
 
 CONSTANT_TEMPERATURE = 0.05
 """°C: a smaller range is printed as one number."""
-
-
-def title_of(session: StoredSession) -> str:
-    """A recording in service checks a calibration, but is none. A simulation certifies nothing."""
-    if session.simulated:
-        return "Specimen, not a certificate"
-    return "Check in service" if session.programme == IN_SERVICE else "Calibration certificate"
 
 
 def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
@@ -152,8 +144,8 @@ def _temperature(source: CalibrationSession) -> str:
 
 def _judged_against(found: CertifiedSession) -> str:
     if found.reference is not None:
-        reference = found.reference.session
-        return say("session {id} of {started_at}", id=reference.id[:12], started_at=day_of(reference.started_at))
+        reference = found.reference
+        return say("session {id} of {started_at}", id=reference.session[:12], started_at=day_of(reference.started_at))
     return "nothing: it is the reference of later sessions" if found.report.session.is_reference else "no reference"
 
 

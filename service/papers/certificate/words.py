@@ -6,13 +6,13 @@ from estimator.health.rule import WITH_SESSION_LEVEL
 from estimator.message import say
 from service.judging.temperature_words import laws_in_words
 from service.kit.measures import coverage_in_words, day_of, spaced
-from service.papers.certificate.facts import CertifiedCause, Fact, causes_of, facts_of, record_of, title_of
+from service.papers.certificate.facts import CertifiedCause, Fact, causes_of, facts_of, record_of
 from service.papers.certificate.paper import Paper, paper_of
 from service.papers.certificate.results import ResultTable, result_tables
 from service.papers.certified import CertifiedSession
 from service.papers.found_and_left import FoundAndLeft, JudgedChange, moved
-from service.papers.records import Issue, Meaning, Signature
-from service.papers.words import BOUND, STATES, done_by, moment_of
+from service.papers.records import Issue, Meaning, Signature, Signed
+from service.papers.words import BOUND, STATES, done_by, moment_of, title_of
 from service.sessions.decision import nominal_factor_of
 from service.sessions.words.conditions import CONDITIONS, Condition, but, condition_of
 from service.sessions.words.motion import motions_in_words
@@ -20,19 +20,6 @@ from service.sessions.words.readings import FitWords, combination_in_words, fit_
 
 MEASURED = "Measured by"
 """Signed by hand: the operator need not have an account."""
-
-
-@dataclass(frozen=True)
-class Signed:
-    """Signatures of an issue, and the owner of its seal."""
-
-    signatures: tuple[Signature, ...] = ()
-    sealed_by: str = ""
-    """Empty without a seal."""
-
-
-UNSIGNED = Signed()
-"""An issue without signatures."""
 
 
 @dataclass(frozen=True)

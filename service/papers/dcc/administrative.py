@@ -1,19 +1,17 @@
 """Administrative data: laboratory, customer, item, number."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import degrees
 
 import numpy as np
 
 from estimator.applied_vector import gravity
 from estimator.session import ACCELEROMETER, CalibrationSession
-from service.judging.words import verdict_in_words
 from service.kit.measures import day_of
 from service.kit.printable import Element
-from service.papers.certificate.words import Signed
-from service.papers.certified import CertifiedSession
+from service.papers.certified import StatedSession
 from service.papers.dcc.elements import DCC, INPUT, bare_quantity, conformity, english, plain, software
-from service.papers.records import NOT_STATED, Issue, Meaning, Signature, Traceability, TraceState
+from service.papers.records import NOT_STATED, Issue, Meaning, Signature, Signed, Traceability, TraceState
 from service.papers.words import (
     BOUND,
     RELATES,
@@ -25,8 +23,6 @@ from service.papers.words import (
     uncertainty_in_words,
 )
 from service.sessions.decision import nominal_factor_of
-from service.sessions.records import StoredSession
-from service.sessions.words.conditions import condition_of
 
 UNKNOWN_COUNTRY = "ZZ"
 """User-assigned in ISO 3166-1: the country of the laboratory is not configured, or the session was simulated. PTB's
@@ -36,7 +32,7 @@ ROLES = {Meaning.REVIEWED: "reviewer", Meaning.APPROVED: "approver"}
 """Role of a signer by the meaning of the signature."""
 
 
-def administrative(found: CertifiedSession, issue: Issue, signed: Signed) -> Element:
+def administrative(found: StatedSession, issue: Issue, signers: Sequence[Element]) -> Element:
     """Everything but the results."""
     laboratory, customer = found.laboratory, found.customer
     return DCC.administrativeData(
@@ -44,18 +40,22 @@ def administrative(found: CertifiedSession, issue: Issue, signed: Signed) -> Ele
         _core(found, issue),
         DCC.items(_item(found)),
         DCC.calibrationLaboratory(_contact("contact", laboratory.name, laboratory.address, laboratory.country)),
-        DCC.respPersons(*_people(found.report.session.operator, signed)),
+        DCC.respPersons(*_people(found.report.session.operator, signers)),
         _contact("customer", customer.name, customer.address, ""),
         DCC.statements(*statements(found)),
     )
 
 
-def _people(operator: str, signed: Signed) -> Iterator[Element]:
+def signers_of(signed: Signed) -> tuple[Element, ...]:
+    """Those who signed, as ``respPerson``."""
+    return tuple(DCC.respPerson(*_signer(signature, signed.sealed_by)) for signature in signed.signatures)
+
+
+def _people(operator: str, signers: Sequence[Element]) -> Iterator[Element]:
     """The operator and the signers; the main signer is the approver."""
-    approved = any(signature.meaning is Meaning.APPROVED for signature in signed.signatures)
+    approved = any(role.text == ROLES[Meaning.APPROVED] for signer in signers for role in signer.iter("{*}role"))
     yield DCC.respPerson(*_operator(operator, signs=not approved))
-    for signature in signed.signatures:
-        yield DCC.respPerson(*_signer(signature, signed.sealed_by))
+    yield from signers
 
 
 def _operator(name: str, *, signs: bool) -> Iterator[Element]:
@@ -76,7 +76,7 @@ def _signer(signature: Signature, sealed_by: str) -> Iterator[Element]:
         yield DCC.cryptElectronicSeal("true" if sealed_by else "false")
 
 
-def _core(found: CertifiedSession, issue: Issue) -> Element:
+def _core(found: StatedSession, issue: Issue) -> Element:
     session = found.report.session
     measured = f"{session.started_at:%Y-%m-%d}"
     return DCC.coreData(
@@ -104,12 +104,12 @@ def _replaced(issue: Issue) -> Iterator[Element]:
         )
 
 
-def _item(found: CertifiedSession) -> Element:
+def _item(found: StatedSession) -> Element:
     unit = found.report.session.unit
     return DCC.item(
         english("name", f"Inertial measurement unit {unit}"),
         DCC.manufacturer(english("name", NOT_STATED)),
-        DCC.model(found.unit_type.name),
+        DCC.model(found.type_name),
         DCC.identifications(_identification("manufacturer", unit, "Serial number")),
     )
 
@@ -176,7 +176,7 @@ TRACEABLE = {TraceState.TRACEABLE: "true", TraceState.INTERRUPTED: "false"}
 """Nothing is claimed for a chain that is not on record."""
 
 
-def statements(found: CertifiedSession) -> Iterator[Element]:
+def statements(found: StatedSession) -> Iterator[Element]:
     """In the order of the paper."""
     session, decisions = found.report.session, found.report.decisions
     draft = draft_in_words(missing_facts(found.laboratory, found.customer, dated=found.source.started_at is not None))
@@ -186,7 +186,7 @@ def statements(found: CertifiedSession) -> Iterator[Element]:
         )
     if draft:
         yield _statement("Draft", draft)
-    yield _verdict(session)
+    yield _verdict(found)
     judged = bool(decisions) and not session.is_reference
     rule = f"{decisions[0].rule}; guard band w = U." if judged else NOTHING_JUDGED
     yield _statement("Decision rule", rule)
@@ -197,20 +197,20 @@ def statements(found: CertifiedSession) -> Iterator[Element]:
     yield _statement("Uncertainty", uncertainty_in_words(found.report.calibration, nominal_factor_of(decisions)))
     yield _statement("Item", RELATES)
     yield _statement("Reproduction", WHOLE)
-    yield _statement("Diagnosis", found.diagnosis.summary)
+    yield _statement("Diagnosis", found.finding)
 
 
-def _reference(found: CertifiedSession) -> str:
+def _reference(found: StatedSession) -> str:
     if found.reference is None:
         return "none: this session is a reference itself, or there was none"
-    reference = found.reference.session
-    return f"session {reference.id} of {day_of(reference.started_at)}, model revision {reference.revision}"
+    reference = found.reference
+    return f"session {reference.session} of {day_of(reference.started_at)}, model revision {reference.model.revision}"
 
 
-def _verdict(session: StoredSession) -> Element:
-    words = verdict_in_words(condition_of(session.verdict, is_reference=session.is_reference), session.reservations)
+def _verdict(found: StatedSession) -> Element:
+    session = found.report.session
     verdict = None if session.is_reference else session.verdict
-    declaration = english("declaration", f"{words}. {session.reason}")
+    declaration = english("declaration", f"{found.said}. {session.reason}")
     return DCC.statement(english("name", "Verdict"), declaration, *conformity(verdict))
 
 

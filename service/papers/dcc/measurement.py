@@ -11,8 +11,7 @@ from estimator.results import SensorCalibration
 from estimator.session import ACCELEROMETER
 from service.kit.measures import spaced
 from service.kit.printable import Element
-from service.papers.certificate.facts import title_of
-from service.papers.certified import CertifiedSession
+from service.papers.certified import StatedSession
 from service.papers.dcc.administrative import conditions
 from service.papers.dcc.elements import (
     DCC,
@@ -28,15 +27,18 @@ from service.papers.dcc.elements import (
     software,
     value_measure,
 )
+from service.papers.words import title_of
 from service.sessions.decision import Decision, nominal_factor_of
 
 FACTOR = re.compile(r"((?:\\milli)?\\(?!milli|tothe|one)[a-z]+)(?:\\tothe\{(-?\d+)\})?")
 """One unit of a product in D-SI, with its exponent."""
 TOTAL = "Covariance of all parameters"
+COVARIANCE_OF, PROBABILITY = "covariance of ", "probability of being out of tolerance"
+"""Names of quantities."""
 TRIANGLE = "Each entry with itself and those after it: the matrix is symmetric. Labels name the other parameter."
 
 
-def covariance(found: CertifiedSession) -> Element | None:
+def covariance(found: StatedSession) -> Element | None:
     """Total covariance of the observed parameters; None where the noise is unknown."""
     calibration, units = found.report.calibration, _units(found)
     matrix = np.asarray(calibration.covariance, dtype=float)
@@ -76,10 +78,10 @@ def _row(name: str, entries: Sequence[CovarianceEntry]) -> Iterator[Element]:
             SI.valueXMLList(" ".join(repr(float(entry.value)) for entry in same_unit)),
             SI.unitXMLList(unit),
         )
-        yield DCC.quantity(english("name", f"covariance of {name}"), numbers)
+        yield DCC.quantity(english("name", f"{COVARIANCE_OF}{name}"), numbers)
 
 
-def _units(found: CertifiedSession) -> list[str]:
+def _units(found: StatedSession) -> list[str]:
     """D-SI of every element of the covariance; empty where it belongs to no sensor."""
     kinds = {sensor.name: sensor.kind for sensor in found.report.calibration.sensors}
     readings = {sensor.name: sensor.reading_unit for sensor in found.source.sensors}
@@ -107,7 +109,7 @@ def _word(name: str) -> str:
     return "_".join(plain(name).split())
 
 
-def measurement(found: CertifiedSession) -> Element:
+def measurement(found: StatedSession) -> Element:
     """The one measurement result of a session."""
     session, calibration = found.report.session, found.report.calibration
     covariances = covariance(found)
@@ -125,7 +127,7 @@ def measurement(found: CertifiedSession) -> Element:
     )
 
 
-def _methods(found: CertifiedSession) -> Iterator[Element]:
+def _methods(found: StatedSession) -> Iterator[Element]:
     """With their versions: methods of measurement, uncertainty and decision."""
     session, calibration = found.report.session, found.report.calibration
     model = (
@@ -139,7 +141,7 @@ def _methods(found: CertifiedSession) -> Iterator[Element]:
         yield DCC.usedMethod(english("name", "Decision rule"), english("description", rule), DCC.norm("ILAC-G8"))
 
 
-def _equipment(found: CertifiedSession) -> Iterator[Element]:
+def _equipment(found: StatedSession) -> Iterator[Element]:
     """The stand, with the number of its certificate where one is on record."""
     stand, certificate = found.source.stand, found.traceability.certificate
     if stand is None:
@@ -157,9 +159,7 @@ def _equipment(found: CertifiedSession) -> Iterator[Element]:
     )
 
 
-def _result(
-    sensor: SensorCalibration, found: CertifiedSession, decisions: Mapping[tuple[str, str], Decision]
-) -> Element:
+def _result(sensor: SensorCalibration, found: StatedSession, decisions: Mapping[tuple[str, str], Decision]) -> Element:
     data = DCC.data()
     for parameter, is_observable in sensor.observable.items():
         text = english("text", f"{parameter}: not observable in this session")
@@ -170,7 +170,7 @@ def _result(
     return DCC.result(english("name", f"{sensor.kind} {sensor.name}"), data)
 
 
-def _value(sensor: SensorCalibration, parameter: str, found: CertifiedSession) -> Element:
+def _value(sensor: SensorCalibration, parameter: str, found: StatedSession) -> Element:
     k = sensor.factor(parameter, nominal_factor_of(found.report.decisions))
     if parameter == "axis":
         return _axis(sensor, k)
@@ -230,4 +230,4 @@ def _limits(decision: Decision, unit: str) -> Iterator[Element]:
     if decision.guard_band is not None:
         yield bare_quantity("guard band", decision.guard_band, unit)
     if decision.probability_out is not None:
-        yield bare_quantity("probability of being out of tolerance", decision.probability_out, ONE)
+        yield bare_quantity(PROBABILITY, decision.probability_out, ONE)

@@ -17,6 +17,7 @@ period? respAuthority? conformity? data? nonSIDefinition? nonSIUnit? location?"
 CONTACT = "name eMail? phone? fax? location descriptionData?"
 SEQUENCES = {
     "digitalCalibrationCertificate": "administrativeData measurementResults comment? document?",
+    "document": "name? description? fileName mimeType dataBase64",
     "administrativeData": "dccSoftware refTypeDefinitions? coreData items calibrationLaboratory respPersons customer "
     "statements?",
     "dccSoftware": "software+",

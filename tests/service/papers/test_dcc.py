@@ -1,12 +1,15 @@
 """The Digital Calibration Certificate: its structure, its numbers, and texts that stay texts."""
 
 import json
+from datetime import UTC, datetime
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 import httpx
 import pytest
 
+from service.papers.verifying.records import Outcome, RawFile
+from service.papers.verifying.verify import Beside, verify
 from tests.builders import accelerometer_block, arbitrary_orientations, gyro_block, mixed_block, raw_log
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
@@ -53,8 +56,12 @@ SESSIONS = {
 
 
 @pytest.mark.parametrize("name", SESSIONS)
-def test_every_element_is_where_the_schema_wants_it(client: httpx.Client, name: str) -> None:
-    assert faults(dcc(client, send(client, SESSIONS[name]))) == []
+def test_every_element_is_where_the_schema_wants_it_and_can_be_computed_again(client: httpx.Client, name: str) -> None:
+    id = send(client, SESSIONS[name])
+    assert faults(dcc(client, id)) == []
+    content, raw = (client.get(f"/api/v1/sessions/{id}/{path}").content for path in ("certificate?format=dcc", "file"))
+    found = verify(content, RawFile(f"{name}.json", raw), Beside(), datetime.now(UTC))
+    assert found.outcome is Outcome.AGREES, found
 
 
 @pytest.fixture

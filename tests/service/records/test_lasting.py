@@ -15,12 +15,19 @@ from service.groups.store import Groups
 from service.models.records import ModelRevision, NewLasting, Progress, Recomputation, Scope
 from service.models.rules import model_of
 from service.models.store import Recomputations, evidence_from_dict, evidence_to_dict
+from service.papers.certified import certified_session, laboratory_of
+from service.papers.dcc import certificate_dcc
+from service.papers.records import Issue
+from service.papers.verifying.records import Outcome, RawFile
+from service.papers.verifying.verify import Beside, verify
+from service.records.diagnose import diagnose
 from service.records.models import accept_lasting, withdraw_model
 from service.records.recalibrate import recompute
 from service.records.refresh_group import refresh_group
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
+from service.settings import Settings
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.uploads.receive import upload
@@ -111,6 +118,16 @@ def test_the_next_session_has_it_at_once(four: Storage, accepted: ModelRevision)
     later = upload(four, cubic_session(12, cubic=LARGE), "b.json", NOW).id
     with four.database.reading() as store:
         assert Sessions(store).get(later).revision == accepted.id
+
+
+@one_engine
+def test_its_certificate_can_be_computed_again(four: Storage, accepted: ModelRevision) -> None:
+    id = session_id(GROUP[-1])
+    found = certified_session(four, diagnose(four, id, NOW), laboratory_of(Settings()))
+    assert found.model.fixed
+    certificate = certificate_dcc(found, Issue("1", id, accepted.id, NOW, "", None, ""))
+    checks = verify(certificate, RawFile("a.json", GROUP[-1]), Beside(), NOW)
+    assert checks.outcome is Outcome.AGREES, checks
 
 
 @one_engine

@@ -1,0 +1,1 @@
+"""An open benchmark: blind sessions, sealed truths, and marks for whoever answers."""

@@ -1,0 +1,41 @@
+"""What the numbers of a certificate can be computed again from, beside the session's file."""
+
+from dataclasses import dataclass
+
+from estimator.codec import Document
+from service.models.records import Model
+from service.papers.certified import CertifiedSession, ReferenceSession
+from service.sessions.decision import nominal_factor_of
+from service.stands.records import StandCertificate
+from service.storage.json_text import STORED, json_text
+
+
+@dataclass(frozen=True, eq=False)
+class RecomputationInputs(Document, format="imu-recomputation/1"):
+    """As it stands in the certificate."""
+
+    coverage_factor: float
+    """k for known noise."""
+    model: Model
+    is_reference: bool
+    rule: str
+    """With its version and the revision of the tolerances; empty where nothing is judged."""
+    tolerances: tuple[tuple[str, str, float], ...]
+    """Kind of sensor, parameter, tolerance: relative for scale, else SI."""
+    reference: ReferenceSession | None
+    stand_certificate: StandCertificate | None
+
+
+def inputs_json(found: CertifiedSession) -> str:
+    """The same certificate gives the same text."""
+    decisions = found.report.decisions
+    inputs = RecomputationInputs(
+        coverage_factor=nominal_factor_of(decisions),
+        model=found.model,
+        is_reference=found.report.session.is_reference,
+        rule=f"{decisions[0].rule}" if decisions else "",
+        tolerances=tuple(dict.fromkeys((d.kind, d.parameter, d.tolerance) for d in decisions)),
+        reference=found.reference,
+        stand_certificate=found.traceability.certificate,
+    )
+    return json_text(STORED.written(inputs))

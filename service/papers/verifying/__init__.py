@@ -1,0 +1,1 @@
+"""A certificate checked by a stranger: with its session's file, without the service that issued it."""

@@ -1,0 +1,115 @@
+"""Step: a session's file, and what its certificate states beside → all that the certificate states, computed again."""
+
+from dataclasses import replace
+from datetime import datetime
+
+from estimator.health import judge
+from estimator.health.parity import judge_parity
+from estimator.session import IN_SERVICE
+from service.ingest.checked import Checked, as_checked, check
+from service.judging.calibrate import Calibrated, CalibrationBasis, calibrate
+from service.judging.judge import as_decisions
+from service.judging.words import first_in_words, reason, recording_in_words
+from service.papers.certified import ReferenceSession, StatedSession
+from service.papers.dcc.inputs import RecomputationInputs
+from service.papers.session_report import SessionReport
+from service.papers.verifying.records import RawFile
+from service.papers.verifying.stated import Printed
+from service.papers.words import traceability
+from service.sessions.decision import Decision, Judged, Opening
+from service.sessions.records import ID_DIGITS, StoredSession
+from service.sessions.words.advice import too_few
+from service.sessions.words.conditions import condition_of
+
+
+def stated_again(raw: RawFile, inputs: RecomputationInputs, printed: Printed, now: datetime) -> StatedSession:
+    """What the certificate should state; SessionError where the file cannot be read, ValueError where what the
+    certificate states cannot be."""
+    known = _checked(raw, printed, now)
+    reference = inputs.reference
+    compared_with = reference.calibration if reference and known.session.programme == IN_SERVICE else None
+    found = calibrate(known, CalibrationBasis(inputs.model, compared_with))
+    decisions = _decisions(found, inputs)
+    session = _record(raw, found, inputs, decisions, printed)
+    return StatedSession(
+        report=SessionReport(session, found.calibration, decisions),
+        source=known.session,
+        type_name=printed.unit_type,
+        reference=reference,
+        said=_said(session, printed),
+        finding=printed.declared("Diagnosis"),
+        laboratory=printed.laboratory,
+        customer=printed.customer,
+        traceability=traceability(known.stand, inputs.stand_certificate, known.measured_at.date()),
+        software=printed.version,
+    )
+
+
+def with_reference(
+    inputs: RecomputationInputs, reference: ReferenceSession, file: RawFile, now: datetime
+) -> RecomputationInputs:
+    """With the reference's calibration computed again from its own file."""
+    new = check(file.content, file.name, now, lambda _: True)
+    found = calibrate(new, CalibrationBasis(reference.model, None))
+    return replace(inputs, reference=replace(reference, calibration=found.calibration))
+
+
+def _checked(raw: RawFile, printed: Printed, now: datetime) -> Checked:
+    """As at the upload; a file without a date was measured when the certificate says."""
+    new = check(raw.content, raw.name, now, lambda serial: serial == printed.serial)
+    return new if new.session.started_at is not None else as_checked(new.session, printed.measured_on, new.session.unit)
+
+
+def _decisions(found: Calibrated, inputs: RecomputationInputs) -> tuple[Decision, ...]:
+    limits = {(kind, parameter): tolerance for kind, parameter, tolerance in inputs.tolerances}
+    k, beside = inputs.coverage_factor, found.comparison
+    if beside is not None:
+        return as_decisions(judge_parity(beside.result, beside.reference, limits, coverage_factor=k), inputs.rule)
+    reference = None if inputs.reference is None else inputs.reference.calibration
+    return as_decisions(judge(found.calibration, reference, limits, coverage_factor=k), inputs.rule)
+
+
+def _record(
+    raw: RawFile, found: Calibrated, inputs: RecomputationInputs, decisions: tuple[Decision, ...], printed: Printed
+) -> StoredSession:
+    source = found.checked.session
+    why = _reason(found, decisions, printed) if not inputs.is_reference else _opening(found, printed)
+    return StoredSession(
+        id=raw.sha256[:ID_DIGITS],
+        unit=source.unit,
+        sha256=raw.sha256,
+        filename=raw.name,
+        size=len(raw.content),
+        programme=source.programme,
+        stand=found.checked.stand,
+        operator=source.operator,
+        notes=source.notes,
+        started_at=found.checked.measured_at,
+        uploaded_at=found.checked.measured_at,
+        verdict=Judged(found.calibration, decisions, why, is_reference=inputs.is_reference).verdict,
+        reason=why,
+        is_reference=inputs.is_reference,
+        simulated=source.is_simulated,
+        revision=inputs.model.revision,
+    )
+
+
+def _reason(found: Calibrated, decisions: tuple[Decision, ...], printed: Printed) -> str:
+    """Why the verdict is what it is."""
+    if found.comparison is not None:
+        return recording_in_words(found.comparison.result, decisions)
+    return reason(decisions, too_few(found.calibration))
+
+
+def _opening(found: Calibrated, printed: Printed) -> str:
+    """What is said of a reference: how it came to be one, the file does not tell."""
+    said = printed.declared("Verdict")
+    ways = [first_in_words(found.calibration, opening) for opening in Opening]
+    return next((way for way in ways if said.endswith(way)), ways[0])
+
+
+def _said(session: StoredSession, printed: Printed) -> str:
+    """The verdict with its reservations, which rest on more than the file: as printed, if of this verdict."""
+    word = condition_of(session.verdict, is_reference=session.is_reference).word
+    said = printed.declared("Verdict").removesuffix(f". {session.reason}")
+    return said if said.startswith(word) else word
