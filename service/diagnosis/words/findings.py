@@ -7,6 +7,7 @@ from math import floor, isfinite, log10
 from estimator.causes import find
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis import Finding
+from estimator.diagnosis.explanation.naming import sentence
 from estimator.diagnosis.results import Course, OverSessions, ParitySplit, Separation, Structure
 from estimator.message import changed, joined, say, uncapitalised
 from estimator.moments import moment
@@ -29,8 +30,6 @@ DISTINGUISHED = 3.0
 """Expected separation, standard errors, below which a measurement would not help: the estimator's own bound."""
 ALWAYS_SHOWN = 3
 """Lines of the ranking that are shown however small their share."""
-
-
 IF_IT_COMES_BACK = "repeat the session: a correctly named cause appears again"
 
 
@@ -46,6 +45,8 @@ class CauseChoice:
     """How far it is from the first one in this session."""
     measurement: str
     """What would distinguish it from the first one."""
+    meaning: str = ""
+    """What is wrong if it is this one, in a sentence; empty of one that is not in the catalogue."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,15 @@ def choices_of(finding: Finding) -> Iterator[CauseChoice]:
             yield CauseChoice(name, cause_on(name, finding.sensors), "–", "", IF_IT_COMES_BACK)
             continue
         share = share_of(name, finding)
-        yield CauseChoice(name, cause_on(name, finding.sensors), share, *_apart(apart.get(name)))
+        yield CauseChoice(
+            name, cause_on(name, finding.sensors), share, *_apart(apart.get(name)), _meaning(name, finding)
+        )
+
+
+def _meaning(name: str, finding: Finding) -> str:
+    known = find(name)
+    sensors = next((rival.sensors for rival in finding.ranking if rival.cause == name), finding.sensors)
+    return "" if known is None or ("{sensors}" in known.sentence and not sensors) else sentence(known, sensors)
 
 
 def _apart(separation: Separation | None) -> tuple[str, str]:
