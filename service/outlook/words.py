@@ -146,7 +146,7 @@ def reason_of(basis: DueBasis, due: datetime | None) -> str:
         chance = say("The risk that it is out of tolerance reaches {level} on {due}", level=level, due=day_of(due))
         return say("{chance}; {basis} contributes most.", chance=chance, basis=_place(basis))
     if basis.rule is DueRule.MAY_BE_OUT:
-        return say("{basis} may already be out of tolerance. Measure it again.", basis=_place(basis))
+        return say("{basis} may already be out of tolerance.", basis=_place(basis))
     return _since(basis, day_of(basis.at))
 
 
