@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from service.ingest.formats import is_binary
 from service.kit.limits import refusal
 
 START = 256
@@ -36,8 +37,9 @@ MEMBERS = (("word/", DOCX), ("ppt/", SLIDES), ("xl/workbook.bin", XLSB))
 def require_table(content: bytes | Path, filename: str) -> None:
     """Raises FormatError for a file that can hold no table, such as a picture."""
     start = content[:START] if isinstance(content, bytes) else _start(content)
+    is_ours = is_binary(start)
     for place, magic, said in KINDS:
-        if start.startswith(magic, place):
+        if start.startswith(magic, place) and not (is_ours and place == 0):
             raise refusal(filename, said)
     if start.lstrip(b"\xef\xbb\xbf \t\r\n").lower().startswith(WEB_PAGE):
         raise refusal(filename, HTML)
