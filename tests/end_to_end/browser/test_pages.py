@@ -229,7 +229,7 @@ def test_reading_needs_no_script(chromium: Browser, site: Site) -> None:
     with opened(chromium, java_script_enabled=False) as (_, page):
         page.goto(address(site, "/units/BA-017"))
         assert "Unfit" in page.locator("h1").inner_text()
-        page.locator("#bias-accelerometer summary").click()
+        page.locator("#bias-accelerometer .twin summary").click()
         assert "µg" in page.locator("#bias-accelerometer table tbody tr").first.inner_text()
 
 
