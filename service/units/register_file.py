@@ -17,7 +17,8 @@ COLUMNS = ("serial", "unit_type", "owner", "location", "custodian", "note")
 """What a table may state; the first is required."""
 LEFT = ("retired_on",)
 """In what is exported; it is left as it is."""
-MOST_ROWS = 10_000
+MOST_ROWS = 2_000
+"""More would hold up everybody who writes."""
 LONGEST = {"note": 2000}
 SHORT = 200
 """Characters of any other field."""

@@ -1,5 +1,6 @@
 """The register: units before their first session, where they are and who has them, and retired ones."""
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -8,7 +9,7 @@ import pytest
 
 from service.errors import ConflictError, RefusedError
 from service.flags.store import FlagQuery, Flags
-from service.fleet.records import FleetQuery
+from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.judging.usable_reading import usable_unit
 from service.outlook.store import Outlooks
@@ -222,6 +223,8 @@ def test_the_register_by_page(http: httpx.Client) -> None:
     assert "Retired since" in retired
     assert "BA-900" not in http.get("/").text
     assert "BA-900" in http.get("/?retired=only").text
+    sent = {"files": ("a.json", session_bytes(seed=5, unit="BA-900"))}
+    assert "BA-900 is retired since" in http.post("/upload", files=sent).text
     assert "Retired since" not in posted(http, "return", {"why": "found", "by": "K. Ito"})
     table = {"file": ("r.csv", "serial,unit_type\nX-1,RA-9\n")}
     assert "New units: 1" in http.post("/register/import", files=table, data={"by": "K. Ito"}).text
@@ -229,3 +232,17 @@ def test_the_register_by_page(http: httpx.Client) -> None:
     assert http.post("/register/import", files=wrong, data={"by": "K. Ito"}).status_code == 422
     assert http.get("/unit-types/RA-9").status_code == 200
     assert http.get("/unit-types").status_code == 200
+
+
+@pytest.mark.parametrize("order", Order)
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_list_is_read_on_past_units_without_a_calibration(storage: Storage, order: Order, backwards: bool) -> None:
+    enter(storage, (NewEntry("BA-899", "RA-9"), NewEntry("BA-901", "RA-9")), BY)
+    wanted = FleetQuery(order=order, backwards=backwards)
+    with storage.database.reading() as store:
+        whole, read = listed(store, wanted), listed(store, replace(wanted, limit=1))
+        while len(read) < len(whole):
+            read += listed(store, replace(wanted, after=read[-1], limit=1))
+        assert read == whole
+        assert listed(store, replace(wanted, before=whole[-1])) == whole[:-1]
+    assert len(whole) == 4
