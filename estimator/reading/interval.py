@@ -33,6 +33,8 @@ class Interval:
 
     def fault(self, value: float) -> str:
         """What is wrong with a number that it does not hold, and what to do."""
+        if np.isnan(value):
+            return "is NaN; write the number, or leave the row out"
         if self.low <= value <= self.high:
             return say(
                 "is {value}; must be 0 or at least {smallest} in size; write 0 for none",
