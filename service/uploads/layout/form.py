@@ -309,9 +309,9 @@ def _axis(text: str) -> list[float | str]:
 
 def _fault_of_direction(numbers: Sequence[float | str]) -> str:
     """What is wrong with an azimuth and an elevation; empty where nothing is, or where they are none."""
-    if len(numbers) != DIRECTION or isinstance(numbers[0], str) or isinstance(numbers[1], str):
+    azimuth, elevation = numbers if len(numbers) == DIRECTION else ("", "")
+    if isinstance(azimuth, str) or isinstance(elevation, str):
         return ""
-    azimuth, elevation = numbers
     if not abs(azimuth) <= 360:
         return say("{angle}° is no azimuth (−360 to 360°)", angle=f"{azimuth:g}")
     if not abs(elevation) <= 90:
