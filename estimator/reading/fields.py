@@ -57,14 +57,14 @@ class Fields:
         """Free text; None when it is not given."""
         return self._text(key, LONGEST_NOTE) if self.has(key) else None
 
-    def choice(self, key: str, allowed: tuple[str, ...]) -> str:
-        """A required word out of a few."""
+    def choice(self, key: str, allowed: tuple[str, ...], instead: str = "") -> str:
+        """A required word out of a few; of a bad one the first, or ``instead``."""
         value = self.values.get(key)
         if isinstance(value, str) and value in allowed:
             return value
         problem = say("{value} is unknown", value=shown(value)) if self.has(key) else "missing"
         self.add(key, say("{problem}; give one of {values}", problem=problem, values=joined(", ", allowed)))
-        return allowed[0]
+        return instead or allowed[0]
 
     def number(self, key: str, within: Interval, advice: str) -> float:
         """A required number; NaN stands in for a bad one."""

@@ -1,5 +1,6 @@
 """The numbers that a field may hold, and what is said of one that it may not."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +34,8 @@ class Interval:
 
     def fault(self, value: float) -> str:
         """What is wrong with a number that it does not hold, and what to do."""
+        if isinstance(value, float) and math.isnan(value):
+            return "is nan, which is no number; write the number, or leave it out"
         if self.low <= value <= self.high:
             return say(
                 "is {value}; must be 0 or at least {smallest} in size; write 0 for none",

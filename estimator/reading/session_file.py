@@ -13,7 +13,7 @@ from estimator.reading.sensors import KINDS, check_pulses, read_sensors
 from estimator.reading.setting import read_moment, read_mounting, read_site, read_stand, read_time_since_power_on
 from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
-from estimator.session import COUNTERS, ORIGINS, PROGRAMMES, SIMULATED, STAGES, CalibrationSession
+from estimator.session import COUNTERS, IN_SERVICE, ORIGINS, PROGRAMMES, SIMULATED, STAGES, CalibrationSession
 
 
 def read_session(
@@ -54,7 +54,7 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
     check_keys(document, TOP)
     unit = document.required_text("unit", "give the unit's serial number")
     block = document.choice("block", KINDS)
-    programme = document.choice("programme", PROGRAMMES)
+    programme = document.choice("programme", PROGRAMMES, instead=IN_SERVICE)  # which asks for least
     started_at = read_moment(document, "started_at")
     on_for = read_time_since_power_on(document, started_at)
     sensors = read_sensors(document, block)

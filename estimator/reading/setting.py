@@ -63,7 +63,7 @@ def read_stand(document: Fields, programme: str, kinds: set[str]) -> Stand | Non
     stand = document.child("stand")
     if stand is None:
         if programme == TWO_AXIS_STAND and not document.has("stand"):
-            document.add("stand", f"missing; {TWO_AXIS_STAND} needs id and alpha_deg or chi_deg")
+            document.add("stand", say("missing; {programme} needs id and alpha_deg or chi_deg", programme=programme))
         return None
     check_keys(stand, STAND)
     needed = kinds if programme == TWO_AXIS_STAND else set()

@@ -133,12 +133,12 @@ def list_flags(
     """Show flags; without a state those that are open, which the API has first."""
     if context.invoked_subcommand is not None:
         return
-    filters = {"unit": unit, "state": state, "assigned": assigned}
-    with connect(server, language=output_language()) as client:
+    filters, listing = {"unit": unit, "state": state, "assigned": assigned}, Listing(form, as_json)
+    with connect(server, language=listing.language) as client:
         found = client.every("/flags", "flags", limit=1000, **{name: value for name, value in filters.items() if value})
         rows = list(found if state else takewhile(lambda flag: flag["state"] != FlagState.RESOLVED, found))
     columns = Columns("flags", "There is none." if state else "No flag is open.", FLAG_CELLS)
-    Listing(form, as_json).show(rows, lambda: columns.table(rows))
+    listing.show(rows, lambda: columns.table(rows))
 
 
 def assign_flags(
@@ -192,7 +192,11 @@ def _show_stand(stand: Answer) -> None:
 def _show_usable(answer: Answer) -> None:
     colour = USE_COLOURS[Use(answer["use"])]
     word = translated(in_words(Use(answer["use"]), answer["action"]))
-    lines = (answer["why"], *answer["reasons"][1:], *(f"But: {line}" for line in answer["reservations"]))
+    lines = (
+        answer["why"],
+        *answer["reasons"][1:],
+        *(f"{translated('But')}: {line}" for line in answer["reservations"]),
+    )
     head = f"[bold]{escape(answer['unit'])}[/]  [{colour}]{escape(word)}[/]"
     screen().print(head, *(escape(translated(line)) for line in lines), sep="\n  ")
 

@@ -18,7 +18,8 @@ from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.catalogue import CATALOGUE
 from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, Listing, Server, print_json, table_of
-from service.commands.speech import FAILED
+from service.commands.speech import FAILED, output_language
+from service.languages.language import Language
 
 Answer = Json
 
@@ -67,7 +68,7 @@ class Call:
     def run(self, arguments: dict[str, Any]) -> None:
         """Makes the call and prints the answer."""
         sent = {name: arguments[name] for name in self.parameters}
-        with connect(arguments["server"]) as client:
+        with connect(arguments["server"], language=self._language(arguments)) as client:
             if isinstance(self.show, Columns):
                 rows = self._rows(client, sent, self.show)
                 view = self.show.table
@@ -81,6 +82,12 @@ class Call:
             self.show(arguments | answer)
         if self.is_failure(answer):
             raise typer.Exit(FAILED)
+
+    def _language(self, arguments: dict[str, Any]) -> str:
+        """Of the answer: JSON never depends on it."""
+        if isinstance(self.show, Columns):
+            return Listing(arguments["form"], arguments["as_json"]).language
+        return Language.ENGLISH.value if arguments.get("as_json") else output_language()
 
     def _rows(self, client: Client, sent: dict[str, Any], columns: Columns) -> list[Answer]:
         method, path, rest = _request(self.request, sent)

@@ -19,8 +19,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from estimator.errors import SessionError
-from service.commands.speech import UNUSABLE, problems_in_words, say
+from service.commands.speech import UNUSABLE, output_language, problems_in_words, say
 from service.errors import RefusedError, TooLargeError
+from service.languages.language import Language
 
 T = TypeVar("T")
 
@@ -159,6 +160,11 @@ class Listing:
         if self.chosen is not None:
             return self.chosen
         return OutputForm.JSONL if self.as_lines or not sys.stdout.isatty() else OutputForm.TABLE
+
+    @property
+    def language(self) -> str:
+        """Of what is listed: JSON never depends on it."""
+        return output_language() if self.form is OutputForm.TABLE else Language.ENGLISH.value
 
     def show(self, rows: Sequence[Any], view: Callable[[], RenderableType]) -> None:
         """Prints the rows as they were answered, or their view."""

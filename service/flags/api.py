@@ -3,13 +3,15 @@
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, resolve_flag
 from service.flags.records import Flag, FlagState
 from service.flags.store import FlagQuery, Flags
 from service.flags.view import assignee_meant
+from service.languages.catalogue import said_in
+from service.languages.language import Language, asked
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.storage.queries import Store
@@ -68,16 +70,18 @@ WantedState = Annotated[FlagState | None, Query(description="Only flags in this 
 ASSIGNED = "Only flags assigned to this login or name; `me`: to whoever asks; `nobody`: to nobody."
 
 
-def flag_page(store: Store, wanted: FlagQuery, window: Window) -> FlagPage:
+def flag_page(store: Store, wanted: FlagQuery, window: Window, language: Language) -> FlagPage:
     """One page of flags as the API answers it; NotFoundError for a unit that there is not."""
     if wanted.unit is not None:
         Units(store).key(wanted.unit)
     found = Flags(store).page(replace(wanted, offset=window.offset, limit=window.limit))
-    return FlagPage(flags=found, **window.place(len(found)))
+    flags = tuple(said_in(flag, language) for flag in found)
+    return FlagPage(flags=flags, **window.place(len(found)))
 
 
 @router.get("", responses=errors(404, 422))
 def list_flags(
+    request: Request,
     store: Reading,
     window: WindowOf,
     state: WantedState = None,
@@ -91,7 +95,8 @@ def list_flags(
 ) -> FlagPage:
     """Flags with their lives, open ones first."""
     assignee = assignee_meant(store, assigned or "", person)
-    return flag_page(store, FlagQuery(unit, state, after=after, assignee=assignee), window)
+    wanted = FlagQuery(unit, state, after=after, assignee=assignee)
+    return flag_page(store, wanted, window, asked(request.scope))
 
 
 @router.post("/assign", responses=errors(400, 404, 422))
@@ -102,19 +107,23 @@ def assign_several(given: AssigningSeveral, storage: StorageOf, now: Now, person
 
 
 @router.post("/{id}/assign", responses=errors(400, 404, 409, 422))
-def assign(id: Number, given: Assigning, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
+def assign(request: Request, id: Number, given: Assigning, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
     """Say who is to look after the flag."""
     said = Assignment(given.to, person.signs(given.by), given.why)
-    return assign_flag(storage, id, said, now)
+    return said_in(assign_flag(storage, id, said, now), asked(request.scope))
 
 
 @router.post("/{id}/acknowledge", responses=errors(400, 404, 409, 422))
-def acknowledge(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
+def acknowledge(
+    request: Request, id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf
+) -> Flag:
     """Say that somebody looks after the flag, and why it can stay for now."""
-    return acknowledge_flag(storage, id, person.signs(handling.by), handling.why, now)
+    flag = acknowledge_flag(storage, id, person.signs(handling.by), handling.why, now)
+    return said_in(flag, asked(request.scope))
 
 
 @router.post("/{id}/resolve", responses=errors(400, 404, 409, 422))
-def resolve(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
+def resolve(request: Request, id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
     """Say that the matter is settled, and how."""
-    return resolve_flag(storage, id, person.signs(handling.by), handling.why, now)
+    flag = resolve_flag(storage, id, person.signs(handling.by), handling.why, now)
+    return said_in(flag, asked(request.scope))

@@ -15,7 +15,7 @@ from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
 from service.ingest.foreign import require_table
-from service.ingest.formats import BINARY, is_binary
+from service.ingest.formats import BINARY, is_binary, start_of
 from service.kit.lock_order import outside_writing
 
 if TYPE_CHECKING:
@@ -105,14 +105,7 @@ def said_as_table(content: bytes | Path, filename: str, problems: tuple[Problem,
 
 def _claims_nothing(content: bytes | Path) -> bool:
     """Whether a file neither is empty nor begins as a session file in JSON or CSV does."""
-    head = content[:1024] if isinstance(content, bytes) else start_of(content, 1024)
-    return head.lstrip(b"\xef\xbb\xbf \t\r\n#")[:1] not in (b"{", b"[", b"")
-
-
-def start_of(path: Path, count: int) -> bytes:
-    """The first bytes of a file."""
-    with path.open("rb") as file:
-        return file.read(count)
+    return start_of(content, 1024).lstrip(b"\xef\xbb\xbf \t\r\n#")[:1] not in (b"{", b"[", b"")
 
 
 def read_file(path: Path, *, part: bool = False) -> CalibrationSession:

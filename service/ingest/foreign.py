@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from service.ingest.formats import is_binary
+from service.ingest.formats import is_binary, start_of
 from service.kit.limits import refusal
 
 START = 256
@@ -36,7 +36,7 @@ MEMBERS = (("word/", DOCX), ("ppt/", SLIDES), ("xl/workbook.bin", XLSB))
 
 def require_table(content: bytes | Path, filename: str) -> None:
     """Raises FormatError for a file that can hold no table, such as a picture."""
-    start = content[:START] if isinstance(content, bytes) else _start(content)
+    start = start_of(content, START)
     is_ours = is_binary(start)
     for place, magic, said in KINDS:
         if start.startswith(magic, place) and not (is_ours and place == 0):
@@ -53,8 +53,3 @@ def require_workbook(members: Iterable[str], filename: str) -> None:
             raise refusal(filename, said)
     if not any(name.startswith("xl/") for name in names):
         raise refusal(filename, ARCHIVE)
-
-
-def _start(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return file.read(START)

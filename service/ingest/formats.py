@@ -1,5 +1,7 @@
 """The binary formats by their first bytes. The content decides what a file is, never its name."""
 
+from pathlib import Path
+
 PARQUET = b"PAR1"
 """Apache Parquet file format."""
 XLSX = b"PK\x03\x04"
@@ -18,6 +20,14 @@ LOGS = (ULOG, MCAP, SQLITE)
 """Logs of flight controllers and robots."""
 BINARY = (PARQUET, XLSX, HDF5, MAT)
 """Session files and tables."""
+
+
+def start_of(content: bytes | Path, count: int) -> bytes:
+    """The first bytes of a content or file."""
+    if isinstance(content, bytes):
+        return content[:count]
+    with content.open("rb") as file:
+        return file.read(count)
 
 
 def is_binary(start: bytes) -> bool:

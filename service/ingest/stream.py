@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.session import CalibrationSession
-from service.ingest import LONG, read_upload, start_of
+from service.ingest import LONG, read_upload
 from service.ingest.apart import read_parts
-from service.ingest.formats import may_be_log
+from service.ingest.formats import may_be_log, start_of
 
 START = 4096
 """Bytes from which the format is recognised: blank lines may come first."""

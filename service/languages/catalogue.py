@@ -1,10 +1,11 @@
 """The catalogue of a language, read once from its gettext file."""
 
 from collections.abc import Sequence
+from dataclasses import fields, is_dataclass, replace
 from functools import lru_cache
 from gettext import c2py
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from babel.messages import Catalog
 from babel.messages import Message as Stored
@@ -17,6 +18,9 @@ from service.languages.language import Language
 from service.languages.locale import LOCALE
 from service.languages.values import value_in
 
+T = TypeVar("T")
+SENTENCES = frozenset(("why", "action", "reasons", "reservations", "summary", "proposal", "text"))
+"""Fields of records that are said to people."""
 FOLDER = Path(__file__).parent
 NAMED = frozenset(("unit", "serial", "subject", "stand", "operator", "login", "account", "customer", "filename", "who"))
 """Parts that are names given by people: a unit may be named like one of our words."""
@@ -59,6 +63,22 @@ class Catalogue:
         if not english.endswith(".") and (f"{english}." in self._known or f"{other_case}." in self._known):
             return [form.removesuffix(".") for form in self._forms(f"{english}.")]
         return [value_in(english, self.say)]
+
+
+def said_in(record: T, language: Language) -> T:
+    """A frozen record with its sentences in a language."""
+    if language is Language.ENGLISH:
+        return record
+    say = catalogue_of(language).say
+
+    def said(name: str, value: Any) -> Any:
+        if isinstance(value, tuple):
+            return tuple(said(name, one) for one in value)
+        if is_dataclass(value):
+            return said_in(value, language)
+        return say(value) if isinstance(value, str) and name in SENTENCES else value
+
+    return replace(record, **{f.name: said(f.name, getattr(record, f.name)) for f in fields(record) if f.init})  # type: ignore[type-var, arg-type]  # all are dataclasses
 
 
 def forms_of(stored: Stored) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ WORDS = tuple(
     refuse | stand-certificate | question | acknowledge | resolve | assigned | check | attach
     Jan | Feb | Mar | Apr | May | Jun | Jul | Aug | Sep | Oct | Nov | Dec
     {first} and {last} | {first} or {last} | {first}; and {last}
-    {unit} per {input} | {rate} a year | ppm | arcsec | degrees
+    {unit} per {input} | {rate} a year | ppm | arcsec | degrees | missing | but
     a steady change of a parameter; a step is a sudden one
     """.strip().splitlines()
     for word in line.split("|")
@@ -67,7 +67,19 @@ FROM_HTTP = (
     "Unsupported Media Type",
 )
 """Titles of problems (RFC 9110)."""
-STANDING_ALONE = (*WORDS, MARGIN, *FROM_PYDANTIC, *FROM_HTTP)
+FROM_JSON = (
+    "Expecting value",
+    "Expecting ',' delimiter",
+    "Expecting ':' delimiter",
+    "Expecting property name enclosed in double quotes",
+    "Extra data",
+    "Unterminated string starting at",
+    "Invalid control character at",
+    "Illegal trailing comma before end of object",
+    "Illegal trailing comma before end of array",
+)
+"""Errors of Python's json."""
+STANDING_ALONE = (*WORDS, MARGIN, *FROM_PYDANTIC, *FROM_HTTP, *FROM_JSON)
 COUNTED = (
     *("accelerometer", "block", "byte", "column", "day", "flag", "gyro", "gyroscope", "orientation", "position"),
     *("problem", "reading", "row", "sensor", "session", "stand", "unit", "value"),

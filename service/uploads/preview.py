@@ -78,11 +78,19 @@ def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: s
         found = Layouts(store).find(fingerprint(look), unit_type)
     if found is not None:
         facts = found["session"] if not unit else facts_of(storage, unit, unit_type) or found["session"]
-        return {**found, "session": _with_unit({**facts, **_log_facts(look)}, unit)}, True
+        return {**found, "session": _with_unit(_titled({**facts, **_log_facts(look)}, look), unit)}, True
     facts = facts_of(storage, unit, unit_type)
     columns = understood([Seen(**column) for column in look["columns"]], facts.get("sensors", ()))
     found = {**facts, **look["facts"]} or _unknown(columns)
-    return {"columns": columns, "session": _with_unit(found, unit)}, False
+    return {"columns": columns, "session": _with_unit(_titled(found, look), unit)}, False
+
+
+def _titled(facts: Json, look: Mapping[str, Any]) -> Json:
+    """The facts with what the rows above the table state; of another stand nothing else is known."""
+    titles, known = dict(look["titles"]), facts.get("stand")
+    if isinstance(known, Mapping) and known.get("id") == titles.get("stand", {}).get("id"):
+        del titles["stand"]
+    return {**facts, **titles}
 
 
 def _log_facts(look: Mapping[str, Any]) -> Json:

@@ -319,3 +319,9 @@ def test_a_two_dimensional_array_is_no_column():
     document = builders.accelerometer_block()
     document["table"]["A1"] = np.zeros((24, 1))
     assert problems_of(document)[0].field == "A1"
+
+
+def test_an_unknown_programme_brings_no_faults_of_another():
+    with pytest.raises(FormatError) as caught:
+        read_session({**builders.raw_log(), "programme": "in service"})
+    assert [problem.field for problem in caught.value.problems] == ["programme"]

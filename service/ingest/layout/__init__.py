@@ -2,7 +2,7 @@
 
 envelope    the uploaded bytes and their mapping in one file: what is stored
 decoding    bytes of text → text            grids    any table → cells, headings
-vocabulary, units, understand               what headings mean, in English and Russian
+titles      rows above a table → facts      vocabulary, understand   what headings mean, in three languages
 mapping     `imu-mapping/1`, checked        reading  cells under a mapping → imu-session/1
 look        what a preview shows of a file
 """

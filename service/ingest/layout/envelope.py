@@ -16,7 +16,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
-from service.ingest.formats import HDF5, MAT, MCAP, PARQUET, SQLITE, ULOG, XLSX
+from service.ingest.formats import HDF5, MAT, MCAP, PARQUET, SQLITE, ULOG, XLSX, start_of
 from service.kit.limits import in_force, refusal
 
 MAPPING = "imu-mapping.json"
@@ -53,13 +53,8 @@ def wrapped(mapping: Mapping[str, Any], content: bytes) -> bytes:
 def is_wrapped(content: bytes | Path) -> bool:
     """Whether a file is such an archive."""
     name = MAPPING.encode()
-    start = content[: NAME_AT + len(name)] if isinstance(content, bytes) else _start(content, NAME_AT + len(name))
+    start = start_of(content, NAME_AT + len(name))
     return start.startswith(XLSX) and start[NAME_AT:] == name
-
-
-def _start(path: Path, count: int) -> bytes:
-    with path.open("rb") as file:
-        return file.read(count)
 
 
 def unwrapped(content: bytes, filename: str) -> tuple[Json, bytes]:

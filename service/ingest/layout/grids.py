@@ -10,63 +10,18 @@ from typing import Any
 import fastexcel
 import numpy as np
 import polars as pl
-from charset_normalizer import from_bytes
 from numpy.typing import NDArray
 
 from estimator.message import say
 from service.ingest import hdf5, logs, mat, parquet
 from service.ingest.foreign import require_table
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.layout.decoding import decoded
+from service.ingest.layout.titles import stated_in
 from service.ingest.layout.understand import joined
 from service.ingest.layout.vocabulary import unit_of
 from service.ingest.xlsx import BOOLEANS, check_workbook, letters_of
 from service.kit.limits import check_table, refusal
-
-MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
-"""Byte order marks."""
-ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")
-"""Encodings of tables that are recognised, and can be chosen by hand."""
-CODE_PAGES = ["cp1251", "cp1252", "koi8_r", "cp866"]
-"""Code pages, distinguished by frequencies of letters."""
-SAMPLE_BYTES = 64 * 1024
-"""Bytes from which the encoding is detected: headings stand at the beginning."""
-NO_TEXT = "is neither text nor in a known format; upload XLSX, CSV, JSON, Parquet, HDF5 or MAT"
-UTF16_ZEROS = 0.2
-"""Share of zero bytes at even or odd places from which text is UTF-16 without a mark."""
-
-
-def decoded(content: bytes, filename: str, chosen: str | None = None) -> tuple[str, str]:
-    """The text, and its encoding."""
-    encoding = chosen or _encoding(content)
-    try:
-        return content.decode(encoding).lstrip("\ufeff"), encoding.removesuffix("-sig")
-    except (UnicodeDecodeError, LookupError) as error:
-        if chosen is None:
-            raise refusal(filename, NO_TEXT) from error
-        raise refusal(filename, say("is not {encoding} text; choose another encoding", encoding=encoding)) from error
-
-
-def _encoding(content: bytes) -> str:
-    for mark, encoding in MARKS:
-        if content.startswith(mark):
-            return encoding
-    start = content[:SAMPLE_BYTES]
-    for place, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
-        if start[place::2].count(0) > UTF16_ZEROS * len(start):
-            return encoding
-    try:
-        content.decode("utf-8")
-    except UnicodeDecodeError:
-        best = from_bytes(bytes(_non_ascii_lines(content)), cp_isolation=CODE_PAGES).best()
-        return "cp1252" if best is None else best.encoding
-    return "utf-8"
-
-
-def _non_ascii_lines(content: bytes) -> bytes:
-    """The lines with letters beyond ASCII: digits do not tell code pages apart."""
-    lines = content[:SAMPLE_BYTES].splitlines()
-    return b"\n".join(line for line in lines if any(byte > 127 for byte in line))
-
 
 Cell = str | float | None
 SEPARATORS = (";", "\t", "|", ",")
@@ -104,7 +59,11 @@ class Grid:
     meanings: Mapping[str, str] = field(default_factory=dict)
     """What the file states of its columns, by heading."""
     facts: Mapping[str, Any] = field(default_factory=dict)
-    """What it states of the session."""
+    """What a log states of the session."""
+    titles: Mapping[str, Any] = field(default_factory=dict)
+    """What the rows above a table state of it."""
+    skipped: frozenset[int] = frozenset()
+    """Rows, from 0, that repeat the headings or are a title among the readings."""
 
     @property
     def rows(self) -> int:
@@ -206,8 +165,8 @@ def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
             say("has no sheet {chosen}; choose one of {names}", chosen=repr(chosen), names=", ".join(names)),
             "table.sheet",
         )
-    name = max(frames, key=lambda name: _filled(frames[name][0]))
-    texts, numbers = frames[name]
+    name = max(frames, key=lambda name: (frames[name][2], _filled(frames[name][0])))
+    texts, numbers, _ = frames[name]
     columns = [_cells(n, t) for n, t in zip(numbers, texts, strict=True)]
     rows = [list(row) for row in zip(*columns, strict=True)] if columns else []
     while rows and all(cell is None for cell in rows[-1]):
@@ -215,11 +174,12 @@ def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
     return _headed("xlsx", rows, {"sheet": name}, stated, filename, names)
 
 
-def _frames(book: fastexcel.ExcelReader, name: str) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """The cells of a sheet as texts and as numbers."""
-    texts = book.load_sheet(name, header_row=None, dtypes="string", skip_whitespace_tail_rows=True).to_polars()
+def _frames(book: fastexcel.ExcelReader, name: str) -> tuple[pl.DataFrame, pl.DataFrame, bool]:
+    """The cells of a sheet as texts and as numbers, and whether it is visible."""
+    sheet = book.load_sheet(name, header_row=None, dtypes="string", skip_whitespace_tail_rows=True)
+    texts = sheet.to_polars()
     numbers = book.load_sheet(name, header_row=None, dtypes="float", skip_whitespace_tail_rows=True).to_polars()
-    return texts, numbers.head(len(texts))
+    return texts, numbers.head(len(texts)), sheet.visible == "visible"
 
 
 def _filled(frame: pl.DataFrame) -> int:
@@ -251,12 +211,45 @@ def _headed(
         )
     header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
     headings = _headings(rows[header - 1 : first] if header else [], width)
+    skipped = _skipped(rows, header, first, filename)
     columns = tuple([row[k] for row in rows[first:]] for k in range(width))
     if sum(any(not is_nothing(cell) for cell in cells) for cells in columns) < FEWEST:
         raise refusal(filename, "has a single column; a table has one for every sensor", "table")
     decimal = str(stated.get("decimal") or _decimal(columns))
     settings = {"decimal": decimal, "header_row": header, "first_row": first + 1}
-    return Grid(kind, headings, columns, {**taken, **settings}, sheets)
+    titles = stated_in(rows[: max(header - 1, 0)] if header else rows[:first])
+    return Grid(kind, headings, columns, {**taken, **settings}, sheets, titles=titles, skipped=skipped)
+
+
+def _skipped(rows: list[list[Cell]], header: int, first: int, filename: str) -> frozenset[int]:
+    """Rows below the first that hold no readings: the headings again, or a single text; raises for another table."""
+    headings = rows[header - 1 : first] if header else []
+    for j in range(first + 1, len(rows) - 1):
+        if _has_words(rows[j]) and rows[j] not in headings and _names_columns(rows, j) and _is_heading(rows[j]):
+            text = say("has another table from row {row} on; put every table on a sheet of its own", row=j + 1)
+            raise refusal(filename, text, "table")
+    return frozenset(j - first for j in range(first, len(rows)) if rows[j] in headings or _is_title(rows[j]))
+
+
+def _has_words(row: Sequence[Cell]) -> bool:
+    """Whether two cells at least begin as words: found quickly."""
+    return sum(isinstance(cell, str) and cell[:1].isalpha() for cell in row) > 1
+
+
+def _names_columns(rows: list[list[Cell]], j: int) -> bool:
+    """Whether a row has texts, two at least, where the next has numbers."""
+    pairs = zip(rows[j], rows[j + 1], strict=True) if j + 1 < len(rows) else ()
+    return sum(_is_words(upper) and not _is_words(lower) and not is_nothing(lower) for upper, lower in pairs) > 1
+
+
+def _is_words(cell: Cell) -> bool:
+    return not is_nothing(cell) and number_of(cell, ",") is None
+
+
+def _is_title(row: Sequence[Cell]) -> bool:
+    """Whether a row is one text alone."""
+    filled = [cell for cell in row if not is_nothing(cell)]
+    return len(filled) == 1 and _is_words(filled[0])
 
 
 def _share(row: Sequence[Cell]) -> float:
@@ -270,7 +263,8 @@ def _first_row(rows: list[list[Cell]]) -> int:
     counts = sorted(sum(not is_nothing(cell) for cell in row) for row in rows[:SCANNED_ROWS])
     usual = counts[len(counts) // 2] if counts else 0
     for j, row in enumerate(rows[:SCANNED_ROWS]):
-        if _share(row) >= 0.5 and 2 * sum(not is_nothing(cell) for cell in row) >= usual:
+        is_full = 2 * sum(not is_nothing(cell) for cell in row) >= usual
+        if _share(row) >= 0.5 and is_full and not _names_columns(rows, j):
             return j + 1
     return len(rows) + 1
 
@@ -309,8 +303,13 @@ def _headings(rows: Sequence[Sequence[Cell]], width: int) -> tuple[str, ...]:
         for k in range(1, width):
             if row[k] is None and lower[k] is not None and not _of_units(lower):
                 row[k] = row[k - 1]
-    columns = ([str(row[k]).strip()[:LONGEST_HEADING] for row in parts if row[k] is not None] for k in range(width))
+    columns = ([_written(row[k]) for row in parts if row[k] is not None] for k in range(width))
     return tuple(" ".join(_heading(names).split())[:LONGEST_HEADING] for names in columns)
+
+
+def _written(cell: Cell) -> str:
+    """``1`` for 1.0."""
+    return (f"{cell:.10g}" if isinstance(cell, float) else str(cell).strip())[:LONGEST_HEADING]
 
 
 def _heading(names: Sequence[str]) -> str:

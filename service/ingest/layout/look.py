@@ -76,11 +76,13 @@ def look(content: bytes, filename: str) -> object:
         "rows": grid.rows,
         "columns": [_column(heading, cells, grid) for heading, cells in zip(grid.headings, grid.columns, strict=True)],
         "facts": dict(grid.facts),
+        "titles": dict(grid.titles),
     }
 
 
 def _column(heading: str, cells: Any, grid: Grid) -> Json:
     decimal = str(grid.taken.get("decimal", "."))
+    cells = [cell for j, cell in enumerate(cells) if j not in grid.skipped]
     filled = [cell for cell in cells if not is_nothing(cell)]
     numbers = sum(number_of(cell, decimal) is not None for cell in filled)
     words = list(dict.fromkeys(word_text(cell)[:LONGEST_CELL] for cell in filled[:10_000]))

@@ -7,7 +7,6 @@ from typing import Any
 from estimator.errors import FormatError, Problem
 from estimator.json_object import Json
 from estimator.message import joined, say
-from estimator.reading.keys import COLUMNS, TOP
 from estimator.reading.problems import shown
 
 FORMAT = "imu-mapping/1"
@@ -158,16 +157,7 @@ def _wrong_session(session: Any) -> list[Problem]:
     return [Problem(f"session.{key}", "is not given in a mapping; it follows from the file") for key in extra_keys]
 
 
-def meanings(sensors: list[str]) -> tuple[str, ...]:
-    """Everything that a column can be read as."""
-    return (*sensors, *COLUMNS, *(f"{name}_se" for name in sensors))
-
-
 def remembered(document: Mapping[str, Any]) -> Json:
     """The mapping for the next file of this layout."""
     session = {key: value for key, value in document.get("session", {}).items() if key not in PER_FILE_FIELDS}
     return {**document, "session": session}
-
-
-KEYS = TOP
-"""Of the session."""

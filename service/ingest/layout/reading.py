@@ -30,7 +30,7 @@ def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str
         raise FormatError(problems, filename)
     decimal = str(grid.taken.get("decimal", "."))
     mapped_columns = [(k, column) for k, column in enumerate(layout.columns) if column.meaning]
-    rows = _kept_rows([grid.columns[k] for k, _ in mapped_columns])
+    rows = [j for j in _kept_rows([grid.columns[k] for k, _ in mapped_columns]) if j not in grid.skipped]
     table = {str(c.meaning): _read([grid.columns[k][j] for j in rows], c, layout, decimal) for k, c in mapped_columns}
     places = {str(c.meaning): k for k, c in mapped_columns}
 

@@ -98,6 +98,8 @@ def _meaning(name: str, unit: str, column: Seen, names: Mapping[str, str]) -> st
         return "temperature_c"
     if plain in names:
         return names[plain]
+    if column.words and all(_run_word(word) in (*DIRECT, *FLIPPED) for word in column.words) and not column.numeric:
+        return "run"
     whole = _plain(column.heading)
     if whole in BY_WORD or plain in BY_WORD:
         return BY_WORD.get(whole) or BY_WORD[plain]
@@ -140,11 +142,15 @@ def run_words(words: Sequence[str]) -> dict[str, str]:
     """Meanings of the run's words; the first of two unknown words is taken for the direct run."""
     meanings = {}
     for word in words:
-        plain = word.strip().casefold().replace("ё", "е")
+        plain = _run_word(word)
         meanings[word] = "direct" if plain in DIRECT else "flipped" if plain in FLIPPED else ""
     unknown = [word for word, meaning in meanings.items() if not meaning]
     unused = [run for run in ("direct", "flipped") if run not in meanings.values()]
     return meanings | dict(zip(unknown, unused, strict=False)) if len(unknown) <= len(unused) else meanings
+
+
+def _run_word(word: str) -> str:
+    return word.strip().casefold().replace("ё", "е")
 
 
 def _plain(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Words of column headings in English and Russian, and their meaning in a session."""
+"""Words of column headings in English, German and Russian, and their meaning in a session."""
 
 from dataclasses import dataclass
 from math import pi
@@ -24,7 +24,7 @@ SPELLINGS = {
     UnitOfMeasure("current", over=1e3): "ma ма",
     UnitOfMeasure("current", over=1e6): "µa ua мка",
     UnitOfMeasure("count"): "count counts cnt lsb code adc отсч отсчет отсчеты код ед емр",
-    UnitOfMeasure("pulse"): "pulse pulses imp имп импульс импульсы",
+    UnitOfMeasure("pulse"): "pulse pulses imp impulse имп импульс импульсы",
     UnitOfMeasure("acceleration"): "m/s² m/s2 m/s^2 м/с² м/с2 м/с^2",
     UnitOfMeasure("acceleration", STANDARD_GRAVITY): "g",
     UnitOfMeasure("acceleration", STANDARD_GRAVITY, 1e3): "mg мg",
@@ -33,16 +33,16 @@ SPELLINGS = {
     UnitOfMeasure("rate"): "rad/s рад/с",
     UnitOfMeasure("rate", pi, 180): "°/s deg/s dps °/с град/с",
     UnitOfMeasure("rate", pi, 180 * 3600): "°/h deg/h °/ч град/ч °/hr",
-    UnitOfMeasure("angle"): "deg degree degrees ° град градус градусы",
+    UnitOfMeasure("angle"): "deg degree degrees ° grad град градус градусы",
     UnitOfMeasure("angle", 180, pi): "rad рад",
     UnitOfMeasure("angle", 180e-3, pi): "mrad мрад",
     UnitOfMeasure("angle", over=60): "arcmin ' ′ угл.мин мин.дуги",
     UnitOfMeasure("angle", over=3600): 'arcsec " ″ угл.с угл.сек',
-    UnitOfMeasure("time"): "s с sec сек second seconds секунды",
+    UnitOfMeasure("time"): "s с sec сек second seconds sekunden секунды",
     UnitOfMeasure("time", over=1e3): "ms мс msec",
     UnitOfMeasure("time", over=1e6): "µs us мкс",
-    UnitOfMeasure("time", 60): "min мин minutes минуты",
-    UnitOfMeasure("time", 3600): "h ч hr hours час часы",
+    UnitOfMeasure("time", 60): "min мин minutes minuten минуты",
+    UnitOfMeasure("time", 3600): "h ч hr hours std stunden час часы",
     UnitOfMeasure("temperature"): "°c c degc celsius °с",
     UnitOfMeasure("temperature", offset=-273.15): "k к kelvin",
     UnitOfMeasure("temperature", 5, 9, -160 / 9): "°f f degf fahrenheit",
@@ -96,14 +96,15 @@ def conversion(label: str, wanted: str) -> tuple[float, float, float] | None:
 
 
 MEANINGS = {
-    "run": "run series прогон серия ход заход mounting установка направление",
-    "beta_deg": "beta β бета angle угол turn поворот headangle anglebeta уголβ уголбета уголповорота rotation azimuth",
-    "time_s": "time t время elapsed timestamp секунды seconds clock datetime дата_время датавремя",
-    "temperature_c": "temperature temp температура темп tempc t°c t° термодатчик",
+    "run": "run series прогон серия ход заход mounting установка направление lauf messreihe richtung",
+    "beta_deg": "beta β бета angle угол turn поворот headangle anglebeta уголβ уголбета уголповорота rotation azimuth "
+    "winkel drehwinkel winkelβ",
+    "time_s": "time t время elapsed timestamp секунды seconds clock datetime дата_время датавремя zeit uhrzeit",
+    "temperature_c": "temperature temp temperatur температура темп tempc t°c t° термодатчик",
     "vibration_m_s2": "vibration вибрация",
     "turn_angle_deg": "turnangle tableangle уголстола",
     "turn_rate_deg_s": "turnrate tablerate скоростьстола rate угловаяскорость",
-    "position": "position pos положение позиция point точка",
+    "position": "position pos lage положение позиция point точка",
     "direction_x": "directionx dirx upx",
     "direction_y": "directiony diry upy",
     "direction_z": "directionz dirz upz",
@@ -112,21 +113,22 @@ MEANINGS = {
 BY_WORD = {word: meaning for meaning, words in MEANINGS.items() for word in words.split()}
 ASIDE = (
     "№", "n", "no", "num", "number", "nr", "row", "строка", "номер", "п/п", "nпп", "№пп", "нпп", "comment", "comments",
-    "note", "notes", "примечание",
+    "note", "notes", "bemerkung", "примечание",
 )  # fmt: skip
 """Columns unrelated to the sensors."""
 SENSOR_WORDS = {
     "accelerometer": "A", "acc": "A", "accel": "A", "a": "A", "акселерометр": "A", "ак": "A", "акс": "A", "aк": "A",
     "gyroscope": "G", "gyro": "G", "gyr": "G", "g": "G", "w": "G", "гироскоп": "G", "дус": "G", "гиро": "G",
+    "beschleunigungsmesser": "A", "beschl": "A", "kreisel": "G", "kanal": "",
     "channel": "", "ch": "", "канал": "", "кан": "", "к": "", "датчик": "", "sensor": "", "s": "", "u": "",
 }  # fmt: skip
 """Words before the number or axis of a sensor, and the letter that its name begins with here."""
-ERROR_WORDS = ("se", "std", "sigma", "σ", "ско", "err", "error", "stderr", "погрешность", "sd", "uncertainty")
+ERROR_WORDS = ("se", "std", "sigma", "σ", "ско", "err", "error", "stderr", "погрешность", "sd", "uncertainty", "stdabw")
 """Next to a sensor's name: the standard error of its reading."""
-DIRECT = ("direct", "forward", "прямой", "прямая", "прямо", "прям", "пр", "normal", "d")
+DIRECT = ("direct", "forward", "прямой", "прямая", "прямо", "прям", "пр", "normal", "direkt", "vorwärts", "d")
 FLIPPED = (
     "flipped", "reverse", "reversed", "inverted", "backward", "обратный", "обратная", "обратно", "обр",
-    "перевернутый", "перевернутая", "f", "r",
+    "перевернутый", "перевернутая", "umgekehrt", "gedreht", "rückwärts", "f", "r",
 )  # fmt: skip
 """Words for the two runs."""
 LOOK_ALIKE = str.maketrans("АВСЕНКМОРТХавсеорхуё", "ABCEHKMOPTXaвсеорхуе")

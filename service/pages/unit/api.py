@@ -10,6 +10,7 @@ from service.flags.api import FlagPage, WantedState, flag_page
 from service.flags.store import FlagQuery
 from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
+from service.languages.language import asked
 from service.outlook.reading import outlook_of
 from service.outlook.records import OutlookAnswer, RiskPoint
 from service.pages.unit.report import unit_report
@@ -120,9 +121,11 @@ def read_history(request: Request, serial: Serial, store: Reading, asked: Annota
 
 
 @router.get("/{serial:path}/flags", responses=errors(404, 422))
-def read_flags(serial: Serial, store: Reading, window: WindowOf, state: WantedState = None) -> FlagPage:
+def read_flags(
+    request: Request, serial: Serial, store: Reading, window: WindowOf, state: WantedState = None
+) -> FlagPage:
     """The unit's flags with their lives, open ones first."""
-    return flag_page(store, FlagQuery(serial, state), window)
+    return flag_page(store, FlagQuery(serial, state), window, asked(request.scope))
 
 
 @router.get("/{serial:path}/outlook", responses=errors(404, 422))

@@ -11,6 +11,8 @@ from estimator.json_object import Json
 from service.judging.records import Usable
 from service.judging.usable_reading import usable_unit
 from service.kit.answer import answer
+from service.languages.catalogue import said_in
+from service.languages.language import asked
 from service.web.dependencies import Now, Reading
 from service.web.fields import Serial
 from service.web.problem_document import errors
@@ -45,9 +47,9 @@ def read_usable(
 ) -> Response:
     """Whether the unit may be used now, why, and until when; 200 for yes and for no. In doubt the answer is no."""
     reader.until_dated(serial)
-    answer = _answer(request, usable_unit(store, serial, now))
+    answer = _answer(request, said_in(usable_unit(store, serial, now), asked(request.scope)))
     tag = f'"{sha256(JSON.dump_json(answer, exclude={"as_of"})).hexdigest()[:32]}"'
-    headers = {"ETag": tag, "Cache-Control": "no-cache"}
+    headers = {"ETag": tag, "Cache-Control": "no-cache", "Vary": "Accept-Language"}
     if if_none_match is not None and tag in if_none_match:
         return Response(status_code=NOT_MODIFIED, headers=headers)
     return Response(JSON.dump_json(answer), media_type="application/json", headers=headers)

@@ -309,9 +309,9 @@ def _axis(text: str) -> list[float | str]:
 
 def _fault_of_direction(numbers: Sequence[float | str]) -> str:
     """What is wrong with an azimuth and an elevation; empty where nothing is, or where they are none."""
-    if len(numbers) != DIRECTION or not all(isinstance(one, float) for one in numbers):
+    azimuth, elevation = numbers if len(numbers) == DIRECTION else ("", "")
+    if isinstance(azimuth, str) or isinstance(elevation, str):
         return ""
-    azimuth, elevation = map(float, numbers)
     if not abs(azimuth) <= 360:
         return say("{angle}° is no azimuth (−360 to 360°)", angle=f"{azimuth:g}")
     if not abs(elevation) <= 90:

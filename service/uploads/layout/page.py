@@ -10,8 +10,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
-from service.ingest.layout.grids import ENCODINGS
-from service.ingest.session_keys import COLUMN_HINTS
+from service.ingest.layout.decoding import ENCODINGS
 from service.kit.measures import number
 from service.uploads.layout.form import Carried, LayoutForm, half_angle_of, moment
 from service.uploads.layout.words import FACTS, LABELS, PLACES, RARE, said_on_page
@@ -280,6 +279,3 @@ def _first(preview: Preview) -> Json:
         "headings": headings,
         "felt": say("{length} {measure}", length=number(length), measure=measure),
     }
-
-
-HINTS = COLUMN_HINTS

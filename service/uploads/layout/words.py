@@ -64,7 +64,7 @@ IN_FORM = {
     "is for gyroscopes, and this session has none; give readings as a rate": (
         "is for gyroscopes, and this session has none; empty this field"
     ),
-    "missing; two-axis-stand needs id and alpha_deg or chi_deg": "missing; give its name and the elevation of its axis",
+    "missing; {programme} needs id and alpha_deg or chi_deg": "missing; give its name and the elevation of its axis",
     "{axes} of kind {kind}; a block needs at least {fewest}": (
         "{axes} of kind {kind}; a block needs at least {fewest}: choose their columns"
     ),

@@ -43,7 +43,9 @@ def test_every_bad_file_has_its_own_line(run: Run, bad_file: Path, tmp_path: Pat
     missing, folder = tmp_path / "missing.json", tmp_path
     ran = run("calibrate", missing, bad_file, folder)
     assert ran.code == 2
-    assert [line.split(":")[0] for line in ran.err.splitlines()] == [str(missing), str(bad_file), str(folder)]
+    *lines, last = ran.err.splitlines()
+    assert [line.split(":")[0] for line in lines] == [str(missing), str(bad_file), str(folder)]
+    assert last.startswith("3 of 3 files failed: ")
 
 
 def test_a_line_break_in_a_name_does_not_break_the_line(run: Run, tmp_path: Path) -> None:

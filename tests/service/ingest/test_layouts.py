@@ -251,3 +251,96 @@ def test_a_damaged_envelope_is_refused_whatever_was_changed() -> None:
         for byte in (0, 128, 255):
             with suppress(FormatError):
                 unwrapped(content[:place] + bytes([byte]) + content[place + 1 :], "x.zip")
+
+
+def titled(*lines, headings=tables.ENGLISH):
+    """The table as text below these lines."""
+    return ("\n".join(lines) + "\n\n" + tables.text_table(tables.own_document(), headings)).encode()
+
+
+@pytest.mark.parametrize(
+    ("lines", "unit", "started_at", "stand"),
+    [
+        (["Serial: BA-17", "Date: 2026-05-03", "Stand: ODG-1"], "BA-17", "2026-05-03T12:00:00Z", "ODG-1"),
+        (
+            ["Serien-Nr.:;0017", "Datum;03.05.2026", "Uhrzeit: 09:30", "Prüfstand;3"],
+            "0017", "2026-05-03T09:30:00Z", "3",
+        ),
+        (["Зав. № БА-17", "Дата измерения: 03.05.2026 9:30", "Стенд ОДГ-1"], "БА-17", "2026-05-03T09:30:00Z", "ОДГ-1"),
+        (["S/N 17;Start: 2026-05-03 09:30 +05:30", "Stand;A"], "17", "2026-05-03T09:30:00+05:30", "A"),
+        (["Unit: 17", "Date: 2026-05-03", "Time: 09:30-11:00", "Stand: A"], "17", "2026-05-03T09:30:00Z", "A"),
+        (["Unit: 17", "Start: 2026-05-03T09:30:00-03:30", "Stand: A"], "17", "2026-05-03T09:30:00-03:30", "A"),
+    ],
+)  # fmt: skip
+def test_title_rows_state_serial_number_date_and_stand(lines, unit, started_at, stand):
+    titles = look_at(titled(*lines), "own")["titles"]
+    assert titles == {"unit": unit, "started_at": started_at, "stand": {"id": stand}}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "Unit of readings: mV",
+        "Standard conditions",
+        "Time zone: UTC+3",
+        "Date: 05/03/2026",
+        "Date: 99.99.2026",
+        "Units",
+    ],
+)
+def test_a_title_that_states_none_of_them_is_left_alone(line):
+    assert look_at(titled(line), "own")["titles"] == {}
+
+
+def test_a_date_cell_of_a_workbook_is_a_date():
+    rows = tables.rows_of(tables.own_document())
+    content = workbook(["Serial number", None, "BA-17"], ["Date", 46145], [], list(tables.ENGLISH), *rows)
+    assert look_at(content, "own")["titles"] == {"unit": "BA-17", "started_at": "2026-05-03T12:00:00Z"}
+
+
+GERMAN = ("Lage", "Drehwinkel [°]", "Temperatur (°C)", "Kanal 1 [mV]", "Kanal 2 [mV]", "Beschleunigungsmesser 3 [mV]")
+
+
+def test_german_headings_and_words_are_understood():
+    text = tables.text_table(tables.own_document(), GERMAN).replace("прямой", "direkt").replace("обратный", "umgekehrt")
+    content = text.encode("cp1252")
+    session = read_upload(wrapped(mapping_for(content), content), "own")
+    assert content_digest(session) == content_digest(read_session(tables.own_document()))
+
+
+def test_merged_groups_above_numbered_headings_are_no_row_of_readings():
+    content = workbook(
+        ["Lauf", "Stellung", None, "Beschleunigungsmesser [mV]", None, None],
+        [None, "β [°]", "Temperatur [°C]", 1, 2, 3], *tables.rows_of(tables.own_document()),
+        merged=[("D1:F1", "Beschleunigungsmesser [mV]"), ("B1:C1", "Stellung")],
+    )  # fmt: skip
+    session = read_upload(wrapped(mapping_for(content), content), "own")
+    assert content_digest(session) == content_digest(read_session(tables.own_document()))
+
+
+def test_headings_that_come_again_before_the_second_run_are_no_readings():
+    rows = tables.rows_of(tables.own_document())
+    half = len(rows) // 2
+    head = list(tables.ENGLISH)
+    content = workbook(["Unit", "BA-17"], head, *rows[:half], [], ["Second run"], head, *rows[half:])
+    session = read_upload(wrapped(mapping_for(content), content), "own")
+    assert content_digest(session) == content_digest(read_session(tables.own_document()))
+
+
+def test_another_table_below_is_said():
+    rows = tables.rows_of(tables.own_document())
+    content = workbook(list(tables.ENGLISH), *rows, [], ["when", "mean", "spread", "count", "x", "y"], [1] * 6, [2] * 6)
+    with pytest.raises(FormatError, match=f"another table from row {len(rows) + 3} on"):
+        look_at(content, "own")
+
+
+def test_a_hidden_sheet_is_not_the_one_that_is_read():
+    buffer = BytesIO()
+    with xlsxwriter.Workbook(buffer) as book:
+        visible, hidden = book.add_worksheet("shown"), book.add_worksheet("calculated")
+        for j, row in enumerate([list(tables.ENGLISH), *tables.rows_of(tables.own_document())]):
+            visible.write_row(j, 0, row)
+        for j in range(200):
+            hidden.write_row(j, 0, [j] * 20)
+        hidden.hide()
+    assert look_at(buffer.getvalue(), "own")["taken"]["sheet"] == "shown"

@@ -1,5 +1,7 @@
 """Pages and refusals over HTTP in the language of the one who asks."""
 
+import re
+
 import httpx
 import pytest
 
@@ -53,6 +55,15 @@ def test_every_problem_of_a_file_is_said_with_what_to_do(client: httpx.Client) -
 @pytest.mark.parametrize("method", ["HEAD", "GET"])
 def test_a_refusal_without_a_body_is_passed_on(client: httpx.Client, method: str) -> None:
     assert client.request(method, "/nowhere", headers=RU).status_code in (404, 405)
+
+
+def test_whether_a_unit_may_be_used_and_its_flags_are_said_in_russian(flagged: httpx.Client) -> None:
+    usable = flagged.get("/api/v1/units/BA-017/usable", headers=RU).json()
+    (flag,) = flagged.get("/api/v1/units/BA-017/flags", headers=RU).json()["flags"]
+    said = [usable["why"], usable["action"], *usable["reasons"], flag["summary"]]
+    assert [text for text in said if re.search(r"[A-Za-z]{3}", text)] == []
+    assert flagged.get("/api/v1/flags", headers=RU).json()["flags"] == [flag]
+    assert flagged.get("/api/v1/units/BA-017/usable").json()["use"] == usable["use"]
 
 
 def test_numbers_and_dates_of_the_api_do_not_depend_on_the_language(client: httpx.Client) -> None:

@@ -96,6 +96,13 @@ def test_what_is_missing_cannot_be_stored(client: httpx.Client) -> None:
     assert 'value="store"' not in page
 
 
+def test_what_title_rows_state_stands_in_the_form(client: httpx.Client) -> None:
+    titles = "Serial: BA-17;Date: 2026-05-03 09:30 +05:30\nStand ODG-1;Operator: K. Ito\n\n".encode("cp1251")
+    fields = shown(first_page(client, titles + TABLE))
+    said = [fields[f"fact.{key}"] for key in ("unit", "day", "clock", "offset", "stand.id", "operator")]
+    assert said == ["BA-17", "2026-05-03", "09:30", "+05:30", "ODG-1", "K. Ito"]
+
+
 def faults(page: str) -> dict[str, str]:
     """What is wrong, by the label of its field."""
     rows = re.findall(r"<tr><td>([^<]*)</td><td[^>]*>[^<]*</td><td>([^<]*)</td></tr>", page)
