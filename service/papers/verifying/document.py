@@ -40,6 +40,7 @@ def contents(root: Element) -> Check:
 
 
 NO_SEAL = "It has no electronic seal: nothing in it proves who issued it."
+NO_LIBRARY = "A library is missing to check the seal: {fault}. Run pip install 'imu-health[sign]'."
 SEAL_GONE = "It says that it has an electronic seal, and has none."
 ANYBODY = "The seal of {owner} holds. Whose it is, only the laboratory's own certificate tells: give it with --trust."
 
@@ -53,7 +54,7 @@ def seal(certificate: bytes, printed: Printed, trusted: bytes | None) -> Check:
     try:
         owner: str = seal_room().owner_of_seal(certificate, trusted)
     except ServiceError as fault:
-        return Check("seal", Outcome.NOT_CHECKED, (str(fault),))
+        return Check("seal", Outcome.NOT_CHECKED, (say(NO_LIBRARY, fault=fault.__cause__),))
     except ValueError as fault:
         return checked("seal", say("The seal does not hold: {fault}", fault=fault))
     held = say("The seal of {owner} holds.", owner=owner)

@@ -24,7 +24,7 @@ from service.papers.verifying.stated import Printed
 from service.settings import VERSION
 
 ROOT = f"{{{NAMESPACES['dcc']}}}digitalCalibrationCertificate"
-UNREADABLE = (ValueError, LookupError, ArithmeticError, AttributeError)
+UNREADABLE = (ValueError, LookupError, ArithmeticError)
 """What comes of inputs that somebody changed."""
 
 

@@ -11,6 +11,7 @@ import httpx
 import pytest
 from lxml import etree
 
+from service.papers import sealing
 from service.papers.dcc.digest import parsed
 from service.papers.dcc.elements import NAMESPACES
 from service.papers.sealing import Seal, seal_of, seal_room
@@ -154,6 +155,15 @@ def test_a_seal_of_somebody_else_is_refused(printed: bytes, seal: Seal, tmp_path
     unknown = verify(seal.xml(printed), RAW, NOTHING, NOW)
     assert unknown.outcome is Outcome.AGREES
     assert any("only the laboratory's own certificate tells" in line for c in unknown.checks for line in c.says)
+
+
+def test_without_the_library_of_seals_it_says_so(printed: bytes, seal: Seal, monkeypatch: pytest.MonkeyPatch) -> None:
+    sealed = seal.xml(printed)
+    monkeypatch.setattr(sealing, "ROOM", "service.papers.no_such_room")
+    found = verify(sealed, RAW, NOTHING, NOW)
+    [own] = [check for check in found.checks if check.subject == "seal"]
+    assert (found.outcome, own.outcome) == (Outcome.NOT_CHECKED, Outcome.NOT_CHECKED)
+    assert "Run pip install" in own.says[0]
 
 
 def test_one_of_an_earlier_release_says_that_it_cannot_be_computed_again(printed: bytes) -> None:
