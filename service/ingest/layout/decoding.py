@@ -10,7 +10,7 @@ MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", 
 ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")
 """Encodings of tables that are recognised, and can be chosen by hand."""
 CODE_PAGES = ["cp1251", "cp1252", "koi8_r", "cp866"]
-"""Code pages, told apart by frequencies of letters."""
+"""Code pages, distinguished by frequencies of letters."""
 SAMPLE_BYTES = 64 * 1024
 """Bytes from which the encoding is detected: headings stand at the beginning."""
 NO_TEXT = "is neither text nor in a known format; upload XLSX, CSV, JSON, Parquet, HDF5 or MAT"
