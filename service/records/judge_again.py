@@ -2,7 +2,7 @@
 within one, where it still holds.
 """
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -88,8 +88,9 @@ def placed(
     ``chosen`` are the sessions that engineers chose, oldest choice first; ``is_blind`` says of a session whether it
     gives no uncertainty that others could be judged with.
     """
+    ordered = sorted(sessions, key=_moment)
     groups: dict[Group, list[Counted]] = {}
-    for one in sessions:
+    for one in ordered:
         if one.programme != IN_SERVICE:
             groups.setdefault(_group(one, breaks), []).append(one)
     rank = {id: number for number, id in enumerate(chosen)}
@@ -101,15 +102,17 @@ def placed(
         learned = () if reference is None else _learned(one, reference, groups[group])
         return Place(one, reference, _since(one.at, breaks), one.id in rank, learned)
 
-    return tuple(place(one) for one in sorted(sessions, key=_moment))
+    return tuple(place(one) for one in ordered)
 
 
 def _learned(one: Counted, reference: Counted, group: Sequence[Counted]) -> tuple[Counted, ...]:
-    """The sessions before one, and its reference, that may tell what its temperature is worth."""
+    """The sessions of its group, in order of time, before one, and its reference, that may tell what its temperature is
+    worth."""
     if one.temperature is None or reference.temperature is None or one.programme == IN_SERVICE or one is reference:
         return ()
-    before = [s for s in group if s.temperature is not None and s is not reference and _moment(s) < _moment(one)]
-    own = sorted([reference, *sorted(before, key=_moment)[-MOST_LEARNED:]], key=_moment)
+    earlier = group[: bisect_left(group, _moment(one), key=_moment)]
+    before = [s for s in earlier if s.temperature is not None and s is not reference]
+    own = sorted([reference, *before[-MOST_LEARNED:]], key=_moment)
     warm = [s.temperature for s in own if s.temperature is not None]
     return tuple(own) if can_tell(warm, reference.temperature, one.temperature) else ()
 
