@@ -86,7 +86,7 @@ def found_and_left(
     steps = Sessions(store).temperature_steps((found.id,))
 
     def judged(session: StoredSession | None) -> tuple[Decision, ...]:
-        """By the current tolerances; as found at the reference's temperature where a law tells."""
+        """By the current tolerances; as found at the reference's temperature where a law is known."""
         if session is None or reference is None:
             return ()
         own = steps.get(session.id, NO_STEPS) if session is found else NO_STEPS

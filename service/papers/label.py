@@ -43,7 +43,7 @@ class Label:
 
 
 def label_of(unit: UnitSummary, use: Usable, base: str, *, with_due: bool) -> Label:
-    """The label of a unit; ``base`` is the address under which people reach the pages. Without a date it tells nothing
+    """The label of a unit; ``base`` is the address under which people reach the pages. Without a date it says nothing
     that changes."""
     address = f"{base.rstrip('/')}/units/{quote(unit.serial)}"
     return Label(

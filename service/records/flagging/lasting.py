@@ -1,7 +1,7 @@
 """Step: what a group of sessions shows means a flag: raised once an effect, of whose it is: the unit,
 the type or the stand. It keeps the unit whose session showed it last.
 
-An effect that an engineer accepted into the model is known and has none, nor has one that a worse flag tells of. What a
+An effect that an engineer accepted into the model is known and has none, nor has one that a worse flag covers. What a
 person resolved stays resolved; what the sessions no longer show is closed.
 """
 

@@ -119,7 +119,7 @@ def seal(root: Element, rng: random.Random) -> None:
 
 
 FROM_FILE = (value, limit, variance, measure, verdict, day, file, moved, gone, sensor)
-"""What the file tells otherwise, even where the hash is made anew and the seal taken off."""
+"""What contradicts the file, even where the hash is made anew and the seal taken off."""
 GUARDED = (digit, name, seal, *FROM_FILE)
 """What hash and seal tell."""
 
