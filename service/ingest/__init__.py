@@ -94,13 +94,14 @@ OWN_LAYOUT = (
 
 
 def said_as_table(content: bytes | Path, filename: str, problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
-    """The problems of a file that cannot be read at all, said of the table that it rather is."""
+    """The problems of a file that cannot be read at all, said of the table that it rather is; of a damaged binary file
+    its reader knows best."""
     if any(problem.field != "file" for problem in problems) or not _claims_nothing(content):
         return problems
     try:
         return problems if look_at(content, filename)["session"] else (Problem("file", OWN_LAYOUT),)
     except SessionError as fault:
-        return fault.problems
+        return problems if is_binary(start_of(content, 1024)) else fault.problems
 
 
 def _claims_nothing(content: bytes | Path) -> bool:
