@@ -37,7 +37,8 @@ CATALOGUE = {
     ),
     "upload": CommandEntry(
         "upload.upload_files",
-        "Upload session files and print the verdict of each; a file that is already there is stored once.",
+        "Upload session files and print the verdict of each; a file that is already there is stored once. Exit code 2 "
+        "where one of them was not stored.",
     ),
     "fleet": CommandEntry(
         "fleet.fleet",

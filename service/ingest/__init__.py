@@ -15,7 +15,7 @@ from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
 from service.ingest.foreign import require_table
-from service.ingest.formats import BINARY, is_binary, start_of
+from service.ingest.formats import BINARY, LOGS, is_binary, start_of
 from service.kit.lock_order import outside_writing
 
 if TYPE_CHECKING:
@@ -94,14 +94,15 @@ OWN_LAYOUT = (
 
 
 def said_as_table(content: bytes | Path, filename: str, problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
-    """The problems of a file that cannot be read at all, said of the table that it rather is; of a damaged binary file
-    its reader knows best."""
-    if any(problem.field != "file" for problem in problems) or not _claims_nothing(content):
+    """The problems of a file that cannot be read at all, said of the table that it rather is; of a log or a damaged
+    binary file its reader knows best."""
+    start = start_of(content, 1024)
+    if any(problem.field != "file" for problem in problems) or start.startswith(LOGS) or not _claims_nothing(content):
         return problems
     try:
         return problems if look_at(content, filename)["session"] else (Problem("file", OWN_LAYOUT),)
     except SessionError as fault:
-        return problems if is_binary(start_of(content, 1024)) else fault.problems
+        return problems if is_binary(start) else fault.problems
 
 
 def _claims_nothing(content: bytes | Path) -> bool:

@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from estimator.errors import FormatError, Problem
 from service.ingest.formats import is_binary, start_of
-from service.kit.limits import refusal
 
 START = 256
 """Bytes that tell what a file is."""
@@ -40,9 +40,9 @@ def require_table(content: bytes | Path, filename: str) -> None:
     is_ours = is_binary(start)
     for place, magic, said in KINDS:
         if start.startswith(magic, place) and not (is_ours and place == 0):
-            raise refusal(filename, said)
+            raise _refusal(filename, said)
     if start.lstrip(b"\xef\xbb\xbf \t\r\n").lower().startswith(WEB_PAGE):
-        raise refusal(filename, HTML)
+        raise _refusal(filename, HTML)
 
 
 def require_workbook(members: Iterable[str], filename: str) -> None:
@@ -50,6 +50,10 @@ def require_workbook(members: Iterable[str], filename: str) -> None:
     names = tuple(members)
     for beginning, said in MEMBERS:
         if any(name.startswith(beginning) for name in names):
-            raise refusal(filename, said)
+            raise _refusal(filename, said)
     if not any(name.startswith("xl/") for name in names):
-        raise refusal(filename, ARCHIVE)
+        raise _refusal(filename, ARCHIVE)
+
+
+def _refusal(filename: str, said: str) -> FormatError:
+    return FormatError([Problem("file", said)], filename)

@@ -129,8 +129,8 @@ class Witness:
 
 @contextmanager
 def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[tuple[BrowserContext, Page]]:
-    """A fresh browser context with one page."""
-    context = browser.new_context(viewport={"width": width, "height": 900}, **options)
+    """A fresh browser context with one page, which scrolls at once."""
+    context = browser.new_context(viewport={"width": width, "height": 900}, reduced_motion="reduce", **options)
     context.set_default_timeout(1000 * LONG)
     yield context, context.new_page()
     context.close()
@@ -145,4 +145,5 @@ def draw_all(page: Page) -> None:
     page.wait_for_function(DRAWN, polling=100)
 
 
+OPEN_ALL = "document.querySelectorAll('details').forEach((one) => { one.open = true; })"
 DRAWN = "[...document.querySelectorAll('.chart:not(.drawn)')].every((c) => c.closest('details:not([open])'))"

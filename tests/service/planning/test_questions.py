@@ -1,4 +1,4 @@
-"""A page asks the database ten questions at most, who asks among them, on both databases."""
+"""A page asks the database eleven questions at most, who asks among them, on both databases."""
 
 import threading
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from tests.service.made_sessions import session_bytes
 from tests.service.uploads.test_questioned_page import in_mv
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-MOST = 10
+MOST = 11
 HTML = {"Accept": "text/html"}
 UNIT = "BA-017"
 SERVICE = {"at": "2026-02-10T09:00:00Z", "kind": "repair", "note": "", "by": "K. Ito"}
@@ -56,7 +56,7 @@ def pages(storage: Storage, client: httpx.Client) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ["fleet", "unit", "session", "questioned session"])
-def test_a_page_asks_ten_questions_at_most(client: httpx.Client, pages: dict[str, str], name: str) -> None:
+def test_a_page_asks_eleven_questions_at_most(client: httpx.Client, pages: dict[str, str], name: str) -> None:
     client.get(pages[name], headers=HTML)
     with asked() as statements:
         assert client.get(pages[name], headers=HTML).status_code == 200
