@@ -299,7 +299,7 @@ def history_charts(
 ) -> ChartSet:
     """The panels of one parameter; every track has the same parameter and unit."""
     known = trends_by_place(trends)
-    span = _span(tracks, known)
+    span = _span(tracks, known, [event.at for event in (*services, *notes)])
     return ChartSet(
         name=tracks[0].name,
         heading=tracks[0].parameter,
@@ -361,9 +361,11 @@ def _filled(tracks: Sequence[Track], span: list[str], trends: Trends) -> Json:
     return found
 
 
-def _span(tracks: Sequence[Track], trends: Trends) -> list[str]:
-    """One stretch of time for all sensors, so that what happened together stands in line."""
+def _span(tracks: Sequence[Track], trends: Trends, events: Sequence[datetime]) -> list[str]:
+    """One stretch of time for all sensors, so that what happened together stands in line; with what happened since
+    their first session, a note of today among it."""
     dates = [p.at for track in tracks for p in track.points] + forecast_dates(tracks, trends)
+    dates += [at for at in events if at > min(dates)]
     air = (max(dates) - min(dates)) * AIR or timedelta(days=1)
     return [_iso(min(dates) - air), _iso(max(dates) + air)]
 
