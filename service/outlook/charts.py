@@ -299,7 +299,7 @@ def history_charts(
 ) -> ChartSet:
     """The panels of one parameter; every track has the same parameter and unit."""
     known = trends_by_place(trends)
-    span = _span(tracks, known, [event.at for event in (*services, *notes)])
+    span = _span(tracks, known, [*(s.at for s in services), *(n.at for n in notes)])
     return ChartSet(
         name=tracks[0].name,
         heading=tracks[0].parameter,
