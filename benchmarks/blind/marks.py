@@ -42,7 +42,7 @@ def marks(marked: list[Outcome]) -> str:
     apart = [o for o in single if o.separated]
     near = [o for o in single if not o.separated]
     rows = [
-        ("one effect, told apart from every rival: cause named", rate([right_cause(o) for o in apart])),
+        ("one effect, separated from every rival: cause named", rate([right_cause(o) for o in apart])),
         ("the same, on the right sensors", rate([o.first for o in apart])),
         ("one effect, near a rival: named, or cannot tell and lists it", rate([o.listed for o in near])),
         ("one effect: a wrong name without the right one beside it", rate([is_wrong(o) for o in single])),

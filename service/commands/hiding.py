@@ -18,7 +18,7 @@ from estimator.session import CALIBRATIONS, GYROSCOPE, TWO_AXIS_STAND, Calibrati
 from service.commands.speech import UNUSABLE, say
 
 ANY = "random"
-"""Stands for a cause drawn by the seed."""
+"""Written in place of a cause: one drawn by the seed."""
 DEFAULT_STRENGTH = 12.0
 """Standard errors: clearly detected, but not visible to the eye."""
 RANDOM_STREAM = 14

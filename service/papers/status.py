@@ -14,6 +14,7 @@ from service.judging.usable_words import next_in_words
 from service.judging.use import Use, in_words
 from service.kit.measures import THIN, day_of, number
 from service.languages.language import Language
+from service.papers.certificate.facts import Fact
 from service.papers.found_and_left import JudgedChange, moved
 from service.papers.typeset import typeset
 from service.sessions.decision import Decision
@@ -28,16 +29,6 @@ MOST_PARAMETERS = 10
 MOST_RESERVATIONS = 5
 TONES = {Use.YES: "pass", Use.RESERVED: "conditional-pass", Use.NO: "fail", Use.PENDING: "undecidable"}
 """Colours of what a unit may be used for."""
-
-
-@dataclass(frozen=True)
-class StatusFact:
-    """One line of facts."""
-
-    name: str
-    value: str
-    is_written: bool = False
-    """Whether people wrote the value."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +53,7 @@ class StatusPaper:
     condition: Condition
     next: str
     """When its next calibration is due; empty where something else must be done first."""
-    facts: tuple[StatusFact, ...]
+    facts: tuple[Fact, ...]
     reservations: tuple[str, ...]
     more: int
     """Reservations that have no room."""
@@ -111,18 +102,18 @@ def _row(one: Decision) -> StatusRow:
     return StatusRow(moved(one), used)
 
 
-def _facts(unit: UnitSummary, use: Usable, session: StoredSession | None) -> list[StatusFact]:
+def _facts(unit: UnitSummary, use: Usable, session: StoredSession | None) -> list[Fact]:
     custody = (("Owner", unit.owner), ("Location", unit.location), ("Custodian", unit.custodian))
-    found = [StatusFact("Type", unit.unit_type, is_written=True)]
-    found += [StatusFact(name, value, is_written=True) for name, value in custody if value]
+    found = [Fact("Type", unit.unit_type, is_written=True)]
+    found += [Fact(name, value, is_written=True) for name, value in custody if value]
     if session is not None:
-        found.append(StatusFact("Latest session", day_of(session.started_at)))
-        found.append(StatusFact("Method", session.programme.replace("-", " ")))
-        found.append(StatusFact("Session", session.id, is_written=True))
+        found.append(Fact("Latest session", day_of(session.started_at)))
+        found.append(Fact("Method", session.programme.replace("-", " ")))
+        found.append(Fact("Session", session.id, is_written=True))
         if session.stand:
-            found.append(StatusFact("Stand", session.stand, is_written=True))
+            found.append(Fact("Stand", session.stand, is_written=True))
     if use.due is not None:
-        found.append(StatusFact("Why due then", use.due_reason))
+        found.append(Fact("Why due then", use.due_reason))
     return found
 
 

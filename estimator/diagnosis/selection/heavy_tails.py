@@ -28,7 +28,7 @@ from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchS
 from estimator.session import Array
 
 FREEDOMS = np.array([3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0, 32.0, np.inf])
-"""ν that are weighed: below three errors have hardly a variance, beyond 32 they cannot be told from normal ones."""
+"""ν that are weighed: below three errors have hardly a variance, beyond 32 they are as good as normal."""
 
 NORMAL = 0.99
 """π of the normal law; the others share the rest. Readings are means of many samples, and means are nearly normal

@@ -1,5 +1,5 @@
 """What diagnoses tell of flags, one session after another: a matter closes when it is no longer found, and comes back
-with it; what is found on a stand is one flag of the stand, told by all sessions on it."""
+with it; what is found on a stand is one flag of the stand, from all sessions on it."""
 
 from datetime import UTC, datetime
 from itertools import permutations
@@ -55,13 +55,13 @@ def session(storage: Storage, unit: str, month: int) -> str:
         return next(s.id for s in Sessions(store).of_unit(unit) if s.started_at.month == month)
 
 
-def tell(storage: Storage, unit: str, month: int, told: FlagEvidence) -> None:
+def diagnosed(storage: Storage, unit: str, month: int, evidence: FlagEvidence) -> None:
     """As a diagnosis of the session would."""
     id = session(storage, unit, month)
     made = StoredDiagnosis(id, 0, DiagnosisState.NAMED, "", None, None, None, "1", NOW)
     with storage.database.writing() as store:
         Diagnoses(store).add_once(made)
-        Derivations(store).keep_evidence(id, told)
+        Derivations(store).keep_evidence(id, evidence)
         settle_sessions(store, Occasion(Units(store).hold(unit), id, NOW))
 
 
@@ -76,19 +76,19 @@ def opened(storage: Storage) -> list[tuple[Scope, str, str]]:
 
 
 def test_two_units_that_show_it_make_one_flag_that_names_both(known: Storage) -> None:
-    tell(known, "BA-1", 3, AT_FAULT)
-    tell(known, "BA-2", 3, AT_FAULT)
+    diagnosed(known, "BA-1", 3, AT_FAULT)
+    diagnosed(known, "BA-2", 3, AT_FAULT)
     assert opened(known) == [(Scope.STAND, STAND, "The head is off centre. Seen with BA-1, BA-2.")]
     with known.database.reading() as store:
         assert Flags(store).page(FlagQuery("BA-1")) == ()
 
 
 def test_it_closes_with_its_reason_when_any_unit_no_longer_shows_it_and_comes_back_with_it(known: Storage) -> None:
-    tell(known, "BA-1", 1, AT_FAULT)
-    tell(known, "BA-2", 3, SOUND)
+    diagnosed(known, "BA-1", 1, AT_FAULT)
+    diagnosed(known, "BA-2", 3, SOUND)
     [flag] = flags(known)
     assert (flag.state, flag.changes[-1].who, flag.changes[-1].text) == (FlagState.RESOLVED, "imu-health", GONE)
-    tell(known, "BA-1", 5, AT_FAULT)
+    diagnosed(known, "BA-1", 5, AT_FAULT)
     assert len(opened(known)) == 1
 
 
@@ -97,44 +97,44 @@ def test_it_closes_with_its_reason_when_any_unit_no_longer_shows_it_and_comes_ba
 def test_the_order_in_which_diagnoses_come_does_not_matter(known: Storage, order: tuple[int, ...]) -> None:
     every = (("BA-1", 1, AT_FAULT), ("BA-2", 3, SOUND), ("BA-1", 5, AT_FAULT))
     for number in order:
-        tell(known, *every[number])
+        diagnosed(known, *every[number])
     assert opened(known) == [(Scope.STAND, STAND, "The head is off centre. Seen with BA-1.")]
 
 
 def test_a_session_that_is_withdrawn_takes_it_back(known: Storage) -> None:
-    tell(known, "BA-1", 5, AT_FAULT)
+    diagnosed(known, "BA-1", 5, AT_FAULT)
     withdraw_session(known, way(known), session(known, "BA-1", 5), step())
     assert opened(known) == []
 
 
 def test_what_a_person_resolved_stays_so_until_a_later_session(known: Storage) -> None:
-    tell(known, "BA-1", 3, AT_FAULT)
+    diagnosed(known, "BA-1", 3, AT_FAULT)
     resolve_flag(known, flags(known)[0].id, "K. Ito", "head mended", NOW)
-    tell(known, "BA-2", 1, AT_FAULT)
+    diagnosed(known, "BA-2", 1, AT_FAULT)
     assert opened(known) == []
-    tell(known, "BA-2", 5, AT_FAULT)
+    diagnosed(known, "BA-2", 5, AT_FAULT)
     assert len(opened(known)) == 1
 
 
 def test_what_a_diagnosis_no_longer_finds_closes_with_its_reason_and_is_a_new_flag_when_it_returns(
     known: Storage,
 ) -> None:
-    tell(known, "BA-1", 1, STICKS)
-    tell(known, "BA-1", 3, SOUND)
+    diagnosed(known, "BA-1", 1, STICKS)
+    diagnosed(known, "BA-1", 3, SOUND)
     [flag] = flags(known, Matter.CAUSE)
     assert [(change.kind.value, change.text) for change in flag.changes] == [
         ("flag.raised", "A3 sticks."), ("flag.resolved", GONE),
     ]  # fmt: skip
-    tell(known, "BA-1", 5, STICKS)
+    diagnosed(known, "BA-1", 5, STICKS)
     assert [flag.state for flag in flags(known, Matter.CAUSE)] == [FlagState.RAISED, FlagState.RESOLVED]
 
 
 def test_a_session_too_coarse_to_decide_closes_nothing(known: Storage) -> None:
-    tell(known, "BA-1", 1, STICKS)
+    diagnosed(known, "BA-1", 1, STICKS)
     undecidable = update(SessionRow).where(SessionRow.id == session(known, "BA-1", 3))
     with known.database.engine.begin() as connection:
         connection.execute(undecidable.values(verdict=Verdict.UNDECIDABLE))
-    tell(known, "BA-1", 3, SOUND)
+    diagnosed(known, "BA-1", 3, SOUND)
     assert [flag.state for flag in flags(known, Matter.CAUSE)] == [FlagState.RAISED]
-    tell(known, "BA-1", 5, SOUND)
+    diagnosed(known, "BA-1", 5, SOUND)
     assert [flag.state for flag in flags(known, Matter.CAUSE)] == [FlagState.RESOLVED]
