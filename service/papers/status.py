@@ -71,7 +71,7 @@ def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
         raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
     use = usable_of(store, (unit,), now)[serial]
     session = None if unit.last_session is None else Sessions(store).get(unit.last_session)
-    decisions = () if session is None else Sessions(store).decisions(session.id)
+    decisions = () if session is None or session.is_reference else Sessions(store).decisions(session.id)
     said = (*use.reasons[1:], *use.reservations)
     return StatusPaper(
         unit=serial,

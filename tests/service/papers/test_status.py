@@ -66,3 +66,10 @@ def test_it_is_handed_out_in_the_language_of_the_requester(holding: Holding) -> 
     assert "Состояние калибровки" in text_of(answer.content)
     assert http.get("/api/v1/units/BA-999/status.pdf").status_code == 404
     assert "status.pdf" in http.get("/units/BA-017").text
+
+
+@one_engine
+def test_a_reference_is_judged_against_nothing(holding: Holding) -> None:
+    text = text_of(holding(FAILED[0]).get("/api/v1/units/BA-017/status.pdf").content)
+    assert "Reference set" in text
+    assert "Undecided" not in text
