@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import polars as pl
-from polars.exceptions import PolarsError
+from polars.exceptions import DuplicateError, PolarsError
 
 from estimator.errors import Problem
 from estimator.message import joined, say
@@ -47,12 +47,15 @@ def _rows(content: bytes, filename: str) -> list[dict[str, Any]]:
     separator = max(SEPARATORS, key=head.count)
     try:
         table = pl.read_csv(text.encode(), separator=separator, infer_schema=False)
+        table = table.rename(lambda name: name.strip().lower())
+    except DuplicateError as fault:
+        raise _refused(filename, [Problem("file", "has two columns of one name; keep one of them")]) from fault
     except PolarsError as fault:
         detail = say("cannot be read as a table: {fault}", fault=printable(str(fault).partition("\n")[0]))
         raise _refused(filename, [Problem("file", detail)]) from fault
     if table.height > MOST_ROWS:
         raise _refused(filename, [Problem("file", say("has more than {most} rows; split it", most=MOST_ROWS))])
-    return table.rename(lambda name: name.strip().lower()).to_dicts()
+    return table.to_dicts()
 
 
 def _of_columns(first: dict[str, Any]) -> list[Problem]:
