@@ -177,9 +177,7 @@ def test_a_table_with_a_wrong_row_leaves_everything_as_it_was(storage: Storage) 
         ("Serial,serial\nA,B\n", {("file", None)}),
     ],
 )
-def test_what_is_wrong_with_a_table_is_listed_by_row_and_column(
-    table: str, places: set[tuple[str, int | None]]
-) -> None:
+def test_every_fault_of_a_table_is_listed_by_row_and_column(table: str, places: set[tuple[str, int | None]]) -> None:
     with pytest.raises(RefusedError) as refused:
         read_register(table.encode(), "a.csv")
     assert {(p.field, p.row) for p in refused.value.problems} == places
