@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, Request, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Locator, Page, Request, sync_playwright
 
 from service.uploads.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
@@ -134,6 +134,12 @@ def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[t
     context.set_default_timeout(1000 * LONG)
     yield context, context.new_page()
     context.close()
+
+
+def follow(way: Locator) -> None:
+    """Clicks a link or the button of a form, and waits for the page that it leads to (a click does not)."""
+    with way.page.expect_navigation():
+        way.click()
 
 
 def draw_all(page: Page) -> None:

@@ -14,7 +14,7 @@ from service.uploads.receive import upload
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 from tests.conftest import StockOf
 from tests.databases import Databases
-from tests.end_to_end.browser.conftest import opened
+from tests.end_to_end.browser.conftest import follow, opened
 from tests.service.made_sessions import session_bytes
 from tests.service.uploads.test_questioned import exchanged, slipped, times
 from tests.serving import serving
@@ -63,7 +63,7 @@ def uploaded(page: Page, url: str, content: bytes) -> None:
     """A file is dropped on the upload page and its session opened."""
     page.goto(f"{url}/upload")
     page.set_input_files("#files", {"name": "session.json", "mimeType": "application/json", "buffer": content})
-    page.locator(".outcome a", has_text="Open the session").click()
+    follow(page.locator(".outcome a", has_text="Open the session"))
     page.locator("section.verdict").wait_for()
 
 
@@ -79,8 +79,7 @@ def send(page: Page, heading: str, **fields: str) -> None:
         details.locator("summary").click()
     for name, value in ({"by": "K. Ito"} | fields).items():
         details.locator(f"[name={name}]").first.fill(value)
-    details.get_by_role("button").click()
-    page.wait_for_load_state()
+    follow(details.get_by_role("button"))
 
 
 def test_readings_in_mv_are_put_right_by_one_button(crew: str, page: Page) -> None:
@@ -106,7 +105,7 @@ def test_a_first_session_that_turns_out_bad_gives_way_to_a_better_reference(crew
         uploaded(page, crew, session_bytes(unit="FIRST-1", seed=month, month=month, a3_moved=moved))
     assert "Unfit" in head(page)
     page.goto(f"{crew}/units/FIRST-1")
-    page.locator("#sessions tbody th a").nth(1).click()
+    follow(page.locator("#sessions tbody th a").nth(1))
     send(page, "Make this session the reference", why="the first was measured warm")
     assert "Chosen as the reference" in head(page)
     page.goto(f"{crew}/units/FIRST-1")

@@ -9,7 +9,7 @@ import axe_playwright_python
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.end_to_end.browser.conftest import OPEN_ALL, Site, Witness, draw_all, opened
+from tests.end_to_end.browser.conftest import OPEN_ALL, Site, Witness, draw_all, follow, opened
 
 pytestmark = pytest.mark.browser
 
@@ -223,7 +223,7 @@ def test_fleet_lists_the_worst_unit_first(chromium: Browser, site: Site) -> None
 def test_tile_shows_only_its_condition(chromium: Browser, site: Site) -> None:
     with opened(chromium) as (_, page):
         page.goto(site.url)
-        page.locator(".tile.fail").click()
+        follow(page.locator(".tile.fail"))
         assert page.locator("table.units tbody th a:not(.tag)").all_inner_texts() == ["FL-1", "BA-017"]
 
 
@@ -267,8 +267,7 @@ def test_two_sessions_are_chosen_on_the_unit_s_page(chromium: Browser, site: Sit
         page.goto(f"{site.url}/units/BA-017")
         page.locator("#compare summary").click()
         page.locator("#compare select[name=a]").select_option(site.first_session)
-        page.locator("#compare button").click()
-        page.wait_for_url("**/compare?**")
+        follow(page.locator("#compare button"))
         assert "A3 bias changed by −8" in page.locator("main").inner_text()
         assert page.locator("tr.fail th").all_inner_texts() == ["A3 bias"]
 

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from tests.builders import accelerometer_block
-from tests.end_to_end.browser.conftest import Site, Witness, opened
+from tests.end_to_end.browser.conftest import Site, Witness, follow, opened
 
 pytestmark = pytest.mark.browser
 
@@ -60,7 +60,7 @@ def test_dropped_file_is_uploaded(chromium: Browser, site: Site, good: Path) -> 
             good.read_text(),
         )
         page.dispatch_event("#upload", "drop", {"dataTransfer": transfer})
-        page.locator(".outcome a", has_text="Open the session").click()
+        follow(page.locator(".outcome a", has_text="Open the session"))
         assert "BA-020" in page.locator("h1").inner_text()
 
 
@@ -68,7 +68,7 @@ def test_upload_works_without_script(chromium: Browser, site: Site, good: Path, 
     with opened(chromium, java_script_enabled=False) as (_, page):
         page.goto(f"{site.url}/upload")
         page.set_input_files("#files", [good, faulty])
-        page.get_by_role("button", name="Upload").click()
+        follow(page.get_by_role("button", name="Upload"))
         assert ("A3", "7") in places(page)
         assert page.locator(".outcome", has_text="BA-020").count() == 1
 
