@@ -1,14 +1,18 @@
-"""``python -m benchmarks.study --sessions 2000 --seed 1`` writes docs/diagnosis/study.md."""
+"""``python -m benchmarks.study --sessions 2000 --seed 1`` writes docs/diagnosis/study.md.
+
+What has been diagnosed is kept in build/study, and a study that was stopped goes on from there: remove the folder after
+a change of the program.
+"""
 
 import argparse
 import os
-import sys
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from benchmarks.details import publish
-from benchmarks.study.examine import run, tasks
+from benchmarks.study.examine import tasks
+from benchmarks.study.kept import BUILD, resumed
 from benchmarks.study.report import page
 
 PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "study.md"
@@ -26,13 +30,9 @@ def main() -> None:
     parser.add_argument("--dump", help="folder for the files of every case that went wrong")
     options = parser.parse_args()
     work = tasks(options.sessions, options.seed, options.dump, options.kind, options.cause)
-    outcomes = []
-    for k, outcome in enumerate(run(work, options.processes), 1):
-        outcomes.append(outcome)
-        print(f"\r{k}/{len(work)}", end="", file=sys.stderr)
-    print(file=sys.stderr)
     command = f"python -m benchmarks.study --sessions {options.sessions} --seed {options.seed}"
-    text = page(outcomes, command)
+    kept = BUILD / "study" / f"{options.seed}-{options.kind}-{options.cause}.jsonl"
+    text = page(list(resumed(work, options.processes, kept)), command)
     publish(text, options.out)
     print(text)
 
