@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.blind.cases import draw_case
+from tests.blind.cases import draw_at, draw_case
 from tests.blind.examine import examine
 
 SEED = 2028
@@ -37,3 +37,12 @@ def test_a_random_walk_is_structure_and_no_cause(number: int) -> None:
     outcome = examine(draw_case("outside", (62, number), "random-walk"))
     assert outcome.good, outcome
     assert not outcome.findings
+
+
+@pytest.mark.parametrize("cause", ["beta-eccentricity", "beta-second-harmonic", "beta-scale", "flip-misalignment"])
+def test_a_strong_error_of_the_stand_does_not_pass_for_noise_that_the_file_does_not_state(cause: str) -> None:
+    case = draw_at(100.0, (777, 20), cause)
+    assert not any(column.endswith("_se") for column in case.session["table"])
+    outcome = examine(case)
+    assert outcome.first, outcome
+    assert len(outcome.findings) == 1

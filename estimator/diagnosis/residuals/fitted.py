@@ -66,10 +66,15 @@ def seen_on_stand(session: CalibrationSession, solution: Solved, k: int) -> Base
     """The baseline of the k-th of sessions that were solved together."""
     fitted, variance = solution.fitted, solution.fitted.variance[k]
     baseline = stand_baseline(session, fitted.parameters.at(k), solution.geometry, fitted.residual[k], variance)
-    wanted = baseline.unstated & np.isfinite(variance[0])
+    return with_expected_ratio(baseline)
+
+
+def with_expected_ratio(baseline: Baseline) -> Baseline:
+    """The baseline with what the sensors of a kind suggest of each other's noise, where the file does not state it."""
+    wanted = baseline.unstated & np.isfinite(baseline.variance[0])
     if not wanted.any():
         return baseline
-    ratio = typical(variance[:1], wanted[np.newaxis], baseline.setting.norm)[0] / variance[0]
+    ratio = typical(baseline.variance[:1], wanted[np.newaxis], baseline.setting.norm)[0] / baseline.variance[0]
     return replace(baseline, expected_ratio=np.nan_to_num(ratio))
 
 
