@@ -1,4 +1,4 @@
-"""Writes docs/health/dates.md: whether stated dates hold at any time of a unit's life, on three generators."""
+"""Whether stated dates hold at any time of a unit's life, on three generators: benchmarks/results/health/dates.md."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator
@@ -14,14 +14,14 @@ from benchmarks.backtest.knowing import Law, known_passages
 from benchmarks.backtest.lived import DESCRIBED, lived, lives
 from benchmarks.backtest.units import PARAMETERS, Unit, learned, outlook, track
 from benchmarks.backtest.worlds import FIRST, SECOND, World
-from benchmarks.details import in_full, publish
+from benchmarks.details import RESULTS
 from benchmarks.study.rates import Rate, rate
 from benchmarks.study.report import table
 from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
 from estimator.health.prognosis import prognosis
 from estimator.session import Array
 
-PAGE = Path(__file__).parents[2] / "docs" / "health" / "dates.md"
+PAGE = RESULTS / "health" / "dates.md"
 MIXED = 12
 """Units of a type in whose parameters all kinds are alike."""
 FLEET = 20
@@ -186,7 +186,7 @@ def page(sample: Sample, seed: int) -> str:
         f"Made by `python -m benchmarks.backtest.dates --seed {seed}`. A session of every unit's life, the second or a "
         "later one, is drawn and its statements compared with what follows. The first two generators are those of the "
         "[back-test](backtest.md), the third that of `tests/lives/generator`; none shares a law with another or with "
-        "the estimator. Intervals: 95 % (Wilson). [What is computed](../methods/health.md).",
+        "the estimator. Intervals: 95 % (Wilson). [What is computed](../../../docs/methods/health.md).",
         "## Dates of parameters",
         f"Types of {MIXED} units with all kinds equally common in their {PARAMETERS} parameters: how often the "
         "tolerance was passed by a date stated within twelve years. Target: 7 to 13 % by *reach 90*, 42 to 58 % by "
@@ -194,23 +194,14 @@ def page(sample: Sample, seed: int) -> str:
         table(head, short),
         "*Reach 50* is early for saturating aging, which the readings cannot separate from continuing aging; the "
         "generator's laws give those dates less than 50 % too. Early is the safe side.",
-        in_full(
-            "\n\n".join(
-                [
-                    "## Are chances right?",
-                    "How often the tolerance was passed within so many years, by the chance that was stated for it.",
-                    table(
-                        ("generator", "within", *(f"{low:.0%} to {high:.0%}" for low, high in pairwise(BINS))), chances
-                    ),
-                    *kinds,
-                ]
-            )
-        ),
+        "## Are chances right?",
+        "How often the tolerance was passed within so many years, by the chance that was stated for it.",
+        table(("generator", "within", *(f"{low:.0%} to {high:.0%}" for low, high in pairwise(BINS))), chances),
+        *kinds,
         "## Due dates of units",
         f"Types of {FLEET} units; of some one parameter in {PARAMETERS} is not stable. Wanted: 5 % at most pass before "
         "they are due, and a median of 330 days and more for stable units from the 4th session on.",
-        table(DUE_HEAD, [row for row in came if row[1] == ALIKE]),
-        in_full(table(DUE_HEAD, came)),
+        table(DUE_HEAD, came),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -264,7 +255,7 @@ def main() -> None:
     asked.add_argument("--small", action="store_true", help="few statements: whether it runs, not what it shows")
     given = asked.parse_args()
     sample = Sample(1, 1) if given.small else Sample()
-    publish(page(sample, given.seed), given.out)
+    given.out.write_text(page(sample, given.seed), encoding="utf-8")
 
 
 if __name__ == "__main__":
