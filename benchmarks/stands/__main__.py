@@ -97,6 +97,10 @@ def dated_best(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
     return found
 
 
+FEWER_AND_MORE = ("4 axes", "8 axes")
+"""Blocks whose rows stand in the whole table only."""
+
+
 def told(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
     """Of each fleet, whether three units were measured on the first stand within the month."""
     found = []
@@ -157,7 +161,10 @@ def page(fleets: int, seed: int) -> str:
         f"Made by `python -m benchmarks.stands --fleets {fleets} --seed {seed}`. Fleets of whole rotations: every unit "
         "has 8 to 12 sessions within three years on two stands at random, each with an error of 0.8″; mountings are "
         "Student's with five degrees of freedom. Intervals: 95 % (Wilson). [What is computed](../methods/health.md).",
-        table(("figure", "share", "target"), [row for row in every if row[2] != "–"]),
+        table(
+            ("figure", "share", "target"),
+            [row for row in every if row[2] != "–" and not row[0].startswith(FEWER_AND_MORE)],
+        ),
         in_full(table(("figure", "share", "target"), every)),
         "U of an axis is that of its least known direction, so that the decision keeps its level in every direction; "
         "in others it holds more than 95 %. A drift below two standard uncertainties can only be stated too long, in "
