@@ -1,6 +1,6 @@
 """The pages that explain the service.
 
-What a word means is what `docs/glossary.md` says first, to the letter; a test holds the two together.
+A word that stands in `docs/glossary.md` too means the same there, to the letter; a test holds the two together.
 """
 
 from collections.abc import Mapping
