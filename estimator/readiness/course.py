@@ -13,7 +13,7 @@ Econometrics, ch. 3; Gelman et al. 2013, Bayesian Data Analysis, ch. 14):
 
 Z the positions' constants, P = V⁻¹ projected free of them, Λ the priors' precision in units of σ², S the residual sum
 of squares. Cells are weighed by their evidence; numbers of settlings, drift or none, walk or none are equally likely a
-priori, and the priors of d and a are ten times the record's range. Two settlings of neighbouring τ stand for one between
+priori, and the priors of d and a are ten times the record's range. Two settlings of neighbouring τ act as one between
 them, so that the grid may be coarse.
 """
 
