@@ -129,8 +129,8 @@ def _axis_repeatability(calibration: Calibration, sensor: SensorCalibration) -> 
     if not set(names) <= set(calibration.names):
         return None
     places = [calibration.names.index(name) for name in names]
-    own = sensor.axis_tangents @ calibration.repeatability[np.ix_(places, places)] @ sensor.axis_tangents.T
-    return np.asarray(own) if np.isfinite(own).all() else None
+    covariance = sensor.axis_tangents @ calibration.repeatability[np.ix_(places, places)] @ sensor.axis_tangents.T
+    return np.asarray(covariance) if np.isfinite(covariance).all() else None
 
 
 DIRECT = "They are compared directly, so the reference that both are judged against plays no part in the difference."
