@@ -79,9 +79,9 @@ def of_world(name: str, world: World) -> Source:
 
     def units(kinds: list[tuple[str, ...]], rng: Random) -> list[tuple[History, ...]]:
         plan, found = world.planned((6, 14)), []
-        for own in kinds:
+        for of_unit in kinds:
             time = world.dates(plan, rng)
-            found.append(tuple(world.history(kind, time, plan, rng) for kind in own))
+            found.append(tuple(world.history(kind, time, plan, rng) for kind in of_unit))
         return found
 
     return Source(name, world.kinds, units, world.law)
@@ -91,7 +91,7 @@ def of_lives(name: str) -> Source:
     """The generator of units' lives."""
 
     def units(kinds: list[tuple[str, ...]], rng: Random) -> list[tuple[History, ...]]:
-        return [lived(life, own, rng) for life, own in zip(lives(len(kinds), rng), kinds, strict=True)]
+        return [lived(life, of_unit, rng) for life, of_unit in zip(lives(len(kinds), rng), kinds, strict=True)]
 
     return Source(name, tuple(DESCRIBED), units, None)
 
@@ -101,12 +101,15 @@ SOURCES = (of_world("steady workshops", FIRST), of_world("uneven workshops", SEC
 
 def today(units: Iterable[tuple[History, ...]], rng: Random) -> list[Unit]:
     """Every unit as it is known after some session of its life, the second or a later one."""
-    return [Unit(own[0].kind, _until(own, int(rng.integers(2, len(own[0].time) + 1)))) for own in units]
+    return [
+        Unit(histories[0].kind, _until(histories, int(rng.integers(2, len(histories[0].time) + 1))))
+        for histories in units
+    ]
 
 
-def _until(own: tuple[History, ...], n: int) -> tuple[History, ...]:
+def _until(histories: tuple[History, ...], n: int) -> tuple[History, ...]:
     parts = ("time", "value", "sigma", "temperature")
-    return tuple(replace(one, **{name: getattr(one, name)[:n] for name in parts}) for one in own)
+    return tuple(replace(one, **{name: getattr(one, name)[:n] for name in parts}) for one in histories)
 
 
 def statements(source: Source, sample: Sample, rng: Random) -> list[Statement]:
@@ -225,9 +228,9 @@ def _as_stated(name: str, h: int, found: list[Statement]) -> tuple[str, ...]:
     came = np.array([one.passed <= HORIZONS[h] for one in found])
     cells = []
     for low, high in pairwise(BINS):
-        own = (stated >= low) & ((stated < high) | (high == 1))
-        mean = f"{100 * stated[own].mean():.0f} %: " if own.any() else ""
-        cells.append(mean + str(rate(list(came[own]))))
+        inside = (stated >= low) & ((stated < high) | (high == 1))
+        mean = f"{100 * stated[inside].mean():.0f} %: " if inside.any() else ""
+        cells.append(mean + str(rate(list(came[inside]))))
     return (name, f"{HORIZONS[h]:.0f} years", *cells)
 
 
@@ -235,8 +238,8 @@ def _by_kind(source: Source, found: list[Statement]) -> str:
     groups = {kind: [one for one in found if one.kind == kind] for kind in source.kinds}
     groups["second and third session"] = [one for one in found if one.sessions <= 3]
     rows = [
-        (name, str(held(own, lambda one: one.reach_90)), str(held(own, lambda one: one.reach_50)))
-        for name, own in groups.items()
+        (name, str(held(members, lambda one: one.reach_90)), str(held(members, lambda one: one.reach_50)))
+        for name, members in groups.items()
     ]
     return table(("the parameter", "passed by reach 90", "passed by reach 50"), rows)
 

@@ -120,7 +120,7 @@ class Fleet(Queries):
         return Refreshed(latest, list(Verdict)[severity], was_reference=changed and was_reference)
 
     def count_flags(self, unit: int) -> None:
-        """Rewrites how many flags of a unit are open; those of its type and of stands are not its own."""
+        """Rewrites how many flags of a unit are open; those of its type and of stands are not counted."""
         self.touch(unit)
         conditions = (FlagRow.unit_id == unit, FlagRow.scope == Scope.UNIT, FlagRow.state != RESOLVED)
         opened = select(func.count()).where(*conditions)

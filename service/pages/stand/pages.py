@@ -158,7 +158,7 @@ class ShiftRow:
 
 @dataclass(frozen=True)
 class StandPage:
-    """Everything the page of one stand shows; of what is listed, one more would be on a page of its own."""
+    """Everything the page of one stand shows; of what is listed, one more would be on the next page."""
 
     use: StandUse
     word: StandWord
@@ -294,7 +294,7 @@ def record_certificate(
     storage: StorageOf,
     now: Now,
 ) -> RedirectResponse:
-    """Keeps the certificate of the stand's own calibration."""
+    """Keeps the certificate of the stand's calibration."""
     given = StandCertificate(name, number.strip(), issued_by.strip(), issued_on, valid_until)
     record_stand_certificate(storage, given, now, who=by)
     return RedirectResponse(f"/stands/{quote(name)}#certificates", SEE_OTHER)

@@ -213,7 +213,7 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
 
 
 CARRIED_APART = ("by", "why", "csrf")
-"""Fields that the page's own form asks for."""
+"""Fields that the form of the page asks for."""
 
 
 @dataclass(frozen=True)

@@ -151,7 +151,7 @@ def _history(points: list[HistoryPoint], services: tuple[Service, ...], language
 MOST_RANKED = 100
 """Lines of the ranking: two pages, worst first; the workbook has all units."""
 MOST_SECTIONS = 40
-"""Units with a section of their own, two to three on a page."""
+"""Units with a section each, two to three on a page."""
 MOST_NOTICES = 8
 """Units that are listed as overdue, and parameters that stand out."""
 STANDS_OUT = 5.0

@@ -79,7 +79,7 @@ def _slack(root: Element) -> Slack:
 
 
 def _of_covariances(root: Element) -> Iterator[tuple[Element, tuple[float, ...]]]:
-    """Each row begins with the variance of its own parameter."""
+    """Each row begins with the variance of its parameter."""
     rows, sigmas = list[tuple[str, list[str], Element]](), dict[str, float]()
     for numbers in root.iterfind(".//si:realListXMLList", NAMESPACES):
         labels, values = (numbers.find(f"si:{part}XMLList", NAMESPACES) for part in ("label", "value"))
