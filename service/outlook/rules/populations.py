@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.population import group_standing, outliers, spread
-from service.outlook.populations import TINY, Placed, Population
+from estimator.health.population import group_standing, outliers, spread, standing
+from service.outlook.populations import Placed, Population
 from service.outlook.records import Rate
 from service.outlook.store import FarOut, Populations
 from service.outlook.words import drift_stands_out, lot_stands_out
@@ -39,7 +39,7 @@ def _population(kind: str, parameter: str, group: Group) -> Population:
     values, sigmas = np.array([(rate.value, rate.sigma) for rate in group]).T
     centre, wide = spread(values, sigmas)
     is_one = len({rate.serial for rate in group}) >= FEWEST_UNITS
-    z = (values - centre) / np.sqrt(wide**2 + sigmas**2 + TINY)
+    z = standing(values, sigmas, centre, wide)
     placed = [_placed(group[i], float(z[i])) for i in np.argsort(-np.abs(z), kind="stable")] if is_one else []
     lots = sorted(_lots(group), key=lambda lot: -abs(lot[1]))
     return Population(
