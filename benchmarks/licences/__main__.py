@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, metadata
 from benchmarks.details import PROJECT, RESULTS
 
 PAGE = RESULTS / "security" / "licences.md"
-HEAD = """# What we depend on
+HEAD = """# Dependencies and their licences
 
 Made by `python -m benchmarks.licences` from `requirements.lock` and what the packages say of themselves. The tests' own
 tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
