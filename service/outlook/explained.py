@@ -39,7 +39,7 @@ class _ExplainedSession:
 
     session: str
     found: Diagnosed
-    own: Calibration
+    calibration: Calibration
     """In force."""
     reference: Calibration
     """That its changes are counted from."""
@@ -64,7 +64,7 @@ def left_of(
 
 @outside_writing
 def _left(one: _ExplainedSession, tolerances: Mapping[tuple[str, str], float]) -> dict[Place, Left]:
-    whole = {(judged.sensor, judged.parameter): judged for judged in judge(one.own, one.reference, tolerances)}
+    whole = {(judged.sensor, judged.parameter): judged for judged in judge(one.calibration, one.reference, tolerances)}
     rest = {
         (judged.sensor, judged.parameter): judged for judged in judge(one.found.calibration, one.reference, tolerances)
     }
@@ -79,8 +79,8 @@ def _beside(whole: ParameterJudgement, rest: ParameterJudgement, doubt: float) -
     if whole.change is None or rest.change is None or rest.change_own is None:
         return None
     part = np.subtract(whole.change, rest.change)
-    own = np.sqrt(np.square(rest.change_own) + doubt * part**2)
-    return Left(change=list(rest.change), own=own.tolist(), dof=rest.dof, part=part.tolist())
+    sigma = np.sqrt(np.square(rest.change_own) + doubt * part**2)
+    return Left(change=list(rest.change), own=sigma.tolist(), dof=rest.dof, part=part.tolist())
 
 
 def explains(found: Diagnosed) -> bool:
