@@ -1,4 +1,4 @@
-"""docs/papers-optimisation.md: the published search beside its rivals. Part of ``make papers``; some minutes."""
+"""papers-optimisation.md: the published search beside its rivals. Part of ``make papers``; some minutes."""
 
 import time
 from collections.abc import Callable
@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.details import in_full
 from benchmarks.orientations import GRAVITY, NOISE, Case, case, one_degree_off, sphere, two_axis_turns
 from benchmarks.papers.markdown import section, table
 from estimator import CalibrationSession, calibrate
@@ -30,7 +29,7 @@ HEAD = """# Multi-parameter optimisation: the paper beside ours
 
 Written by `make papers` (`python -m benchmarks.papers`). Source: D. A. Kutovoy, S. Yu. Perepelkina, P. V. Sitnikov,
 estimation of the error model of a strapdown sensor block by multi-parameter optimisation. It has no tables or figures;
-its numbers stand in the text, and its formulas are rebuilt in [the method](methods/optimisation.md)."""
+its numbers stand in the text, and its formulas are rebuilt in [the method](../../docs/methods/optimisation.md)."""
 
 COUNTED = """Four accelerometers, errors of 1 % of scale, 0.01 g and 0.01 rad (one sigma), no noise; median (least to
 most) of twelve blocks. *To 0.001 %*: every scale to 1e-5 of itself, every bias to 1e-5 g, every angle to 1e-5 rad."""
@@ -84,7 +83,7 @@ def published_counts() -> str:
             rows.append((name, f"{grow} / {shrink}", *shown, f"{np.nanmedian(left):.1e}"))
     rows.append(("published, at least 9", "not stated", "about 270", "about 200", "about 1e-7"))
     columns = ("orientations", "grow / shrink", "from nominal", "from 10 % off", "functional there, (m/s²)²")
-    return section("Iterations to 0.001 %", in_full(f"{COUNTED}\n\n{table(columns, rows)}"), COUNTS)
+    return section("Iterations to 0.001 %", f"{COUNTED}\n\n{table(columns, rows)}", COUNTS)
 
 
 def orientation_sets() -> list[tuple[str, Array]]:
@@ -186,9 +185,7 @@ def side_by_side() -> str:
             )  # fmt: skip
     columns = ("sensors × orientations", "estimator", "iterations", "ms", "bias / σ", "variance / bound", "worst")
     words = COMPARED.format(trials=TRIALS, noise=1e6 * NOISE)
-    return section(
-        "Three estimators on the same sessions", in_full(f"{words}\n\n{table(columns, rows)}\n\n{SIZES}"), ESTIMATED
-    )
+    return section("Three estimators on the same sessions", f"{words}\n\n{table(columns, rows)}\n\n{SIZES}", ESTIMATED)
 
 
 def orientation_errors() -> str:
@@ -220,7 +217,7 @@ def ranks() -> str:
         values = np.linalg.svd(problem.jacobian(levenberg_marquardt(problem).x), compute_uv=False)
         rows.append((name, int((values > 1e-6 * values[0]).sum()), f"{values[-1] / values[0]:.1e}"))
     columns = ("orientations", "rank of 13", "least / largest singular value")
-    return section("Which sets determine everything", in_full(table(columns, rows)), RANKS)
+    return section("Which sets determine everything", table(columns, rows), RANKS)
 
 
 def page() -> str:

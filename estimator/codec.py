@@ -65,7 +65,7 @@ MOMENT = Form(lambda stated: stated, in_utc)
 
 
 @dataclass(frozen=True)
-class Layout:
+class DocumentLayout:
     """Where a document differs from its class; see `Document`."""
 
     format: str = ""
@@ -91,10 +91,10 @@ class Document:
     earlier : a document of an earlier version as this one writes it, as far as defaults do not do.
     """
 
-    layout: ClassVar[Layout] = Layout()
+    layout: ClassVar[DocumentLayout] = DocumentLayout()
 
     def __init_subclass__(cls, **stated: Any) -> None:
-        cls.layout = Layout(**stated)
+        cls.layout = DocumentLayout(**stated)
 
     def to_dict(self) -> Json:
         """Plain JSON."""
@@ -107,7 +107,7 @@ class Document:
         return PLAIN.read(cls, document)
 
 
-def layout_of(cls: type) -> Layout:
+def layout_of(cls: type) -> DocumentLayout:
     """Of any dataclass."""
     return cls.layout if issubclass(cls, Document) else Document.layout
 

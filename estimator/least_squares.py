@@ -25,7 +25,7 @@ FAINT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class LeastSquaresFit:
     """A regression on q columns."""
 
     value: Array
@@ -40,7 +40,7 @@ class Fit:
     """Degrees of freedom: rows, those of the prior among them, less the rank."""
 
 
-def least_squares(columns: Array, values: Array, faint: float = FLAT, prior: Array | None = None) -> Fit:
+def least_squares(columns: Array, values: Array, faint: float = FLAT, prior: Array | None = None) -> LeastSquaresFit:
     """The regression of values (N, …) on columns (N, q), both in standard errors.
 
     prior : (q,) information of every amplitude about zero beforehand, one over its unit squared.
@@ -51,7 +51,7 @@ def least_squares(columns: Array, values: Array, faint: float = FLAT, prior: Arr
     basis, inverse = decomposed(columns, faint)
     residual = values - basis @ (basis.T @ values)
     rank = basis.shape[1]
-    return Fit(inverse @ values, inverse @ inverse.T, (residual**2).sum(axis=0), rank, len(columns) - rank)
+    return LeastSquaresFit(inverse @ values, inverse @ inverse.T, (residual**2).sum(axis=0), rank, len(columns) - rank)
 
 
 def decomposed(columns: Array, faint: float = FLAT) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""Writes docs/health/dates.md: whether stated dates hold at any time of a unit's life, on three generators."""
+"""Whether stated dates hold at any time of a unit's life, on three generators: benchmarks/results/health/dates.md."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator
@@ -14,14 +14,14 @@ from benchmarks.backtest.knowing import Law, known_passages
 from benchmarks.backtest.lived import DESCRIBED, lived, lives
 from benchmarks.backtest.units import PARAMETERS, Unit, learned, outlook, track
 from benchmarks.backtest.worlds import FIRST, SECOND, World
-from benchmarks.details import in_full, publish
+from benchmarks.details import RESULTS
 from benchmarks.study.rates import Rate, rate
 from benchmarks.study.report import table
 from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
 from estimator.health.prognosis import prognosis
 from estimator.session import Array
 
-PAGE = Path(__file__).parents[2] / "docs" / "health" / "dates.md"
+PAGE = RESULTS / "health" / "dates.md"
 MIXED = 12
 """Units of a type in whose parameters all kinds are alike."""
 FLEET = 20
@@ -79,9 +79,9 @@ def of_world(name: str, world: World) -> Source:
 
     def units(kinds: list[tuple[str, ...]], rng: Random) -> list[tuple[History, ...]]:
         plan, found = world.planned((6, 14)), []
-        for own in kinds:
+        for of_unit in kinds:
             time = world.dates(plan, rng)
-            found.append(tuple(world.history(kind, time, plan, rng) for kind in own))
+            found.append(tuple(world.history(kind, time, plan, rng) for kind in of_unit))
         return found
 
     return Source(name, world.kinds, units, world.law)
@@ -91,7 +91,7 @@ def of_lives(name: str) -> Source:
     """The generator of units' lives."""
 
     def units(kinds: list[tuple[str, ...]], rng: Random) -> list[tuple[History, ...]]:
-        return [lived(life, own, rng) for life, own in zip(lives(len(kinds), rng), kinds, strict=True)]
+        return [lived(life, of_unit, rng) for life, of_unit in zip(lives(len(kinds), rng), kinds, strict=True)]
 
     return Source(name, tuple(DESCRIBED), units, None)
 
@@ -101,12 +101,15 @@ SOURCES = (of_world("steady workshops", FIRST), of_world("uneven workshops", SEC
 
 def today(units: Iterable[tuple[History, ...]], rng: Random) -> list[Unit]:
     """Every unit as it is known after some session of its life, the second or a later one."""
-    return [Unit(own[0].kind, _until(own, int(rng.integers(2, len(own[0].time) + 1)))) for own in units]
+    return [
+        Unit(histories[0].kind, _until(histories, int(rng.integers(2, len(histories[0].time) + 1))))
+        for histories in units
+    ]
 
 
-def _until(own: tuple[History, ...], n: int) -> tuple[History, ...]:
+def _until(histories: tuple[History, ...], n: int) -> tuple[History, ...]:
     parts = ("time", "value", "sigma", "temperature")
-    return tuple(replace(one, **{name: getattr(one, name)[:n] for name in parts}) for one in own)
+    return tuple(replace(one, **{name: getattr(one, name)[:n] for name in parts}) for one in histories)
 
 
 def statements(source: Source, sample: Sample, rng: Random) -> list[Statement]:
@@ -186,7 +189,7 @@ def page(sample: Sample, seed: int) -> str:
         f"Made by `python -m benchmarks.backtest.dates --seed {seed}`. A session of every unit's life, the second or a "
         "later one, is drawn and its statements compared with what follows. The first two generators are those of the "
         "[back-test](backtest.md), the third that of `tests/lives/generator`; none shares a law with another or with "
-        "the estimator. Intervals: 95 % (Wilson). [What is computed](../methods/health.md).",
+        "the estimator. Intervals: 95 % (Wilson). [What is computed](../../../docs/methods/health.md).",
         "## Dates of parameters",
         f"Types of {MIXED} units with all kinds equally common in their {PARAMETERS} parameters: how often the "
         "tolerance was passed by a date stated within twelve years. Target: 7 to 13 % by *reach 90*, 42 to 58 % by "
@@ -194,23 +197,14 @@ def page(sample: Sample, seed: int) -> str:
         table(head, short),
         "*Reach 50* is early for saturating aging, which the readings cannot separate from continuing aging; the "
         "generator's laws give those dates less than 50 % too. Early is the safe side.",
-        in_full(
-            "\n\n".join(
-                [
-                    "## Are chances right?",
-                    "How often the tolerance was passed within so many years, by the chance that was stated for it.",
-                    table(
-                        ("generator", "within", *(f"{low:.0%} to {high:.0%}" for low, high in pairwise(BINS))), chances
-                    ),
-                    *kinds,
-                ]
-            )
-        ),
+        "## Are chances right?",
+        "How often the tolerance was passed within so many years, by the chance that was stated for it.",
+        table(("generator", "within", *(f"{low:.0%} to {high:.0%}" for low, high in pairwise(BINS))), chances),
+        *kinds,
         "## Due dates of units",
         f"Types of {FLEET} units; of some one parameter in {PARAMETERS} is not stable. Wanted: 5 % at most pass before "
         "they are due, and a median of 330 days and more for stable units from the 4th session on.",
-        table(DUE_HEAD, [row for row in came if row[1] == ALIKE]),
-        in_full(table(DUE_HEAD, came)),
+        table(DUE_HEAD, came),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -234,9 +228,9 @@ def _as_stated(name: str, h: int, found: list[Statement]) -> tuple[str, ...]:
     came = np.array([one.passed <= HORIZONS[h] for one in found])
     cells = []
     for low, high in pairwise(BINS):
-        own = (stated >= low) & ((stated < high) | (high == 1))
-        mean = f"{100 * stated[own].mean():.0f} %: " if own.any() else ""
-        cells.append(mean + str(rate(list(came[own]))))
+        inside = (stated >= low) & ((stated < high) | (high == 1))
+        mean = f"{100 * stated[inside].mean():.0f} %: " if inside.any() else ""
+        cells.append(mean + str(rate(list(came[inside]))))
     return (name, f"{HORIZONS[h]:.0f} years", *cells)
 
 
@@ -244,8 +238,8 @@ def _by_kind(source: Source, found: list[Statement]) -> str:
     groups = {kind: [one for one in found if one.kind == kind] for kind in source.kinds}
     groups["second and third session"] = [one for one in found if one.sessions <= 3]
     rows = [
-        (name, str(held(own, lambda one: one.reach_90)), str(held(own, lambda one: one.reach_50)))
-        for name, own in groups.items()
+        (name, str(held(members, lambda one: one.reach_90)), str(held(members, lambda one: one.reach_50)))
+        for name, members in groups.items()
     ]
     return table(("the parameter", "passed by reach 90", "passed by reach 50"), rows)
 
@@ -264,7 +258,7 @@ def main() -> None:
     asked.add_argument("--small", action="store_true", help="few statements: whether it runs, not what it shows")
     given = asked.parse_args()
     sample = Sample(1, 1) if given.small else Sample()
-    publish(page(sample, given.seed), given.out)
+    given.out.write_text(page(sample, given.seed), encoding="utf-8")
 
 
 if __name__ == "__main__":

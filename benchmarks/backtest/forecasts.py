@@ -137,9 +137,9 @@ def due_page(world: World, found: Sequence[Due]) -> str:
     """Markdown: when units come back."""
     rows = []
     for name in world.sessions:
-        own = [one for one in found if one.known == name]
-        days = [365 * one.due for one in own if one.kind == world.still]
-        rows.append((name, f"{np.median(days):.0f}", str(rate([one.passed < one.due for one in own]))))
+        of_name = [one for one in found if one.known == name]
+        days = [365 * one.due for one in of_name if one.kind == world.still]
+        rows.append((name, f"{np.median(days):.0f}", str(rate([one.passed < one.due for one in of_name]))))
     head = ("sessions", f"days to due, {world.still} units, median", "passed before due, all units")
     kinds = [
         (kind, text, str(rate([one.passed < one.due for one in found if one.kind == kind])))
@@ -160,8 +160,13 @@ def reached_page(world: World, found: Sequence[Reached]) -> str:
     """Markdown: whether 10 % is 10 %."""
     groups = {"**all**": of_mix(found), **{kind: of_kind(world, kind, found) for kind in world.kinds}}
     rows = [
-        (name, str(before(own)), str(before([one for one in own if one.is_found])), str(before(own, whose=1)))
-        for name, own in groups.items()
+        (
+            name,
+            str(before(members)),
+            str(before([one for one in members if one.is_found])),
+            str(before(members, whose=1)),
+        )
+        for name, members in groups.items()
     ]
     return (
         "### Is 10 % ten percent?\n\n"

@@ -108,7 +108,7 @@ def _drawn(kind: str, one: History, law: Law, days: Array, rng: Random) -> _Kind
         return _weathered(one, law, days, rng)
     if kind in law.sized:
         return _sized(one, law, law.sized[kind], days, rng)
-    return _unsized(one, law, np.zeros((DRAWS, len(one.time))), lambda own: np.zeros((len(own), len(days))), rng)
+    return _unsized(one, law, np.zeros((DRAWS, len(one.time))), lambda chosen: np.zeros((len(chosen), len(days))), rng)
 
 
 def _signs(one: History) -> Array:
@@ -128,7 +128,7 @@ def _sized(one: History, law: Law, of: Sized, days: Array, rng: Random) -> _Kind
     size, origin = (np.einsum("nij,nj->ni", covariance, pull) + np.einsum("nij,nj->ni", root, steps)).T
     density = stats.t.logpdf(steps, TAILS).sum(axis=1) - np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
     log = of.log_prior(size) + _log_likelihood(one, law, size[:, None] * shape, origin) - density
-    return _Kind(log, lambda own: size[own, None] * course(days)[own] - origin[own, None])
+    return _Kind(log, lambda chosen: size[chosen, None] * course(days)[chosen] - origin[chosen, None])
 
 
 def _unsized(one: History, law: Law, moved: Array, ahead: Callable[[Array], Array], rng: Random) -> _Kind:
@@ -137,7 +137,7 @@ def _unsized(one: History, law: Law, moved: Array, ahead: Callable[[Array], Arra
     scale = WIDE * weight.sum() ** -0.5
     origin = (one.value - moved) @ (weight * _signs(one)) / weight.sum() + scale * steps
     log = _log_likelihood(one, law, moved, origin) - stats.t.logpdf(steps, TAILS) + np.log(scale)
-    return _Kind(log, lambda own: ahead(own) - origin[own, None])
+    return _Kind(log, lambda chosen: ahead(chosen) - origin[chosen, None])
 
 
 def _log_likelihood(one: History, law: Law, moved: Array, origin: Array) -> Array:
@@ -152,10 +152,10 @@ def _weathered(one: History, law: Law, days: Array, rng: Random) -> _Kind:
     felt = one.temperature - mean - scatter * rng.standard_normal((DRAWS, len(one.time)))
     slope = rng.choice([-1.0, 1.0], DRAWS) * rng.uniform(*law.slopes, DRAWS)
 
-    def ahead(own: Array) -> Array:
-        come = np.array([law.air(days, rng) for _ in own]).reshape(len(own), len(days))
-        come[:, 0] = felt[own, -1]
-        return np.asarray(slope[own, None] * (come - felt[own, :1]))
+    def ahead(chosen: Array) -> Array:
+        come = np.array([law.air(days, rng) for _ in chosen]).reshape(len(chosen), len(days))
+        come[:, 0] = felt[chosen, -1]
+        return np.asarray(slope[chosen, None] * (come - felt[chosen, :1]))
 
     return _unsized(one, law, slope[:, None] * (felt - felt[:, :1]), ahead, rng)
 
@@ -173,9 +173,9 @@ def _wandering(one: History, law: Law, days: Array, rng: Random) -> _Kind:
         kept = np.minimum(kept, DRAWS - 1)
         value, scale = value[kept], scale[kept]
 
-    def ahead(own: Array) -> Array:
-        come = law.steps(np.repeat(scale[own, None], len(days), axis=1), 1, rng)
+    def ahead(chosen: Array) -> Array:
+        come = law.steps(np.repeat(scale[chosen, None], len(days), axis=1), 1, rng)
         come[:, 0] = 0.0
-        return np.asarray(value[own, None] + np.cumsum(come, axis=1))
+        return np.asarray(value[chosen, None] + np.cumsum(come, axis=1))
 
     return _Kind(np.full(DRAWS, log), ahead)

@@ -50,7 +50,7 @@ def page(rows: Sequence[Row], ordinary: dict[str, float], long: Sequence[LongLog
     """The whole page."""
     worst = max(row.cost.memory for row in rows if "at once" not in row.name)
     wait = max(row.cost.wait for row in rows)
-    return f"""# What a file may cost
+    return f"""# Limits of uploaded files
 
 Made by `python -m benchmarks.files`; edit `benchmarks/files/page.py`, not this page.
 
@@ -118,23 +118,22 @@ def _places() -> str:
     hour = timedelta(hours=1)
     return f"""## Where files lie
 
-All of them lie on one disk, in the folder `files` of the data folder:
+On one disk, in the folder `files` of the data folder:
 
 | folder in it | what | how long | in a backup |
 | --- | --- | --- | --- |
 | `00` to `ff` | uploads and attached files, under their hash | for good | yes |
-| `arriving` | what comes just now, beyond {IN_MEMORY // 1024} KiB | until its request ends | no |
-| `waiting` | large files that were acknowledged and that a [job](../how-to/long-work.md#a-large-log) is to read, each \
-under a random name | until the job ends: then stored under its hash, or gone | yes, under its hash, so that after a \
-restore the job goes on |
-| `aside` | tables of a layout of their own of more than {MOST_CARRIED // MEBIBYTE} MiB, while their sender says on a \
-page how they are read; under a hash of the account and one of the bytes | until stored, at most {RETENTION // hour} \
-hours after that page was last shown; {MOST} of an account and {MOST_BYTES // MEBIBYTE // 1024} GiB of all, the oldest \
-give way | no: send it again |
+| `arriving` | uploads beyond {IN_MEMORY // 1024} KiB while they arrive | until the request ends | no |
+| `waiting` | acknowledged large files that a [job](../how-to/long-work.md#a-large-log) is to read | until the job \
+ends: then stored under its hash, or removed | yes, so that after a restore the job continues |
+| `aside` | tables of custom layout of more than {MOST_CARRIED // MEBIBYTE} MiB, while their sender confirms on a page \
+how they are read; only that account continues with them | until stored, at most {RETENTION // hour} hours after the \
+page was last shown; {MOST} of an account and {MOST_BYTES // MEBIBYTE // 1024} GiB of all, the oldest are removed \
+first | no: send it again |
 | `made` | reports that jobs made, under the job's number | {KEPT_MADE.days} days | no: ask for it again |
 
-Only the account that set a table aside continues with it. Hourly, what a killed service left is removed: partial files,
-expired tables, and of `waiting` what no open job names, {JOB_DELAY // hour} hour after it came.
+What a killed service left is removed hourly; of `waiting` what no open job names, {JOB_DELAY // hour} hour after it \
+came.
 """
 
 

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.fleet.million`` writes what a million units cost into docs/how-to/large-fleets.md.
+"""``python -m benchmarks.fleet.million`` writes what fleets cost into benchmarks/results/how-to/large-fleets.md.
 
 Nothing is measured here: the figures come from the tables that `benchmarks.fleet.bytes` and `make bench` wrote, and the
 rest is arithmetic, of which every assumption stands in the head of this file.
@@ -6,12 +6,13 @@ rest is arithmetic, of which every assumption stands in the head of this file.
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
+from benchmarks.details import PROJECT, RESULTS
 from benchmarks.sections import write_section
 
-PROJECT = Path(__file__).parents[2]
-PAGE, RESULTS = PROJECT / "docs/how-to/large-fleets.md", PROJECT / "benchmarks/RESULTS.md"
+PAGE, MEASURED = RESULTS / "how-to" / "large-fleets.md", PROJECT / "benchmarks" / "RESULTS.md"
+GUIDE = PROJECT / "docs" / "how-to" / "large-fleets.md"
+STORED = re.compile(r"([\d,]+) bytes of tables and ([\d,]+) of the uploaded file")
 MARK = "<!-- written by python -m benchmarks.fleet.million -->"
 FLEETS = (1_000, 10_000, 100_000, 1_000_000)
 SESSIONS_A_YEAR = 2.0
@@ -29,22 +30,23 @@ GIGA = 1e9
 def seconds(row: str) -> float:
     """The time of a row of the benchmarks' table."""
     own = rf"^\| {re.escape(row)} \|[^|]*\| ([\d.e+]+) (m?s) \|"
-    found = re.search(own, RESULTS.read_text(encoding="utf-8"), re.M)
-    assert found is not None, f"{RESULTS} has no row {row}"
+    found = re.search(own, MEASURED.read_text(encoding="utf-8"), re.M)
+    assert found is not None, f"{MEASURED} has no row {row}"
     return float(found[1]) * {"ms": 1e-3, "s": 1.0}[found[2]]
 
 
-def bytes_a_session(row: str) -> float:
-    """Of the page's own table of storage."""
-    found = re.search(rf"^\| {row} \|[^|]*\| ([\d,]+) \|", PAGE.read_text(encoding="utf-8"), re.M)
-    assert found is not None, f"{PAGE} has no row {row}"
-    return float(found[1].replace(",", ""))
+def bytes_a_session() -> tuple[float, float]:
+    """Of tables and of the uploaded file, as the guide states them."""
+    found = STORED.search(GUIDE.read_text(encoding="utf-8"))
+    assert found is not None, f"{GUIDE} states no bytes of a session"
+    tables, file = (float(number.replace(",", "")) for number in found.groups())
+    return tables, file
 
 
 def lines() -> Iterator[str]:
     """The table, a fleet a column."""
     upload, diagnosis = seconds("P5, 1 client"), seconds("P4h, new")
-    stored, file = bytes_a_session("all tables"), bytes_a_session("the uploaded file")
+    stored, file = bytes_a_session()
     rates = [units * SESSIONS_A_YEAR * PEAK / WORKING for units in FLEETS]
     sessions = [units * SESSIONS_A_YEAR * KEPT_YEARS for units in FLEETS]
     yield f"| units | {' | '.join(f'{units:,}' for units in FLEETS)} |"

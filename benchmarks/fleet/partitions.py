@@ -2,8 +2,8 @@
 
 The parameters of a filled fleet are copied into three tables with the same rows, keys and indexes: one as it is, one in
 sixteen parts by unit, one in parts by year. What is done with them is timed by the clock, warm, medians in turn over
-the three; the oldest year is taken out last. Writes the section of docs/how-to/large-fleets.md; with the address of a
-filled database it takes that one, and leaves it as it was.
+the three; the oldest year is taken out last. Writes a section of benchmarks/results/how-to/large-fleets.md; with the
+address of a filled database it takes that one, and leaves it as it was.
 """
 
 import statistics
@@ -16,13 +16,14 @@ from pathlib import Path
 
 import psycopg
 
+from benchmarks.details import RESULTS
 from benchmarks.fleet.fill import Size, fill
 from benchmarks.sections import write_section
 from service.opening import open_database
 from service.storage import Files, Storage
 from tests.databases import postgres_databases
 
-PAGE = Path(__file__).parents[2] / "docs/how-to/large-fleets.md"
+PAGE = RESULTS / "how-to" / "large-fleets.md"
 MARK = "<!-- written by python -m benchmarks.fleet.partitions -->"
 SIZE = Size(5_000, 20)
 PARTS, YEARS = 16, range(2020, 2027)

@@ -1,15 +1,13 @@
-"""`python -m benchmarks.licences` writes docs/security/licences.md from what is installed."""
+"""`python -m benchmarks.licences` writes benchmarks/results/security/licences.md."""
 
 import re
 from collections import defaultdict
 from importlib.metadata import PackageNotFoundError, metadata
-from pathlib import Path
 
-from benchmarks.details import in_full, publish
+from benchmarks.details import PROJECT, RESULTS
 
-ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "security" / "licences.md"
-HEAD = """# What we depend on
+PAGE = RESULTS / "security" / "licences.md"
+HEAD = """# Dependencies and their licences
 
 Made by `python -m benchmarks.licences` from `requirements.lock` and what the packages say of themselves. The tests' own
 tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
@@ -36,12 +34,12 @@ def licence(name: str) -> str:
 
 def main() -> None:
     """Writes the page."""
-    pinned = re.findall(r"(?m)^([\w.-]+)==", (ROOT / "requirements.lock").read_text(encoding="utf-8"))
+    pinned = re.findall(r"(?m)^([\w.-]+)==", (PROJECT / "requirements.lock").read_text(encoding="utf-8"))
     found = defaultdict[str, list[str]](list)
     for name in pinned:
         found[licence(name)].append(name)
     rows = [f"| {stated} | {', '.join(names)} |" for stated, names in sorted(found.items())]
-    publish(page_of(rows, len(pinned)), PAGE)
+    PAGE.write_text(page_of(rows, len(pinned)), encoding="utf-8")
 
 
 def page_of(rows: list[str], packages: int) -> str:
@@ -50,7 +48,7 @@ def page_of(rows: list[str], packages: int) -> str:
     words = (
         f"Of {packages} packages these ask for more than MIT, BSD, Apache, ISC and PSF licences do, or are not clear:"
     )
-    return "\n\n".join([HEAD.strip(), words, _table(asking), in_full(f"## Every package\n\n{_table(rows)}")]) + "\n"
+    return "\n\n".join([HEAD.strip(), words, _table(asking), f"## Every package\n\n{_table(rows)}"]) + "\n"
 
 
 def _table(rows: list[str]) -> str:

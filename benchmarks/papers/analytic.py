@@ -1,4 +1,4 @@
-"""docs/papers.md: every table and figure of the papers and where ours stands, then the analytic alignment paper."""
+"""papers.md: every table and figure of the papers and where ours stands, then the analytic alignment paper."""
 
 from benchmarks.papers.formulas import formulas
 from benchmarks.papers.markdown import section, table
@@ -8,7 +8,7 @@ from benchmarks.papers.tables import tables
 HEAD = """# The papers' tables beside ours
 
 Written, with every figure, by `make papers` (`python -m benchmarks.papers`); errors of the print:
-[errata](errata.md)."""
+[errata](../../docs/errata.md)."""
 
 PLACES = (
     ("Tyuvin", "table 1", "[accelerometers](#table-1-accelerometers)", "rows 12 and 24 to 15 %; row 36 is one sigma"),
@@ -60,11 +60,11 @@ system; six sensors in a cone of 54.7° about the head's axis (e2² = 1/3), α =
 FIGURES = """The paper's figure 1: the platform's Y axis is the head's, raised by α above the horizon; the turn β is
 about it.
 
-![Level and platform axes](pictures/stand-figure-1.png)
+![Level and platform axes](../../docs/pictures/stand-figure-1.png)
 
 Figure 2: (10) takes platform axes to block axes, and the six input axes lie on a cone about Y_П.
 
-![Platform and block axes with the six input axes](pictures/stand-figure-2.png)"""
+![Platform and block axes with the six input axes](../../docs/pictures/stand-figure-2.png)"""
 
 
 def page() -> str:

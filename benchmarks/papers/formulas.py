@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.details import in_full
 from benchmarks.papers.half_sums import simulated
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers.published import ACCELEROMETERS, AXES, STAND
@@ -73,7 +72,7 @@ did not compute with what it printed."""
 def formulas(trials: int = TRIALS) -> str:
     """Both tables as markdown."""
     columns = ("source", "", f"{trials} simulated", "checked", "checked / simulated", "printed", "printed / simulated")
-    details = in_full(f"{WORDS}\n\n{table(columns, compared(trials))}")
+    details = f"{WORDS}\n\n{table(columns, compared(trials))}"
     first = section("Formulas (28)–(30), source by source", details, AGREED)
     stated = ("3σ, N = 12", "stated", "(28)–(30) as printed", "checked")
     return "\n\n".join((first, section("The instrument alone", table(stated, instrument_only()), INSTRUMENT)))

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers.published import ACCELEROMETERS, GYROS
 from benchmarks.papers.tables import schedule
@@ -47,7 +46,7 @@ def elevations() -> str:
     words = """Ours minimises the mean square of scale and axis error of all sensors, reading noise, variation of the
 zero and the stand together. (6) looks at the stand alone; where noise rules, the best elevation is arctan(1/√2) =
 35.3°."""
-    return section("Elevation of the head", in_full(table(columns, rows)), words)
+    return section("Elevation of the head", table(columns, rows), words)
 
 
 def conditionings() -> str:
@@ -62,7 +61,7 @@ def conditionings() -> str:
     words = """ρ is the ratio of the largest to the smallest eigenvalue of a sensor's own information. It is
 least between 40° and 45° and within a quarter of that from 31° to 55°: the paper's 40° to 55° are the upper part of
 that range. With equal steps it is the same for every N: more positions give more information, not a better shape."""
-    return section("Conditioning", in_full(table(("α", "N = 12", "24", "36"), rows)), words)
+    return section("Conditioning", table(("α", "N = 12", "24", "36"), rows), words)
 
 
 def positions() -> str:
@@ -75,9 +74,10 @@ def positions() -> str:
                      sigma=np.full(6, noise * g)).optimal  # fmt: skip
         rows.append((f"{noise:.1e} g", f"{100 * found.efficiency:.1f} %", f"{found.different} of {len(found.beta)}"))
     words = """D-efficiency of the paper's equal steps against positions found by exchange on a grid of 2° in both
-runs: 97 to 100 %. Where reading noise rules, nothing is better than equal steps ([method](methods/planning.md))."""
+runs: 97 to 100 %. Where reading noise rules, nothing is better than equal steps
+([method](../../docs/methods/planning.md))."""
     columns = ("reading noise", "D-efficiency of equal steps", "different optimal positions")
-    return section("Positions", in_full(table(columns, rows)), words)
+    return section("Positions", table(columns, rows), words)
 
 
 def block(m: int) -> tuple[Sensor, ...]:
@@ -110,7 +110,7 @@ def orientation_sets() -> str:
 scale, bias, axis, no common turn). Nine generic orientations are needed whatever the number of sensors: the readings
 lie on an ellipsoid, which has nine parameters. Turns in two planes never show x and y together and stay one short."""
     columns = ("orientations", "m = 3", "m = 4", "m = 6", "to add for m = 4")
-    return section("Orientation sets before they are flown", in_full(table(columns, rows)), words)
+    return section("Orientation sets before they are flown", table(columns, rows), words)
 
 
 def planning() -> str:

@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers.published import ACCELEROMETERS, AXES, COUNT_TIME, GYRO_STAND, GYROS, LATITUDE, PULSE, Published
 from estimator import Sensor, Site, Stand
@@ -136,5 +135,5 @@ def tables(trials: int = TRIALS) -> str:
     """Both tables as markdown."""
     parts = []
     for paper, cause in ((ACCELEROMETERS, CAUSE_1), (GYROS, CAUSE_2)):
-        parts.append(section(paper.title, in_full(table(COLUMNS, reproduced(paper, trials))), noises(paper), cause))
+        parts.append(section(paper.title, table(COLUMNS, reproduced(paper, trials)), noises(paper), cause))
     return "\n\n".join(parts)

@@ -1,4 +1,4 @@
-"""docs/papers-alignment.md with its figures; half a minute."""
+"""papers-alignment.md with its figures; half a minute."""
 
 from benchmarks.papers_alignment.figures import draw
 from benchmarks.papers_alignment.runs import errors
@@ -9,7 +9,7 @@ HEAD = """# Multi-position alignment: the paper beside ours
 
 Written, with its figures, by `make papers` (`python -m benchmarks.papers`). Source: Liu, Jia, Li, Zhao, Dong, on gyro
 mounting errors in single-axis rotation multi-position alignment. The method and what goes beyond the paper: [alignment
-on a turntable](methods/alignment.md)."""
+on a turntable](../../docs/methods/alignment.md)."""
 
 
 def page() -> str:

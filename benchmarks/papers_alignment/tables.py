@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from benchmarks.details import in_full
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers_alignment.observability import expected, gramian, mounting_effect, planned_path
 from benchmarks.papers_alignment.runs import MOUNTING, QUIET, SITE, TRUTH, Errors, G, errors
@@ -62,7 +61,8 @@ def end_values(ten: Errors, turntable: Errors) -> str:
         "Figures 1 and 2",
         "Two positions, 180° apart, 300 s each; E_xz = 4″, E_yz = 8″, 0.01 °/h, 5e-5 g; noise 0.001 °/√h and "
         "5 µg/√Hz; ± is one sigma of the filter.",
-        "![φ_E and φ_N](pictures/alignment-figure-1.png)\n\n![∇_x and ∇_y](pictures/alignment-figure-2.png)",
+        "![φ_E and φ_N](../../docs/pictures/alignment-figure-1.png)",
+        "![∇_x and ∇_y](../../docs/pictures/alignment-figure-2.png)",
         table(columns, rows),
         "The printed values are reproduced; they are rounded, for 4″ and 8″ of g are 19.4 and 38.8 µg. The ten-state "
         "filter does not know of the mounting errors: it is wrong by more than ten, for ∇_y forty, of its sigmas. "
@@ -117,7 +117,7 @@ def plans() -> str:
     heads = ("stops", "model", "told", "E_xz, ″", "∇_x, µg", "ε_x, °/h", "ε_z, °/h", "φ_U, ″", "least eigenvalue")
     return section(
         "What a programme of 15 minutes tells",
-        in_full(f"{EXPECTED}\n\n{table(heads, rows)}"),
+        f"{EXPECTED}\n\n{table(heads, rows)}",
         "Velocity alone (*mounting*) does not tell E, whatever the number of positions and the sense of the turns; it "
         "takes the turntable's own direction. That the eigenvalue is not zero is the Earth's rotation at work, at "
         "5e-5 a second: gyro noise drowns it. The ten-state sigmas of ∇ hold only where E is zero.",

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 1`` writes docs/diagnosis/detection.md.
+"""``python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 1`` writes what is found beside rivals.
 
 How faint an effect may be and still be found, by the diagnosis and by its rivals, on the same sessions and at equal
 false alarms: every rival's threshold is the one that 1 % of the same sound sessions pass.
@@ -30,7 +30,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from scipy.special import gammaln, ive, logsumexp
 
-from benchmarks.details import publish
+from benchmarks.details import RESULTS
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import diagnose, read_session
@@ -45,7 +45,7 @@ from tests.blind.catalogue import CATALOGUE, DISCRETE, HISTORY
 from tests.blind.hide import UnhideableError
 from tests.blind.score import score
 
-PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "detection.md"
+PAGE = RESULTS / "diagnosis" / "detection.md"
 STRENGTHS = (4.0, 5.0, 6.0, 8.0)
 ALARMS = 0.01
 NONLINEAR = ("saturation", "excess-noise")
@@ -226,7 +226,7 @@ def page(looks: list[Look], command: str) -> str:
     return (
         f"# How faint an effect is still found\n\n{len(looks)} simulated sessions, made by `{command}`. "
         "Every method sees the same sessions; each rival has the threshold that 1 % of the same sound sessions pass. "
-        "Strength: see [the study](study.md). Intervals: 95 % (Wilson).\n\n"
+        "Strength: see [the study](../../../docs/diagnosis/study.md). Intervals: 95 % (Wilson).\n\n"
         f"{table(head, rows)}\n\n"
         "The last line is given the cause that acts, so that it looks for one family of shapes where all others look "
         f"for {len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody "
@@ -263,7 +263,7 @@ def main() -> None:
     print(file=sys.stderr)
     given = f"--sessions {options.sessions} --sound {options.sound} --seed {options.seed}"
     text = page(looks, f"python -m benchmarks.study.detection {given}")
-    publish(text, options.out)
+    options.out.write_text(text, encoding="utf-8")
     print(text)
 
 

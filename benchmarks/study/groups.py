@@ -17,6 +17,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
+from benchmarks.details import publish
 from benchmarks.study.group_page import page
 from benchmarks.study.looks import e_process
 from estimator import (
@@ -176,7 +177,7 @@ def main() -> None:
                 keep(options.marks, marks[-1])
                 print(f"\r{len(marks)}", end="", file=sys.stderr)
     text = page(marks, f"python -m benchmarks.study.groups --groups {options.groups} --seed {options.seed}")
-    options.out.write_text(text, encoding="utf-8")
+    publish(text, options.out)
     print(text)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from time import monotonic
+from typing import Any
 
 from benchmarks.study.examine import Task, run
 from tests.blind.score import Outcome, Pull
@@ -48,5 +49,5 @@ def _outcome(line: str) -> Outcome:
     return Outcome(**values | {"pulls": tuple(Pull(**p) for p in values["pulls"])})
 
 
-def _tuples(value: object) -> object:
+def _tuples(value: Any) -> Any:
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

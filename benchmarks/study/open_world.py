@@ -16,7 +16,7 @@ from typing import TypeVar
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from benchmarks.details import publish, published
+from benchmarks.details import in_full, publish, published
 from benchmarks.study import (
     degrees_of_freedom,
     examine,
@@ -107,7 +107,7 @@ PARTS: dict[str, Callable[[Executor, int, int], str]] = {
 def with_command(part: str, command: str) -> str:
     """The part with what made it below its heading."""
     heading, rest = part.split("\n", 1)
-    return f"{heading}\n\nMade by `{command}`.\n{rest}"
+    return f"{heading}\n\n{in_full(f'Made by `{command}`.')}\n{rest}"
 
 
 def parts_of(page: str) -> dict[str, str]:

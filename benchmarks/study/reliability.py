@@ -21,7 +21,7 @@ PLAIN = 0.01
 
 INTRODUCTION = (
     "Of one effect hidden in a session, every probability that the ranking states, with how often it was right. The "
-    "error is the mean distance between the two; by chance, what it would be if every statement were right."
+    "error is the mean distance between the two."
 )
 
 
@@ -31,13 +31,13 @@ def section(outcomes: list[Outcome]) -> str:
     stated = [belief for o in single for belief in o.beliefs]
     open_ones = [(p, right) for p, right in stated if PLAIN <= p <= 1 - PLAIN]
     none = [o for o in outcomes if o.kind == "none"]
+    whole = ("mean absolute error over ten bins", "≤ 3 %", f"{100 * error(stated):.1f} % of {len(stated)}")
     rows = [
-        ("mean absolute error over ten bins", "≤ 3 %", f"{100 * error(stated):.1f} % of {len(stated)}"),
-        ("the same of statements between 1 and 99 %", "", f"{100 * error(open_ones):.1f} % of {len(open_ones)}"),
-        ("by chance", "", f"{100 * by_chance(open_ones):.1f} %"),
-        ("mean probability given to the true cause (fault isolation accuracy)", "", f"{100 * accuracy(single):.1f} %"),
-        ("something found where an effect is hidden", "", rate([bool(o.findings) or o.unexplained for o in single])),
-        ("something found where there is none", "", rate([bool(o.findings) or o.unexplained for o in none])),
+        ("the same of statements between 1 and 99 %", f"{100 * error(open_ones):.1f} % of {len(open_ones)}"),
+        ("by chance, if every statement were right", f"{100 * by_chance(open_ones):.1f} %"),
+        ("mean probability given to the true cause (fault isolation accuracy)", f"{100 * accuracy(single):.1f} %"),
+        ("something found where an effect is hidden", rate([bool(o.findings) or o.unexplained for o in single])),
+        ("something found where there is none", rate([bool(o.findings) or o.unexplained for o in none])),
     ]
     bins = [
         (f"{10 * k}–{10 * k + 10} %", f"{100 * said:.1f} %", rate(marks))
@@ -46,9 +46,9 @@ def section(outcomes: list[Outcome]) -> str:
     ]
     return (
         f"## Probabilities\n\n{INTRODUCTION}\n\n"
-        + table(("figure", "target", "measured"), rows)
+        + table(("figure", "target", "measured"), [whole])
         + "\n\n"
-        + in_full(table(("stated", "mean", "true"), bins))
+        + in_full(f"{table(('figure', 'measured'), rows)}\n\n{table(('stated', 'mean', 'true'), bins)}")
     )
 
 

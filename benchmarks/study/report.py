@@ -139,8 +139,7 @@ def _curve(outcomes: list[Outcome]) -> str:
         rows.append((name, *cells))
     head = ["cause", *(f"{low:g}–{high:g}" if high < 1e6 else f"above {low:g}" for low, high in BINS)]
     text = "Share named first or among the alternatives against strength."
-    by_cause = [in_full(table(head, rows[1:]))] if rows[1:] else []
-    return "\n\n".join([f"## Detection curve\n\n{text}", table(head, rows[:1]), *by_cause])
+    return in_full(f"## Detection curve\n\n{text}\n\n{table(head, rows)}")
 
 
 def _false_alarms(outcomes: list[Outcome]) -> str:

@@ -121,8 +121,9 @@ def section(answers: list[Answer]) -> str:
     several = [("2 to 6 steps, each at a row of its own: called one event", rate([a.shared for a in apart]))]
     several += [(words, rate([a.shared for a in answers if a.wish.other == kind])) for kind, words in UNLIKE.items()]
     shared = ("1 to 6 sensors step together, strength 8 and more: right", strong)
-    short = table(("sessions", "measured"), [shared, *sound, *several])
-    return f"## Steps that sensors share\n\n{INTRODUCTION}\n\n{short}\n\n{in_full(right)}"
+    head = ("sessions", "measured")
+    details = in_full(f"{table(head, several)}\n\n{right}")
+    return f"## Steps that sensors share\n\n{INTRODUCTION}\n\n{table(head, [shared, *sound])}\n\n{details}"
 
 
 def _steps_at_once(answer: Answer) -> bool:

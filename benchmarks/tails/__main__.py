@@ -1,4 +1,4 @@
-"""Writes docs/health/tails.md: ``python -m benchmarks.tails``."""
+"""Writes benchmarks/results/health/tails.md: ``python -m benchmarks.tails``."""
 
 import argparse
 from collections.abc import Sequence
@@ -9,12 +9,12 @@ import numpy as np
 
 from benchmarks.backtest.forecasts import Due, Reached, before, dues, of_kind, of_mix
 from benchmarks.backtest.worlds import FIRST, SECOND, World
-from benchmarks.details import in_full, publish
+from benchmarks.details import RESULTS
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from benchmarks.tails.forecasts import Told, missed, surprised, tailed, told
 
-PAGE = Path(__file__).parents[2] / "docs" / "health" / "tails.md"
+PAGE = RESULTS / "health" / "tails.md"
 FREEDOM = 4.0
 """Of Student's law: one error in two hundred is beyond four of its standard deviations."""
 NAMES = ("errors taken for normal", "sessions weighed", "weighed, λ missing")
@@ -44,7 +44,7 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=31)
     asked.add_argument("--out", type=Path, default=PAGE)
     given = asked.parse_args()
-    publish(page(given.types, given.seed), given.out)
+    given.out.write_text(page(given.types, given.seed), encoding="utf-8")
 
 
 def page(types: int, seed: int) -> str:
@@ -59,24 +59,24 @@ def page(types: int, seed: int) -> str:
         f"Made by `python -m benchmarks.tails --types {types} --seed {seed}`. The two generators of the "
         "[back-test](backtest.md), each with normal errors and with Student's of four degrees of freedom and the same "
         f"stated standard deviation; {types} types each. Forecasts take errors for normal. Intervals: 95 % (Wilson). "
-        "[What is computed](../methods/health.md).",
+        "[What is computed](../../../docs/methods/health.md).",
         "## Do the claims suffer?",
         table(
             ("workshops, errors", "passed before reach 90, all kinds alike", "late drift, since two sessions or more",
              "days to due, still units, from the 4th session: 10 %, median", "passed before due, all units"),
             [_claims(case) for case in cases],
         ),
-        in_full("\n\n".join(["## By kind of history", *(_kinds(cases[i], cases[i + 1]) for i in (0, 2))])),
+        "\n\n".join(["## By kind of history", *(_kinds(cases[i], cases[i + 1]) for i in (0, 2))]),
         "## Would it help to weigh sessions by Student's law?",
         "The same histories with Student's errors. *Sessions weighed*: by the type's learned tails (expectation "
         "maximisation, two rounds). *λ missing*: with the smaller information of Student's law. A level is the "
         "estimate at the last session.",
-        in_full(table(
+        table(
             ("workshops", "forecast", "passed before reach 90, all kinds alike",
              "late drift, since two sessions or more", "level wrong by, median", "level further out than 2 u"),
             [row for case in (cases[1], cases[3]) for row in _rivals(case)],
-        )),
-        "What follows from it: [errors with tails](../methods/health.md#errors-with-tails).",
+        ),
+        "What follows from it: [errors with tails](../../../docs/methods/health.md#errors-with-tails).",
     ]  # fmt: skip
     return "\n\n".join(parts) + "\n"
 

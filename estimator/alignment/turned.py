@@ -24,7 +24,7 @@ from scipy.linalg import solve_triangular
 
 from estimator.alignment.levers import UPRIGHT
 from estimator.alignment.pieces import Pieces
-from estimator.least_squares import Fit, least_squares
+from estimator.least_squares import LeastSquaresFit, least_squares
 from estimator.session import Array
 from estimator.significance import p_value
 
@@ -41,7 +41,7 @@ class Whitened:
     root: Array
     """(N, N) lower triangular, m/s²; what divides columns and values."""
 
-    def fit(self, columns: Array) -> Fit:
+    def fit(self, columns: Array) -> LeastSquaresFit:
         """The regression of the values on columns (N, q), in any unit."""
         return least_squares(solve_triangular(self.root, columns, lower=True), self.values)
 
@@ -134,7 +134,7 @@ def lever_response(pieces: Pieces, i: int, axis: Array, lean: float) -> LeverRes
     return LeverResponse(i, with_lever.value[3:], with_lever.covariance[3:, 3:], ratio, freedom, excess, drop)
 
 
-def drop_of(less: Fit, more: Fit) -> tuple[float, int]:
+def drop_of(less: LeastSquaresFit, more: LeastSquaresFit) -> tuple[float, int]:
     """By how much χ² drops with further columns, and how many of them count."""
     return float(less.chi2 - more.chi2), more.rank - less.rank
 

@@ -1,7 +1,16 @@
 """The catalogue of causes: the physical effects that the baseline simulation lacks, each one small class."""
 
 from estimator.causes.catalogue import CATALOGUE, OF_SEVERAL, ON_TURNTABLE, UNEXPLAINED, cause, find
-from estimator.causes.contract import Cause, CommonCause, Correction, Entry, SensorCause, Setting, Shape, Signature
+from estimator.causes.contract import (
+    Cause,
+    CommonCause,
+    Entry,
+    RecordCorrection,
+    SensorCause,
+    Setting,
+    Shape,
+    Signature,
+)
 
 __all__ = [
     "CATALOGUE",
@@ -10,8 +19,8 @@ __all__ = [
     "UNEXPLAINED",
     "Cause",
     "CommonCause",
-    "Correction",
     "Entry",
+    "RecordCorrection",
     "SensorCause",
     "Setting",
     "Shape",

@@ -282,7 +282,7 @@ class Signature(Cause):
         return amplitude, sigma
 
 
-class Correction(Cause):
+class RecordCorrection(Cause):
     """A record error that can be undone: the corrected session is tried instead of a signature."""
 
     of_rows: ClassVar[bool] = False

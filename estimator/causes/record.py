@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from estimator.causes.contract import CommonCause, Correction, Entry, SensorCause, Setting
+from estimator.causes.contract import CommonCause, Entry, RecordCorrection, SensorCause, Setting
 from estimator.forward import jacobian
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
@@ -81,7 +81,7 @@ class SensorDrift(SensorCause):
         return columns[:, [0, 1, 3, 4]] * np.array(nonlinear)
 
 
-class RunsSwapped(Correction):
+class RunsSwapped(RecordCorrection):
     identifier = "runs-swapped"
     scope = "record"
     equation = "direct and flipped labels exchanged"
@@ -96,7 +96,7 @@ class RunsSwapped(Correction):
         yield (), replace(session, flipped=~session.flipped)
 
 
-class BetaReversed(Correction):
+class BetaReversed(RecordCorrection):
     identifier = "beta-reversed"
     scope = "record"
     equation = "β counted the wrong way"
@@ -111,7 +111,7 @@ class BetaReversed(Correction):
         yield (), replace(session, beta=-session.beta)
 
 
-class SignReversed(Correction):
+class SignReversed(RecordCorrection):
     identifier = "sign-reversed"
     scope = "record"
     equation = "u → −u"
@@ -128,7 +128,7 @@ class SignReversed(Correction):
             yield (i,), replace(session, readings=readings)
 
 
-class ChannelsSwapped(Correction):
+class ChannelsSwapped(RecordCorrection):
     identifier = "channels-swapped"
     scope = "record"
     equation = "two sensors' columns exchanged"
@@ -154,7 +154,7 @@ class ChannelsSwapped(Correction):
             )
 
 
-class PositionsSwapped(Correction):
+class PositionsSwapped(RecordCorrection):
     identifier = "positions-swapped"
     scope = "record"
     equation = "two rows exchanged"

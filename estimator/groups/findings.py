@@ -12,7 +12,7 @@ from estimator.groups.evidence import SINCE, VARYING, log_sum
 from estimator.groups.layout import EVERY, TYPE, GroupHypothesis
 from estimator.groups.pool import Place, Pool, PoolModel, columns_in, pooled
 from estimator.groups.random_effects import Mean, mean_of
-from estimator.groups.results import GroupFinding, GroupStructure, Rival, SessionAmplitude
+from estimator.groups.results import GroupFinding, GroupRival, GroupStructure, SessionAmplitude
 from estimator.groups.selection import Found, GroupSelection, concerns
 from estimator.groups.weighing import Scale
 from estimator.least_squares import inverse
@@ -195,11 +195,13 @@ def words_of(h: GroupHypothesis) -> str:
     return say("{place} of type {subject}", place=where, subject=h.subject) if h.level == TYPE else where
 
 
-def rival_of(near_by: Near, measurement: str, sessions: int | None) -> Rival:
+def rival_of(near_by: Near, measurement: str, sessions: int | None) -> GroupRival:
     """A rival as people see it, and what would tell it apart."""
     h = near_by.hypothesis
     sensors = (h.sensor,) if h.sensor else ()
-    return Rival(h.cause, sensors, h.level, h.subject, near_by.probability, near_by.separation, measurement, sessions)
+    return GroupRival(
+        h.cause, sensors, h.level, h.subject, near_by.probability, near_by.separation, measurement, sessions
+    )
 
 
 def forest(selection: GroupSelection, one: Estimated) -> tuple[SessionAmplitude, ...]:

@@ -20,7 +20,7 @@ class SessionAmplitude(Document, forms={"started_at": MOMENT}):
 
 
 @dataclass(frozen=True)
-class Rival:
+class GroupRival:
     """An explanation that the group does not tell from the named one, and what would."""
 
     cause: str
@@ -87,7 +87,7 @@ class GroupFinding(Document, forms={"since": MOMENT}):
     cochran: float
     """p-value that one amplitude differs so much between sessions by noise."""
     alternatives: tuple[str, ...]
-    rivals: tuple[Rival, ...]
+    rivals: tuple[GroupRival, ...]
     sentence: str
     advice: str
     sessions: tuple[SessionAmplitude, ...]

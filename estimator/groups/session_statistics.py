@@ -53,7 +53,7 @@ DOUBTFUL = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class WhitenedSession:
     """A whitened session. N rows, D columns."""
 
     residuals: WhitenedResiduals
@@ -149,7 +149,7 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
     )
 
 
-def seen_in(baseline: Baseline) -> Seen:
+def seen_in(baseline: Baseline) -> WhitenedSession:
     """The session's residuals and the traces of all candidates."""
     residuals = WhitenedResiduals.of(baseline)
     found = list(columns_of(baseline))
@@ -158,10 +158,12 @@ def seen_in(baseline: Baseline) -> Seen:
     trace = residuals.remaining_of(white)
     shown = np.linalg.norm(trace, axis=0) > INVISIBLE * np.linalg.norm(white, axis=0)
     reach = (np.abs(columns) / baseline.setting.norm[None, :, None]).max(axis=(0, 1))
-    return Seen(residuals, tuple(b for b, _ in found), trace * shown, residuals.z, reach, residuals.row_freedom)
+    return WhitenedSession(
+        residuals, tuple(b for b, _ in found), trace * shown, residuals.z, reach, residuals.row_freedom
+    )
 
 
-def without_outliers(seen: Seen) -> Seen:
+def without_outliers(seen: WhitenedSession) -> WhitenedSession:
     """The session without readings that do not belong to the rest: each is left to an amplitude of its own.
 
     The rest is what else the sensor leaves, effects included: a lone reading must stand out of them too.
@@ -182,7 +184,7 @@ def without_outliers(seen: Seen) -> Seen:
     return seen
 
 
-def without_row(seen: Seen, row: int) -> Seen:
+def without_row(seen: WhitenedSession, row: int) -> WhitenedSession:
     """The session with one row of z projected out."""
     spike = -seen.residuals.basis @ seen.residuals.basis[row]
     spike[row] += 1.0
@@ -198,7 +200,7 @@ def without_row(seen: Seen, row: int) -> Seen:
     )
 
 
-def plainly(seen: Seen) -> list[int]:
+def plainly(seen: WhitenedSession) -> list[int]:
     """Blocks that the session shows plainly by itself, one after another, each given those before."""
     found: list[int] = []
     for _ in range(MOST):
@@ -211,7 +213,7 @@ def plainly(seen: Seen) -> list[int]:
     return found
 
 
-def plain_basis(seen: Seen) -> Array:
+def plain_basis(seen: WhitenedSession) -> Array:
     """(N, f) orthonormal, dimensionless: traces of what the session shows plainly by itself."""
     starts = starts_of(seen.blocks)
     found = plainly(seen)
@@ -221,20 +223,20 @@ def plain_basis(seen: Seen) -> Array:
     return orthonormal(np.concatenate(columns, axis=1), 1e-3)
 
 
-def plain_columns(seen: Seen) -> Array | None:
+def plain_columns(seen: WhitenedSession) -> Array | None:
     """(R, m, q), m/s² (rad/s): columns of what the session shows plainly by itself; None where that is nothing."""
     chosen = {seen.blocks[k] for k in plainly(seen)}
     found = [c for b, c in columns_of(seen.residuals.baseline) if b in chosen]
     return np.concatenate(found, axis=-1) if found else None
 
 
-def left_of(seen: Seen) -> tuple[Array, Array]:
+def left_of(seen: WhitenedSession) -> tuple[Array, Array]:
     """(N,) standard errors that plain effects leave, and (N,) degrees of freedom of every row."""
     basis = plain_basis(seen)
     return seen.z - basis @ (basis.T @ seen.z), seen.freedom - (basis**2).sum(axis=1)
 
 
-def of_sensors(seen: Seen, values: Array) -> Array:
+def of_sensors(seen: WhitenedSession, values: Array) -> Array:
     """(m,) sums of values (N,), any unit, over the rows of each sensor."""
     m = len(seen.residuals.baseline.unstated)
     return np.asarray((seen.residuals.sensor_of_row[: len(values)] == np.arange(m)[:, None]) @ values)
@@ -264,7 +266,7 @@ def contradicted(baseline: Baseline, energy: Array, freedom: Array) -> list[list
     return claims
 
 
-def shrinking(seen: Seen, estimated: Array) -> Array:
+def shrinking(seen: WhitenedSession, estimated: Array) -> Array:
     """(B,) dimensionless: by how much each candidate's score is as unlikely as a normal one.
 
     ``estimated`` (m,): degrees of freedom from which the noise of each sensor was estimated; infinite where stated.

@@ -37,6 +37,11 @@ def spread(values: Array, sigmas: Array) -> tuple[float, float]:
     return centre, float(brentq(excess, 0.0, widest * 1.01))
 
 
+def standing(values: Array, sigmas: Array, centre: float, tau: float) -> Array:
+    """How far each of (n,) values is from the centre, in the spread that is expected of it; units as in `spread`."""
+    return np.asarray((values - centre) / np.sqrt(tau**2 + sigmas**2 + 1e-300))
+
+
 def outliers(z: Sequence[float], level: float = 0.01, among: int = 0) -> tuple[bool, ...]:
     """Which of n members are further out than the furthest of n is with probability ``level`` (Šidák).
 
@@ -63,10 +68,3 @@ def group_standing(rates: Sequence[tuple[float, float]], groups: Sequence[str]) 
             variance = float((tau**2 + sigmas[members] ** 2).sum()) / float(members.sum()) ** 2
             standings[name] = float((values[members].mean() - centre) / np.sqrt(variance + 1e-300))
     return standings
-
-
-def standing(rates: Sequence[tuple[float, float]]) -> tuple[float, ...]:
-    """How far each rate (value, sigma) stands from the population, in the spread that is expected of it."""
-    values, sigmas = np.array(rates, dtype=float).T
-    centre, tau = spread(values, sigmas)
-    return tuple(float(z) for z in (values - centre) / np.sqrt(tau**2 + sigmas**2 + 1e-300))

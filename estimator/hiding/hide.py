@@ -20,7 +20,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.causes.catalogue import CATALOGUE
-from estimator.causes.contract import Cause, Correction, Setting, Shape, Signature
+from estimator.causes.contract import Cause, RecordCorrection, Setting, Shape, Signature
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis.diagnose import initial_state
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -71,7 +71,7 @@ def hide(
     """
     *earlier, session = sessions
     whole = whole_pulses(session)
-    if isinstance(cause, Correction):
+    if isinstance(cause, RecordCorrection):
         return in_record(whole, cause, rng, sensor)
     if isinstance(cause, ExcessNoise):
         return with_noise(session, cause, rng, strength, sensor)
@@ -192,7 +192,7 @@ def drawn_effect(
 
 
 def in_record(
-    session: CalibrationSession, cause: Correction, rng: np.random.Generator, sensor: int | None
+    session: CalibrationSession, cause: RecordCorrection, rng: np.random.Generator, sensor: int | None
 ) -> tuple[CalibrationSession, HiddenCause]:
     """The session with an error of the record: what undoes one makes it, since done twice it is as before."""
     refuse_lacking(cause, baseline_of(session).setting, alone=False)

@@ -18,7 +18,7 @@ motion      the angular rate that a recording shows, from the gyros among its co
 rest        whether a block of a recording is at rest in truth
 blocks      which blocks are used, and how they are grouped into stretches that can be taken for independent
 nuisance    what motion does to sound sensors
-regression  Θ with its covariance: noise of any colour, from the recording itself, and the reference's own
+regression  Θ with its covariance: noise of any colour, from the recording itself, and that of the reference
 freed       Θ with its covariance, freed of what motion does
 hypotheses  which sensor: generalised likelihood ratio, and what the recording could have found
 isolation   from what size on a change is attributed to its sensor

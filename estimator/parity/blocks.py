@@ -9,7 +9,7 @@ rest up to twice as long is one group, because whatever the model misses is the 
 between neighbouring groups is measured in `regression`.
 
 A smooth flight is quiet, and so is a steady turn. At rest the specific force has gravity's size, keeps its direction,
-and shakes no more than the sensors' own noise makes it seem, or hardly.
+and shakes no more than the sensors' noise makes it seem, or hardly.
 """
 
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ SLOW = 0.02
 CALM = 0.1
 """m/s²; shaking of the vector below which a block may be at rest: quieter than vehicles under way."""
 NOISY = 3.0
-"""Variance of the vector within a block, in what the sensors' own noise makes of it, that still is no shaking."""
+"""Variance of the vector within a block, in what the sensors' noise makes of it, that still is no shaking."""
 
 
 def resting(blocks: Blocks, quiet: Mask, reference: ParityReference, norm: float | None, rate: float | None) -> Mask:

@@ -1,7 +1,7 @@
 """The change of the sensors, freed of what motion does to sound ones.
 
 The unknowns u of `nuisance`, prior N(0, I), are fitted together with Θ: with p = z·Θ + Φ·u + noise, and what z leaves
-of p and Φ after its own fit,
+of p and Φ after its fit,
 
     û = S·Φᵀp/σ²,   S = (I + ΦᵀΦ/σ²)⁻¹,   Θ̂ = Θ of (p − Φû),   error of Θ̂ = noise's + J·(û − u),  J = −(zᵀz)⁻¹zᵀΦ
 

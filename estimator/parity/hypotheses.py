@@ -89,7 +89,7 @@ class ParityEvidence:
         return ParityHypothesis(sensor, kind, whitened, basis, ratio, score, p)
 
     def p_value(self, chi2: float, dof: int) -> float:
-        """Probability of χ² this large over ``dof`` numbers, the noise's own uncertainty included."""
+        """Probability of χ² this large over ``dof`` numbers, the uncertainty of the noise included."""
         scale, effective = self.moments(dof)
         return float(p_value(chi2 / scale, effective))
 

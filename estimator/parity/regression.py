@@ -10,7 +10,7 @@ cannot be distinguished in parity (P∘P singular) it does not matter how noise 
 uncertain, so each is drawn towards their mean. Noise so slow that neighbouring groups still agree makes this too small:
 it is enlarged by (1 + ρ)/(1 − ρ), ρ the correlation of neighbouring groups of all sensors together.
 
-Reference. Its own error looks exactly like a change of the sensors: its covariance goes through the signatures. So does
+Reference. Its error looks exactly like a change of the sensors: its covariance goes through the signatures. So does
 the repeatability of the zero from one use to the next, where the file states it.
 """
 
@@ -216,7 +216,7 @@ def neighbours(z: Array, w: Array, residual: Array, selection: BlockSelection, G
 
 
 def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
-    """(m, s, s) covariance of Θ from each sensor's own noise, (m/s²)² ((rad/s)²).
+    """(m, s, s) covariance of Θ from each sensor's noise, (m/s²)² ((rad/s)²).
 
     moved (groups, s, d), m/s² (rad/s), from `scores`; V (m, d), dimensionless.
     """
@@ -232,7 +232,7 @@ def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
 
 
 def known_covariance(change: ParityChange) -> Array:
-    """(q, q) the reference's own error and the zero's repeatability as they show in Θ, (m/s²)² ((rad/s)²)."""
+    """(q, q) the reference's error and the zero's repeatability as they show in Θ, (m/s²)² ((rad/s)²)."""
     reference = change.reference
     shown = reference.signatures(change.norm)
     columns = [change.signature(i, rows) for i, rows in enumerate(shown)]

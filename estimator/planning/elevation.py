@@ -41,7 +41,7 @@ def gyro_errors(sigma: StandErrors, latitude: float) -> StandErrors:
 
 
 def conditioning(schedule: CalibrationSession) -> float:
-    """ρ of the worst conditioned sensor: largest over smallest eigenvalue of its own information, stand perfect.
+    """ρ of the worst conditioned sensor: largest over smallest eigenvalue of its information, stand perfect.
 
     Infinite where the schedule leaves a direction without a trace.
     """

@@ -104,7 +104,7 @@ def optimal_positions(schedule: CalibrationSession, sigma: Array) -> OptimalPosi
 
     ``sigma`` (m,) is the noise of a reading at the input, m/s² (rad/s).
 
-    Two starts: the schedule's own rows, and rows scattered by the golden ratio. Where neither ends above the
+    Two starts: the rows of the schedule, and rows scattered by the golden ratio. Where neither ends above the
     schedule, the schedule itself is the answer.
     """
     assert schedule.beta is not None

@@ -1,6 +1,6 @@
 """Readiness: whether a unit is warm and still enough for a long measurement, judged by its first minutes.
 
-`readiness` answers, with what a calibration would lose and what to do; derivation: `docs/methods/readiness.md`.
+`readiness` answers, with what a calibration would lose and what to do; the model: `course`.
 """
 
 from estimator.readiness.assess import readiness

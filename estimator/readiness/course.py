@@ -7,8 +7,14 @@ Model of the means y_k of a sensor at t_k, T s in all:
 c_p of each position, a steady drift or none, up to two first-order settlings, a random walk and white noise. ρ and the
 τ stand on grids; given them, the model is linear with a known shape of covariance, so with Gaussian priors of d and a
 in units of σ its posterior is Student's and its evidence closed (Zellner 1971, An Introduction to Bayesian Inference in
-Econometrics, ch. 3; Gelman et al. 2013, Bayesian Data Analysis, ch. 14). Cells are weighed by their evidence. Two
-settlings of neighbouring τ stand for one between them, so that the grid may be coarse.
+Econometrics, ch. 3; Gelman et al. 2013, Bayesian Data Analysis, ch. 14):
+
+    ln p(y) = −½ ln|V| − ½ ln|ZᵀV⁻¹Z| + ½ ln|Λ| − ½ ln|XᵀPX + Λ| − ½ (n − p)·ln S + const,
+
+Z the positions' constants, P = V⁻¹ projected free of them, Λ the priors' precision in units of σ², S the residual sum
+of squares. Cells are weighed by their evidence; numbers of settlings, drift or none, walk or none are equally likely a
+priori, and the priors of d and a are ten times the record's range. Two settlings of neighbouring τ act as one between
+them, so that the grid may be coarse.
 """
 
 from dataclasses import dataclass

@@ -9,7 +9,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.console import AsLines, FormOf, Listing, rows_of, screen, table_of
+from service.commands.console import AsLines, FormOf, ListOutput, rows_of, screen, table_of
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import FAILED, say
 from service.errors import ConflictError
@@ -109,7 +109,7 @@ def list_users(
     """Print every account."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         accounts = Accounts(store).every()
-    Listing(form, as_json).show(rows_of(accounts), lambda: _accounts(accounts))
+    ListOutput(form, as_json).show(rows_of(accounts), lambda: _accounts(accounts))
 
 
 def _accounts(accounts: Sequence[Account]) -> Table:
@@ -156,7 +156,7 @@ def list_tokens(
     """Print every token; secrets are not kept."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         tokens = Tokens(store).every()
-    Listing(form, as_json).show(rows_of(tokens), lambda: _tokens(tokens))
+    ListOutput(form, as_json).show(rows_of(tokens), lambda: _tokens(tokens))
 
 
 def _tokens(tokens: Sequence[Token]) -> Table:
@@ -200,7 +200,7 @@ def list_lines(
     """Print who did what, the newest first."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         lines = Audit(store).page(most, None, subject)
-    Listing(form, as_json).show(rows_of(lines), lambda: _lines(lines))
+    ListOutput(form, as_json).show(rows_of(lines), lambda: _lines(lines))
 
 
 def _lines(lines: Sequence[AuditLine]) -> Table:

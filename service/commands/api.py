@@ -12,8 +12,8 @@ import typer
 from rich.markup import escape
 
 from service.client import Client, connect
-from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
-from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, Listing, Server, screen
+from service.commands.calls import Answer, Call, ListColumns, Row, app_of, in_address
+from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, ListOutput, Server, screen
 from service.commands.speech import output_language, translated
 from service.errors import ServiceError
 from service.flags.records import FlagState
@@ -133,11 +133,11 @@ def list_flags(
     """Show flags; without a state those that are open, which the API has first."""
     if context.invoked_subcommand is not None:
         return
-    filters, listing = {"unit": unit, "state": state, "assigned": assigned}, Listing(form, as_json)
+    filters, listing = {"unit": unit, "state": state, "assigned": assigned}, ListOutput(form, as_json)
     with connect(server, language=listing.language) as client:
         found = client.every("/flags", "flags", limit=1000, **{name: value for name, value in filters.items() if value})
         rows = list(found if state else takewhile(lambda flag: flag["state"] != FlagState.RESOLVED, found))
-    columns = Columns("flags", "There is none." if state else "No flag is open.", FLAG_CELLS)
+    columns = ListColumns("flags", "There is none." if state else "No flag is open.", FLAG_CELLS)
     listing.show(rows, lambda: columns.table(rows))
 
 
@@ -210,7 +210,7 @@ FLAG_CELLS = {
     "where": lambda flag: escape(flag["place"]),
     "what": lambda flag: escape(translated(f"{flag['summary']} {flag['proposal']}".strip())),
 }
-VIEWS = Columns(
+VIEWS = ListColumns(
     "views",
     "No view is saved yet.",
     {

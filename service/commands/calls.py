@@ -17,7 +17,7 @@ from rich.table import Table
 from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.catalogue import CATALOGUE
-from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, Listing, Server, print_json, table_of
+from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, ListOutput, Server, print_json, table_of
 from service.commands.speech import FAILED, output_language
 from service.languages.language import Language
 
@@ -25,7 +25,7 @@ Answer = Json
 
 
 @dataclass(frozen=True)
-class Columns:
+class ListColumns:
     """Printed form of a list; numbers in the first column are aligned to the right."""
 
     entries: str
@@ -54,7 +54,7 @@ class Call:
     """Method and address below /api/v1."""
     parameters: Mapping[str, Any]
     """Annotation of each, or annotation and default, in the order of the help."""
-    show: Callable[[Answer], None] | Columns
+    show: Callable[[Answer], None] | ListColumns
     """Prints the answer, to which the parameters are added where it has no field of their name."""
     help: str = ""
     """One line; empty where it is in the catalogue."""
@@ -69,10 +69,10 @@ class Call:
         """Makes the call and prints the answer."""
         sent = {name: arguments[name] for name in self.parameters}
         with connect(arguments["server"], language=self._language(arguments)) as client:
-            if isinstance(self.show, Columns):
+            if isinstance(self.show, ListColumns):
                 rows = self._rows(client, sent, self.show)
                 view = self.show.table
-                listing = Listing(arguments["form"], arguments["as_json"])
+                listing = ListOutput(arguments["form"], arguments["as_json"])
                 listing.show(rows, lambda: view([arguments | row for row in rows]))
                 return
             answer = self._answer(client, sent)
@@ -85,11 +85,11 @@ class Call:
 
     def _language(self, arguments: dict[str, Any]) -> str:
         """Of the answer: JSON never depends on it."""
-        if isinstance(self.show, Columns):
-            return Listing(arguments["form"], arguments["as_json"]).language
+        if isinstance(self.show, ListColumns):
+            return ListOutput(arguments["form"], arguments["as_json"]).language
         return Language.ENGLISH.value if arguments.get("as_json") else output_language()
 
-    def _rows(self, client: Client, sent: dict[str, Any], columns: Columns) -> list[Answer]:
+    def _rows(self, client: Client, sent: dict[str, Any], columns: ListColumns) -> list[Answer]:
         method, path, rest = _request(self.request, sent)
         if columns.is_paged:
             return list(client.every(path, columns.entries, limit=1000, **rest))
@@ -119,7 +119,7 @@ class Call:
 
     def _common(self) -> dict[str, Any]:
         options: dict[str, Any] = {"server": (Server, DEFAULT_SERVER)}
-        if isinstance(self.show, Columns):
+        if isinstance(self.show, ListColumns):
             options |= {"form": (FormOf, None), "as_json": (AsLines, False)}
         elif self.has_json:
             options |= {"as_json": (AsJson, False)}

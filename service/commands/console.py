@@ -148,7 +148,7 @@ def progress(total: int, doing: str, *, quiet: bool = False, is_long: bool = Fal
 
 
 @dataclass(frozen=True)
-class Listing:
+class ListOutput:
     """Requested form of a list."""
 
     chosen: OutputForm | None

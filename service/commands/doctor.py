@@ -54,7 +54,7 @@ COLOURS = {CheckState.OK: "green", CheckState.WARN: "yellow", CheckState.FAIL: "
 
 
 @dataclass(frozen=True)
-class Check:
+class DoctorCheck:
     """One line."""
 
     what: str
@@ -64,9 +64,9 @@ class Check:
     """What to do; empty where nothing is needed."""
 
 
-def program() -> Iterator[Check]:
+def program() -> Iterator[DoctorCheck]:
     """Python, this program, and its libraries."""
-    yield Check("python", CheckState.OK, f"{platform.python_version()} at {sys.executable}, imu-health {VERSION}")
+    yield DoctorCheck("python", CheckState.OK, f"{platform.python_version()} at {sys.executable}, imu-health {VERSION}")
     extras: dict[str, list[str]] = {}
     missing = []
     for requirement in map(Requirement, requires("imu-health") or ()):
@@ -78,11 +78,13 @@ def program() -> Iterator[Check]:
             elif fault and extra is not None:
                 extras.setdefault(extra[1], []).append(fault)
     if missing:
-        yield Check("libraries", CheckState.FAIL, "; ".join(missing), "Install again: pip install -r requirements.lock")
+        yield DoctorCheck(
+            "libraries", CheckState.FAIL, "; ".join(missing), "Install again: pip install -r requirements.lock"
+        )
     else:
-        yield Check("libraries", CheckState.OK, "all there, none too old")
+        yield DoctorCheck("libraries", CheckState.OK, "all there, none too old")
     for name, faults in extras.items():
-        yield Check(
+        yield DoctorCheck(
             f"extra {name}", CheckState.OK, f"not installed ({'; '.join(faults)}); needed only for what it adds"
         )
 
@@ -100,7 +102,7 @@ def _fault_of_library(requirement: Requirement) -> str:
     )
 
 
-def variables(environment: Mapping[str, str]) -> Iterator[Check]:
+def variables(environment: Mapping[str, str]) -> Iterator[DoctorCheck]:
     """Unknown variables of the environment, most often misspelt."""
     known = {*(f"{PREFIX}{name.upper()}" for name in Settings.model_fields), *OTHER_VARIABLES}
     known |= retired(environment).keys()  # a failure of its own, with what stands in their place
@@ -108,68 +110,72 @@ def variables(environment: Mapping[str, str]) -> Iterator[Check]:
     for name in unknown:
         similar = difflib.get_close_matches(name.upper(), known, 1)
         remedy = f"Did you mean {similar[0]}?" if similar else "Remove it, or look its name up on the page of settings."
-        yield Check("settings", CheckState.WARN, f"{name} is no setting and has no effect", remedy)
+        yield DoctorCheck("settings", CheckState.WARN, f"{name} is no setting and has no effect", remedy)
     if not unknown:
-        yield Check("settings", CheckState.OK, "every variable is known")
+        yield DoctorCheck("settings", CheckState.OK, "every variable is known")
 
 
-def contradictions(settings: Settings) -> Iterator[Check]:
+def contradictions(settings: Settings) -> Iterator[DoctorCheck]:
     """Contradictory settings."""
     if settings.sign_in == "off" and not settings.is_local:
-        yield Check("sign-in", CheckState.WARN, f"nobody signs in, and {settings.host} may be reached from elsewhere",
-                      "Set IMU_HEALTH_SIGN_IN=required.")  # fmt: skip
+        yield DoctorCheck(
+            "sign-in",
+            CheckState.WARN,
+            f"nobody signs in, and {settings.host} may be reached from elsewhere",
+            "Set IMU_HEALTH_SIGN_IN=required.",
+        )
     if hosts_of(settings).any_address:
-        yield Check("address", CheckState.WARN, "the service answers to addresses in digits only",
+        yield DoctorCheck("address", CheckState.WARN, "the service answers to addresses in digits only",
                       "Name it with IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS.")  # fmt: skip
     if settings.oidc_issuer and not settings.oidc_client_id:
-        yield Check("sign-in elsewhere", CheckState.FAIL,
+        yield DoctorCheck("sign-in elsewhere", CheckState.FAIL,
                     "an OpenID provider is named, but not how it knows this service",
                       "Set IMU_HEALTH_OIDC_CLIENT_ID.")  # fmt: skip
     for name in ("oidc_client_secret_file", "seal_key_file", "seal_password_file"):
         path: Path | None = getattr(settings, name)
         if path is not None and not os.access(path, os.R_OK):
-            yield Check(
+            yield DoctorCheck(
                 "secrets", CheckState.FAIL, f"{path} cannot be read", f"Correct {PREFIX}{name.upper()}, or the file."
             )
     if settings.seal_password_file and not settings.seal_key_file:
-        yield Check("seal", CheckState.WARN, "a password is given, but no key that it opens",
+        yield DoctorCheck("seal", CheckState.WARN, "a password is given, but no key that it opens",
                       "Set IMU_HEALTH_SEAL_KEY_FILE.")  # fmt: skip
 
 
-def folders(settings: Settings) -> Iterator[Check]:
+def folders(settings: Settings) -> Iterator[DoctorCheck]:
     """Whether uploads can be stored, and the free space."""
     try:
         require_writable(settings.files)
     except ServiceError as fault:
-        yield Check("folder", CheckState.FAIL, str(fault))
+        yield DoctorCheck("folder", CheckState.FAIL, str(fault))
         return
-    yield Check("folder", CheckState.OK, f"{settings.files} can be written")
+    yield DoctorCheck("folder", CheckState.OK, f"{settings.files} can be written")
     space = space_at(settings.files, limits_of(settings).free)
     free = f"{space.free / 2**30:.1f} GiB free"
     if space.too_little:
-        yield Check("disk", CheckState.FAIL, space.too_little, "Make room, or move the data folder.")
+        yield DoctorCheck("disk", CheckState.FAIL, space.too_little, "Make room, or move the data folder.")
     elif space.free < 4 * space.least:
-        yield Check(
+        yield DoctorCheck(
             "disk", CheckState.WARN, f"{free}; uploads stop at {space.least / 2**20:.0f} MiB", "Make room soon."
         )
     else:
-        yield Check("disk", CheckState.OK, free)
+        yield DoctorCheck("disk", CheckState.OK, free)
 
 
-def database(settings: Settings, now: datetime) -> Iterator[Check]:
+def database(settings: Settings, now: datetime) -> Iterator[DoctorCheck]:
     """Whether the database answers, has the newest migration, and agrees about the time."""
     where = shown_url(settings.database)
     if settings.database.startswith(SQLITE) and not Path(settings.database.removeprefix(SQLITE)).exists():
-        yield Check("database", CheckState.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
+        yield DoctorCheck("database", CheckState.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
         return
     opened = open_database(settings.database)
     try:
         opened.require_ready()
-        yield Check("database", CheckState.OK, f"{where} answers and is at the newest migration")
+        yield DoctorCheck("database", CheckState.OK, f"{where} answers and is at the newest migration")
         yield from _clock(opened, now)
         yield from _waiting(opened, settings)
     except ServiceError as fault:
-        yield Check("database", CheckState.FAIL, f"{where}: {fault}", _remedy(str(fault)))
+        yield DoctorCheck("database", CheckState.FAIL, f"{where}: {fault}", _remedy(str(fault)))
     finally:
         opened.close()
 
@@ -178,38 +184,38 @@ def _remedy(fault: str) -> str:
     return "" if "run" in fault else "Start it, or correct IMU_HEALTH_DATABASE_URL."
 
 
-def _clock(opened: Database, now: datetime) -> Iterator[Check]:
+def _clock(opened: Database, now: datetime) -> Iterator[DoctorCheck]:
     """This machine's clock against the server's, and against stored times."""
     remedy = "Set the clocks of both machines, best by NTP."
     server = opened.server_time()
     with opened.reading() as store:
         lines = Audit(store).page(1)
     if server is not None and abs(server - now) > CLOCK_TOLERANCE:
-        yield Check(
+        yield DoctorCheck(
             "clock", CheckState.FAIL, f"{abs(server - now).total_seconds():.0f} s apart from the database", remedy
         )
     elif lines and lines[0].at - now > CLOCK_TOLERANCE:
         text = f"the audit trail's last line is of {lines[0].at:%Y-%m-%d %H:%M:%S} UTC, later than this clock says"
-        yield Check("clock", CheckState.FAIL, text, remedy)
+        yield DoctorCheck("clock", CheckState.FAIL, text, remedy)
     else:
-        yield Check("clock", CheckState.OK, f"{now:%Y-%m-%d %H:%M:%S} UTC, as the database has it")
+        yield DoctorCheck("clock", CheckState.OK, f"{now:%Y-%m-%d %H:%M:%S} UTC, as the database has it")
 
 
-def _waiting(opened: Database, settings: Settings) -> Iterator[Check]:
+def _waiting(opened: Database, settings: Settings) -> Iterator[DoctorCheck]:
     """Background processes, and the work waiting for them."""
     with opened.reading() as store:
         pending = WorkQueue(store, WorkKind.DIAGNOSIS).count()
     workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
     text = f"{workers} beside the requests, {pending} diagnoses waiting"
     if workers == 0:
-        yield Check(
+        yield DoctorCheck(
             "workers", CheckState.WARN, text, "Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."
         )
     elif workers > cores:
-        yield Check("workers", CheckState.WARN, f"{text}; the machine has {cores} cores",
+        yield DoctorCheck("workers", CheckState.WARN, f"{text}; the machine has {cores} cores",
                       "Set IMU_HEALTH_DIAGNOSIS_WORKERS to fewer.")  # fmt: skip
     else:
-        yield Check("workers", CheckState.OK, text)
+        yield DoctorCheck("workers", CheckState.OK, text)
 
 
 def doctor(
@@ -230,18 +236,18 @@ def doctor(
         raise typer.Exit(FAILED)
 
 
-def _findings(**options: object) -> Iterator[Check]:
+def _findings(**options: object) -> Iterator[DoctorCheck]:
     yield from program()
     yield from variables(os.environ)
     try:
         settings = Settings(**{name: value for name, value in options.items() if value is not None})  # type: ignore[arg-type]
     except ServiceError as fault:
-        yield Check("settings", CheckState.FAIL, str(fault))
+        yield DoctorCheck("settings", CheckState.FAIL, str(fault))
         return
     except ValidationError as fault:
         for error in fault.errors():
             name = "IMU_HEALTH_" + "_".join(map(str, error["loc"])).upper()
-            yield Check("settings", CheckState.FAIL, f"{name}: {error['msg']}", "Correct it or unset it.")
+            yield DoctorCheck("settings", CheckState.FAIL, f"{name}: {error['msg']}", "Correct it or unset it.")
         return
     yield from contradictions(settings)
     yield from folders(settings)

@@ -12,7 +12,7 @@ from estimator.allan.results import TERMS
 from estimator.wording import counted
 from service.client import Point, connect
 from service.commands.calls import Answer
-from service.commands.console import DEFAULT_SERVER, AsLines, FormOf, Listing, Server, table_of
+from service.commands.console import DEFAULT_SERVER, AsLines, FormOf, ListOutput, Server, table_of
 from service.commands.speech import output_language, translated
 from service.commands.upload import coloured
 from service.kit.measures import deviation_measure, measured, number
@@ -54,7 +54,7 @@ def fleet(
         units = [unit.document for unit in client.units(**filters)]
     is_complete = len(units) == condition["units"]
     heading = _summary(condition) if is_complete else f"{len(units)} of {counted(condition['units'], 'unit')}\n"
-    Listing(form, as_json).show(units, lambda: Group(heading, _fleet_table(units)))
+    ListOutput(form, as_json).show(units, lambda: Group(heading, _fleet_table(units)))
 
 
 def _summary(condition: Answer) -> str:
@@ -108,7 +108,7 @@ def history(
     """
     with connect(server, language=output_language()) as client:
         points = list(client.history(unit, sensor=sensor, parameter=parameter, since=since, until=until))
-    Listing(form, as_json).show([point.document for point in points], lambda: _history_table(points))
+    ListOutput(form, as_json).show([point.document for point in points], lambda: _history_table(points))
 
 
 def _history_table(points: list[Point]) -> Table:

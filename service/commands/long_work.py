@@ -11,7 +11,7 @@ from estimator.errors import Problem
 from estimator.wording import counted
 from service.client import connect
 from service.commands.api import By, WhyHandled
-from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
+from service.commands.calls import Answer, Call, ListColumns, Row, app_of, in_address
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.speech import FAILED, output_language, problems_in_words, say
 from service.commands.upload import followed
@@ -122,7 +122,7 @@ def _outcome(recomputation: Answer) -> str:
     return f"{outcome['recomputed']} of {counted(outcome['sessions'], 'session')}; {changes or 'no verdict changes'}"
 
 
-JOBS = Columns(
+JOBS = ListColumns(
     "jobs",
     "There is no job.",
     {
@@ -134,7 +134,7 @@ JOBS = Columns(
         "by": lambda job: escape(job["who"]),
     },
 )
-MODELS = Columns(
+MODELS = ListColumns(
     "models",
     "No cause is accepted.",
     {

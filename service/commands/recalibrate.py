@@ -15,7 +15,7 @@ from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import FAILED, many, say
 from service.models.store import Models
 from service.opening import open_storage
-from service.records.many import Outcome, Run, by_workers, can_share, one_by_one, units_behind
+from service.records.many import Run, UnitOutcome, by_workers, can_share, one_by_one, units_behind
 from service.records.recalibrate import Recalibrated
 from service.settings import Settings
 from service.storage import Storage
@@ -70,7 +70,9 @@ def recalibrate_units(
         raise typer.Exit(FAILED)
 
 
-def _outcomes(storage: Storage, settings: Settings, units: list[str] | None, processes: Processes) -> Iterator[Outcome]:
+def _outcomes(
+    storage: Storage, settings: Settings, units: list[str] | None, processes: Processes
+) -> Iterator[UnitOutcome]:
     """Outcomes unit by unit."""
     with storage.database.reading() as store:
         count = len(units) if units else Models(store).count_behind()
@@ -101,7 +103,7 @@ class _Totals:
     def __init__(self) -> None:
         self.units = self.failed = self.recomputed = self.left = self.moved = 0
 
-    def add(self, outcome: Outcome) -> None:
+    def add(self, outcome: UnitOutcome) -> None:
         self.units += 1
         if outcome.done is None:
             self.failed += 1
@@ -118,7 +120,7 @@ class _Totals:
         return f"{many(self.units, 'unit')}: {summary}, {self.left:,} left as they were; {self.failed:,} failed"
 
 
-def _show(outcome: Outcome, as_json: bool) -> None:
+def _show(outcome: UnitOutcome, as_json: bool) -> None:
     """A line of a unit, and one of each session and unit that could not be computed."""
     if outcome.done is None:
         assert outcome.failure is not None

@@ -8,7 +8,7 @@ from rich.markup import escape
 
 from service.client import connect
 from service.commands.api import At, By, Unit
-from service.commands.calls import Answer, Call, Columns, Row, app_of
+from service.commands.calls import Answer, Call, ListColumns, Row, app_of
 from service.commands.console import DEFAULT_SERVER, Out, Server, deliver, screen, usable
 from service.commands.speech import output_language, translated
 
@@ -52,7 +52,7 @@ def _show_entry(entry: Answer) -> None:
         screen().print(f"  {line['at'][:10]}  {line['step']}  {escape(moved)}  {escape(line['who'])}  {remark}")
 
 
-REGISTER = Columns(
+REGISTER = ListColumns(
     "units",
     "No unit is known yet.",
     {
@@ -64,7 +64,7 @@ REGISTER = Columns(
         "retired": lambda unit: (unit["retired_at"] or "")[:10],
     },
 )
-DUE = Columns(
+DUE = ListColumns(
     "units",
     "Nothing is due.",
     {

@@ -43,7 +43,7 @@ from service.commands.hiding import (
     warmed,
     write_answer,
 )
-from service.demo.blocks import ELEMENT, MICRO, MICRO_G, Change, norms_of, schedule_of, step_of
+from service.demo.blocks import ELEMENT, MICRO, MICRO_G, ParameterMove, norms_of, schedule_of, step_of
 from service.demo.other_programmes import RATE_NOISE, alignment, orientations, rate_table, recording, turntable_truth
 
 USUAL_NOISE = {ACCELEROMETER: 2.5, GYROSCOPE: 0.3}
@@ -106,12 +106,12 @@ class Simulated:
     """None without a stand."""
 
 
-def read_drift(text: str) -> Change:
+def read_drift(text: str) -> ParameterMove:
     """``A3.bias=20`` as a change; a usage error when it is not of that form."""
     match = DRIFT.fullmatch(text)
     if match is None or match["parameter"] not in ELEMENT or match["sensor"] == "0":
         raise typer.BadParameter(f"{text!r}: write SENSOR.PARAMETER=AMOUNT, for instance A3.bias=20")
-    return Change(int(match["sensor"]) - 1, match["parameter"], float(match["amount"]))
+    return ParameterMove(int(match["sensor"]) - 1, match["parameter"], float(match["amount"]))
 
 
 def read_levers(texts: list[str]) -> Array | None:
@@ -228,7 +228,7 @@ def _earlier(simulated: Simulated, back: timedelta) -> Simulated:
 
 def _simulated(
     schedule: CalibrationSession,
-    changes: tuple[Change, ...],
+    changes: tuple[ParameterMove, ...],
     sessions: int,
     noise: float | None,
     rng: np.random.Generator,
@@ -255,7 +255,7 @@ def _simulated(
 def _turned(
     unit: str,
     programme: str,
-    changes: tuple[Change, ...],
+    changes: tuple[ParameterMove, ...],
     sessions: int,
     rng: np.random.Generator,
     *,

@@ -118,7 +118,7 @@ DEGREE_PER_HOUR = np.pi / 180 / 3600 / EARTH_RATE
 
 
 @dataclass(frozen=True)
-class Change:
+class ParameterMove:
     """How much one parameter of one sensor moves: ppm, µg (gyro: °/h), µg/g², arcsec."""
 
     sensor: int
@@ -127,7 +127,7 @@ class Change:
     amount: float
 
 
-def step_of(changes: tuple[Change, ...], sensors: int, kind: str) -> Array:
+def step_of(changes: tuple[ParameterMove, ...], sensors: int, kind: str) -> Array:
     """(m, 5) the changes added up, dimensionless."""
     bias = MICRO if kind == ACCELEROMETER else DEGREE_PER_HOUR
     factor = {"scale": MICRO, "bias": bias, "quadratic": MICRO, "axis": ARCSEC}

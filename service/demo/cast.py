@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
-from service.demo.blocks import Change, DemoEffect
+from service.demo.blocks import DemoEffect, ParameterMove
 from service.flags.records import FlagState, Matter
 
 START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
@@ -19,7 +19,7 @@ YEARS = 3.0
 class DemoDrift:
     """A change that grows to its full amount over the three years."""
 
-    change: Change
+    change: ParameterMove
     power: float = 1.0
     """1 grows steadily, 3 slowly at first and fast at the end."""
     ends: float = YEARS
@@ -30,7 +30,7 @@ class DemoDrift:
 class Jump:
     """A change that came at once, and that nobody recorded."""
 
-    change: Change
+    change: ParameterMove
     at: float
     """Years after the start."""
 
@@ -42,7 +42,7 @@ class Intervention:
     at: datetime
     kind: str
     note: str
-    changes: tuple[Change, ...]
+    changes: tuple[ParameterMove, ...]
     who: str = ""
     sensor: str = ""
     measured: bool = False
@@ -93,7 +93,7 @@ class DemoMember:
     """What the simulation gets wrong about the latest session."""
     programme: str = TWO_AXIS_STAND
     """How it is measured; on a turntable a drift's sensor is the axis of the accelerometers."""
-    flown: Change | None = None
+    flown: ParameterMove | None = None
     """What a recording in service, made after the last session, shows."""
 
     @property
@@ -103,7 +103,11 @@ class DemoMember:
 
 
 def _replaced(sensor: int, at: datetime) -> Intervention:
-    new = (Change(sensor, "scale", 310.0), Change(sensor, "bias", -420.0), Change(sensor, "axis", 140.0))
+    new = (
+        ParameterMove(sensor, "scale", 310.0),
+        ParameterMove(sensor, "bias", -420.0),
+        ParameterMove(sensor, "axis", 140.0),
+    )
     return Intervention(at, "sensor-swap", "Replaced, block aligned again.", new, "M. Okafor", f"A{sensor + 1}")
 
 
@@ -116,7 +120,7 @@ UNTIL_ADJUSTED = (ADJUSTED - START).days / 365.25
 
 
 def _adjusted() -> Intervention:
-    back = tuple(Change(sensor, "scale", -gain) for sensor, gain in GAINS.items())
+    back = tuple(ParameterMove(sensor, "scale", -gain) for sensor, gain in GAINS.items())
     note = "Amplifiers of A1 and A4 adjusted to nominal gain."
     return Intervention(ADJUSTED, "adjustment", note, back, "R. Duarte", measured=True)
 
@@ -136,7 +140,7 @@ CAST = (
     ),
     DemoMember(
         "BA-102", ACCELEROMETER, "bias of A5 jumped one day; the axis of A3 crept during the last session", 12,
-        jumps=(Jump(Change(4, "bias", 24.0), 1.5),),
+        jumps=(Jump(ParameterMove(4, "bias", 24.0), 1.5),),
         handled=(
             DemoHandling(
                 datetime(2026, 11, 13, 10, 0, tzinfo=UTC), "A5", FlagState.RESOLVED, "R. Duarte",
@@ -147,20 +151,23 @@ CAST = (
     ),
     DemoMember(
         "BA-103", ACCELEROMETER, "bias of A3 drifts, still within tolerance", 13,
-        drifts=(DemoDrift(Change(2, "bias", 34.0)),),
+        drifts=(DemoDrift(ParameterMove(2, "bias", 34.0)),),
         remarks=(Remark(datetime(2025, 5, 6, 12, 0, tzinfo=UTC), "Moved to the other hangar by road.", "K. Ito"),),
     ),
     DemoMember(
         "BA-104", ACCELEROMETER, "scale factor of A5 drifts up to its tolerance", 14,
-        drifts=(DemoDrift(Change(4, "scale", 104.0)),),
+        drifts=(DemoDrift(ParameterMove(4, "scale", 104.0)),),
     ),
     DemoMember(
         "BA-105", ACCELEROMETER, "axis of A2 creeps just over its tolerance", 13,
-        drifts=(DemoDrift(Change(1, "axis", 23.0), power=1.5),),
+        drifts=(DemoDrift(ParameterMove(1, "axis", 23.0), power=1.5),),
     ),
     DemoMember(
         "BA-106", ACCELEROMETER, "A6 fails: bias and scale factor run away", 15,
-        drifts=(DemoDrift(Change(5, "bias", 170.0), power=4.0), DemoDrift(Change(5, "scale", -150.0), power=4.0)),
+        drifts=(
+            DemoDrift(ParameterMove(5, "bias", 170.0), power=4.0),
+            DemoDrift(ParameterMove(5, "scale", -150.0), power=4.0),
+        ),
         handled=(
             DemoHandling(
                 datetime(2026, 11, 13, 9, 0, tzinfo=UTC), "A6", FlagState.ACKNOWLEDGED, "K. Ito",
@@ -170,7 +177,7 @@ CAST = (
     ),
     DemoMember(
         "BA-107", ACCELEROMETER, "A4 wore out and was replaced; a new reference since", 15,
-        drifts=(DemoDrift(Change(3, "bias", 150.0), power=1.5, ends=1.6),),
+        drifts=(DemoDrift(ParameterMove(3, "bias", 150.0), power=1.5, ends=1.6),),
         services=(_replaced(3, datetime(2025, 6, 20, 9, 0, tzinfo=UTC)),),
         handled=(
             DemoHandling(
@@ -183,7 +190,7 @@ CAST = (
     DemoMember(
         "BA-109", ACCELEROMETER, "amplifiers of A1 and A4 drifted and were adjusted; measured as found and as left", 11,
         drifts=tuple(
-            DemoDrift(Change(sensor, "scale", gain * YEARS / UNTIL_ADJUSTED), ends=UNTIL_ADJUSTED)
+            DemoDrift(ParameterMove(sensor, "scale", gain * YEARS / UNTIL_ADJUSTED), ends=UNTIL_ADJUSTED)
             for sensor, gain in GAINS.items()
         ),
         services=(_adjusted(),),
@@ -195,14 +202,14 @@ CAST = (
     DemoMember("BG-201", GYROSCOPE, "stable, but not measured for longer than it may be", 12, left=1.8),
     DemoMember(
         "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 13,
-        drifts=(DemoDrift(Change(1, "bias", 0.024)),),
+        drifts=(DemoDrift(ParameterMove(1, "bias", 0.024)),),
     ),
     DemoMember(
         "BA-111", ACCELEROMETER, "new, stable on the stand; its last flight shows that A2 moved since", 5, joined=2.1,
-        flown=Change(1, "bias", 120.0),
+        flown=ParameterMove(1, "bias", 120.0),
     ),
     DemoMember(
         "RT-301", GYROSCOPE, "aligned on a turntable before use; the bias of x drifts up to its tolerance", 9,
-        drifts=(DemoDrift(Change(0, "bias", 48.5)),), programme=ROTATION_ALIGNMENT,
+        drifts=(DemoDrift(ParameterMove(0, "bias", 48.5)),), programme=ROTATION_ALIGNMENT,
     ),
 )  # fmt: skip

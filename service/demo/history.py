@@ -28,7 +28,7 @@ from service.demo.blocks import (
     MICRO,
     SENSORS,
     TYPE_NAME,
-    Change,
+    ParameterMove,
     norms,
     schedule_of,
     sensors_of,
@@ -164,7 +164,7 @@ def _walk(kind: str, dates: list[datetime], rng: np.random.Generator) -> Array:
     return np.asarray(np.cumsum(np.sqrt(years)[:, None, None] * steps, axis=0))
 
 
-def _changes(member: DemoMember, at: datetime) -> tuple[Change, ...]:
+def _changes(member: DemoMember, at: datetime) -> tuple[ParameterMove, ...]:
     """What has drifted and what was done to the unit up to a time."""
     years = (at - START) / YEAR
     drifted = tuple(

@@ -14,7 +14,7 @@ from multiprocessing import get_context
 import numpy as np
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.demo.blocks import SENSORS, TYPE_NAME, Change, unit_type
+from service.demo.blocks import SENSORS, TYPE_NAME, ParameterMove, unit_type
 from service.demo.cast import END, START, YEARS, DemoDrift, DemoMember, Intervention, Jump
 from service.demo.fill import UPLOADED_AFTER
 from service.demo.history import files_of
@@ -89,7 +89,7 @@ def _member(serial: str, kind: str, rng: np.random.Generator) -> DemoMember:
     plain = DemoMember(serial, kind, story, int(rng.integers(*SESSIONS, endpoint=True)), joined)
     parameter = str(rng.choice(list(LIMIT[kind])))
     share = float(rng.choice((-1, 1)) * rng.uniform(0.3, 1.3))
-    change = Change(int(rng.integers(SENSORS)), parameter, share * LIMIT[kind][parameter])
+    change = ParameterMove(int(rng.integers(SENSORS)), parameter, share * LIMIT[kind][parameter])
     match story:
         case "drift":
             return replace(plain, drifts=(DemoDrift(change, power=float(rng.uniform(1.0, 2.0))),))

@@ -160,10 +160,10 @@ class FleetCondition:
             ConditionCount(condition_of(verdict), count, self.reserved.get(verdict, 0))
             for verdict, count in sorted(self.verdicts.items(), key=lambda item: -item[0].severity)
         ]
-        own = ConditionCount(REFERENCE, self.references, self.reserved_references)
-        judged = (one.without(own) if one.condition is UNDECIDED else one for one in found)
+        references = ConditionCount(REFERENCE, self.references, self.reserved_references)
+        judged = (one.without(references) if one.condition is UNDECIDED else one for one in found)
         unmeasured = ConditionCount(NOT_MEASURED, self.uncalibrated, 0)
-        return (*judged, *(one for one in (own, unmeasured) if one.count))
+        return (*judged, *(one for one in (references, unmeasured) if one.count))
 
     @classmethod
     def of(cls, tallies: Sequence[Tally], of_groups: int = 0, uncalibrated: int = 0) -> "FleetCondition":
@@ -172,10 +172,10 @@ class FleetCondition:
         counts = {verdict: [tally for tally in tallies if tally.verdict is verdict] for verdict in Verdict}
         return cls(
             units=sum(tally.units for tally in tallies) + uncalibrated,
-            verdicts={verdict: sum(tally.units for tally in own) for verdict, own in counts.items()},
+            verdicts={verdict: sum(tally.units for tally in of_verdict) for verdict, of_verdict in counts.items()},
             simulated=sum(tally.units for tally in tallies if tally.is_simulated),
             flags=sum(tally.flags for tally in tallies) + of_groups,
-            reserved={verdict: sum(tally.reserved for tally in own) for verdict, own in counts.items()},
+            reserved={verdict: sum(tally.reserved for tally in of_verdict) for verdict, of_verdict in counts.items()},
             references=sum(tally.units for tally in tallies if tally.is_reference),
             reserved_references=sum(tally.reserved for tally in tallies if tally.is_reference),
             uncalibrated=uncalibrated,

@@ -48,9 +48,9 @@ class FleetRows(Queries):
 
     def latest_sessions(self, serials: tuple[str, ...]) -> dict[str, LatestSession]:
         """The session that the verdict of each of some units is of, by serial number."""
-        own = (SessionRow.id, SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.is_reference)
+        latest = (SessionRow.id, SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.is_reference)
         query = (
-            select(UnitRow.serial, UnitRow.id, *own, SessionRow.verdict)
+            select(UnitRow.serial, UnitRow.id, *latest, SessionRow.verdict)
             .select_from(ConditionRow)
             .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
             .join(SessionRow, SessionRow.id == ConditionRow.last_session)

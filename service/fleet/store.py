@@ -120,10 +120,10 @@ class Fleet(Queries):
         return Refreshed(latest, list(Verdict)[severity], was_reference=changed and was_reference)
 
     def count_flags(self, unit: int) -> None:
-        """Rewrites how many flags of a unit are open; those of its type and of stands are not its own."""
+        """Rewrites how many flags of a unit are open; those of its type and of stands are not counted."""
         self.touch(unit)
-        own = (FlagRow.unit_id == unit, FlagRow.scope == Scope.UNIT, FlagRow.state != RESOLVED)
-        opened = select(func.count()).where(*own)
+        conditions = (FlagRow.unit_id == unit, FlagRow.scope == Scope.UNIT, FlagRow.state != RESOLVED)
+        opened = select(func.count()).where(*conditions)
         self._session.execute(
             update(ConditionRow).where(ConditionRow.unit_id == unit).values(flags=opened.scalar_subquery())
         )
@@ -279,8 +279,8 @@ def _summaries() -> Summaries:
 
 def _waiting() -> ScalarSelect[int]:
     """How many accepted sessions of a unit are to be judged or weighed."""
-    own = (Other.unit_id == UnitRow.id, is_waiting(Other.basis), Other.state == RecordState.ACCEPTED)
-    return select(func.count()).select_from(Other).where(*own).scalar_subquery()
+    conditions = (Other.unit_id == UnitRow.id, is_waiting(Other.basis), Other.state == RecordState.ACCEPTED)
+    return select(func.count()).select_from(Other).where(*conditions).scalar_subquery()
 
 
 def _reference(now: datetime) -> ScalarSelect[str]:
@@ -293,12 +293,12 @@ def _reference(now: datetime) -> ScalarSelect[str]:
             (func.min(ServiceRow.at), ServiceRow.at > now),
         )
     )
-    own = (
+    conditions = (
         Other.unit_id == UnitRow.id, Other.block == UnitTypeRow.block, Other.programme.in_(PROGRAMMES),
         Other.is_reference, Other.state == RecordState.ACCEPTED,
         or_(since.is_(None), Other.started_at >= since), or_(until.is_(None), Other.started_at < until),
     )  # fmt: skip
-    return select(Other.id).where(*own).order_by(Other.started_at, Other.id).limit(1).scalar_subquery()
+    return select(Other.id).where(*conditions).order_by(Other.started_at, Other.id).limit(1).scalar_subquery()
 
 
 def _summary(row: Sequence[Any]) -> UnitSummary:

@@ -43,7 +43,7 @@ class Tallies(Queries):
 
     def _settle_conditions(self, units: Collection[int]) -> None:
         was, now = self._tallied_and_seen(units)
-        changed = {unit for unit, own in now.items() if was.get(unit) != own}
+        changed = {unit for unit, tally in now.items() if was.get(unit) != tally}
         if not changed:
             return
         rows = [{"unit_id": unit, **now[unit]} for unit in sorted(changed)]
@@ -64,14 +64,14 @@ class Tallies(Queries):
             }
             for unit, of_type, severity, reference, simulated, margin, flags, reserved, entered, gone, *_ in rows
         }  # fmt: skip
-        return {unit: own for unit, own in was.items() if own["severity"] is not None}, now
+        return {unit: tally for unit, tally in was.items() if tally["severity"] is not None}, now
 
     def _settle_stands(self, units: Collection[int]) -> None:
         was, now = self._stood_and_stands(units)
         changed = sorted(key for key in {*was, *now} if was.get(key) != now.get(key))
         for unit, stand in (key for key in changed if key not in now):
-            own = (StandUnitRow.unit_id == unit, StandUnitRow.stand_id == stand)
-            self._session.execute(delete(StandUnitRow).where(*own))
+            place = (StandUnitRow.unit_id == unit, StandUnitRow.stand_id == stand)
+            self._session.execute(delete(StandUnitRow).where(*place))
         kept = [{"unit_id": key[0], "stand_id": key[1], "sessions": now[key]} for key in changed if key in now]
         _put(self._session, StandUnitRow, ("unit_id", "stand_id"), kept)
         counts: dict[Key, Counter[str]] = {}
@@ -125,10 +125,10 @@ def _counted(come: Iterable[Mapping[str, Any]], gone: Iterable[Mapping[str, Any]
     counts: dict[Key, Counter[str]] = {}
     for sign, rows in ((1, come), (-1, gone)):
         for row in rows:
-            own = counts.setdefault(tuple(row[name] for name in KEY), Counter())
+            counter = counts.setdefault(tuple(row[name] for name in KEY), Counter())
             for name, count in (("units", 1), ("flags", row["flags"]), ("reserved", row["reserved"])):
-                own[name] += sign * count
-    return {key: {name: own[name] for name in ("units", "flags", "reserved")} for key, own in counts.items()}
+                counter[name] += sign * count
+    return {key: {name: counter[name] for name in ("units", "flags", "reserved")} for key, counter in counts.items()}
 
 
 def _add(session: Session, table: type[Base], key: tuple[str, ...], counts: Mapping[Key, Mapping[str, int]]) -> None:
@@ -136,8 +136,8 @@ def _add(session: Session, table: type[Base], key: tuple[str, ...], counts: Mapp
     rows = list(_rows(key, counts))
     if not rows:
         return
-    own = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert
-    new = own(table).values(rows)
+    insertion = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert
+    new = insertion(table).values(rows)
     names = [name for name in rows[0] if name not in key]
     added = {name: getattr(table, name) + getattr(new.excluded, name) for name in names}
     session.execute(new.on_conflict_do_update(index_elements=list(key), set_=added))
@@ -147,8 +147,8 @@ def _put(session: Session, table: type[Base], key: tuple[str, ...], rows: Sequen
     """Rows in place of those of their keys."""
     if not rows:
         return
-    own = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert
-    new = own(table)
+    insertion = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert
+    new = insertion(table)
     kept = {name: getattr(new.excluded, name) for name in rows[0] if name not in key}
     session.execute(new.on_conflict_do_update(index_elements=list(key), set_=kept), list(rows))
 

@@ -93,13 +93,15 @@ class Announcements(Queries):
             .order_by(shifts.c.name, waiting.c.uploaded_at.desc(), waiting.c.id, together.c.place, together.c.group_id)
         )
         rows = self._session.execute(query).mappings().all()
-        own = {name: [row for row in rows if row["list"] == name] for name in ("stands", "questioned", "found")}
-        groups = [row for row in own["found"] if row["level"] is not None]
+        by_list = {name: [row for row in rows if row["list"] == name] for name in ("stands", "questioned", "found")}
+        groups = [row for row in by_list["found"] if row["level"] is not None]
         return Announced(
             stands=tuple(
-                STORED.read(StandCondition, r["document"]) for r in own["stands"] if r["document"] is not None
+                STORED.read(StandCondition, r["document"]) for r in by_list["stands"] if r["document"] is not None
             ),
-            questioned=tuple(Questioned(r["id"], r["serial"], r["started_at"]) for r in own["questioned"] if r["id"]),
+            questioned=tuple(
+                Questioned(r["id"], r["serial"], r["started_at"]) for r in by_list["questioned"] if r["id"]
+            ),
             found=tuple(
                 FoundTogether(Group(Level(r["level"]), r["group_id"], r["group_name"]), r["own"]) for r in groups
             ),

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.layout import EVERY
-from estimator.groups.results import EmpiricalTerm, GroupGain, PoolLimit, Rival, SessionAmplitude
+from estimator.groups.results import EmpiricalTerm, GroupGain, GroupRival, PoolLimit, SessionAmplitude
 from estimator.message import Message, capitalised, joined, say, say_count, uncapitalised, without_stop
 from estimator.moments import moment
 from estimator.session import ACCELEROMETER
@@ -344,7 +344,7 @@ def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
     return own == theirs and set(finding.sensors) <= set(revision.sensors)
 
 
-def _choice(rival: Rival) -> GroupChoice:
+def _choice(rival: GroupRival) -> GroupChoice:
     whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
     count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
     sensors = () if "*" in rival.sensors else rival.sensors

@@ -82,7 +82,7 @@ class ProgressReporter:
             self._listener = None
 
 
-class _InForce:
+class _Reporter:
     """The reporter of this process."""
 
     progress_reporter = ProgressReporter()
@@ -90,12 +90,12 @@ class _InForce:
 
 def progress_reporter() -> ProgressReporter:
     """Of this process."""
-    return _InForce.progress_reporter
+    return _Reporter.progress_reporter
 
 
 def use(reporter: ProgressReporter) -> None:
     """Sets the reporter of this process."""
-    _InForce.progress_reporter = reporter
+    _Reporter.progress_reporter = reporter
 
 
 SERVER = "service.ingest.fork_server"
@@ -265,7 +265,7 @@ def _fill_view(child: socket.socket, view: memoryview) -> None:
         view = view[count:]
 
 
-class _Server:
+class _ForkServer:
     """The fork server, started on first use and again when it is gone."""
 
     def __init__(self) -> None:
@@ -379,6 +379,6 @@ class _Slots:
 
 
 BUSY = "Many large files are being read; nothing of this one was stored. Send it again in a few seconds."
-_server = _Server()
+_server = _ForkServer()
 _slots = _Slots()
 atexit.register(_server.stop)

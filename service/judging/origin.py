@@ -18,7 +18,7 @@ from estimator.session import CALIBRATIONS, CalibrationSession
 from service.ingest.checked import Checked
 from service.judging.reference import KnownUnit
 from service.kit.measures import day_of
-from service.sessions.doubt import Correction, Doubt, Remedy
+from service.sessions.doubt import Doubt, FileCorrection, Remedy
 from service.sessions.history_store import History
 from service.sessions.records import ParameterValue, StoredSession
 from service.sessions.store import Sessions
@@ -173,7 +173,7 @@ def of_unit(
             say(
                 "is this {unit}? The serial number is mistyped in one of both files, or this is a copy", unit=copy.unit
             ),
-            Correction(Remedy.UNIT, unit=copy.unit),
+            FileCorrection(Remedy.UNIT, unit=copy.unit),
             stands_for=copy.id,
         )
         return
@@ -189,7 +189,7 @@ def of_unit(
                     question=near[1],
                 ),
                 say("is this {similar_unit}? The serial number is probably mistyped", similar_unit=near[0]),
-                Correction(Remedy.UNIT, unit=near[0]),
+                FileCorrection(Remedy.UNIT, unit=near[0]),
             )
 
 

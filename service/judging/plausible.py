@@ -20,7 +20,7 @@ from service.ingest.checked import Checked
 from service.judging.beside_type import MOST, beside_type, type_of_references
 from service.judging.origin import of_date, of_moment, of_unit
 from service.judging.reference import KnownUnit
-from service.sessions.doubt import Correction, Doubt, Remedy
+from service.sessions.doubt import Doubt, FileCorrection, Remedy
 from service.sessions.history_store import History
 from service.storage.queries import Store
 from service.types.records import UnitType
@@ -157,18 +157,20 @@ def _alike(ratios: dict[str, float]) -> Iterator[tuple[str, ...]]:
         yield first, *others
 
 
-def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, Correction | None]:
+def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, FileCorrection | None]:
     """What makes such a ratio, and what takes it back."""
     for factor in THOUSANDS:
         if factor / LIKE < ratio < factor * LIKE:
             slip = "the readings are not in the unit that the file states, such as mV instead of V"
-            return slip, Correction(remedy, sensors, 1 / factor)
+            return slip, FileCorrection(remedy, sensors, 1 / factor)
     if remedy is Remedy.BOTH:
         return "the unit or sensor is not the one in the file", None
     for factors, slip in ((IN_G, "g and m/s² were confused"), (IN_DEGREES, "degrees instead of radians")):
         for factor in factors:
             if factor / LIKE < ratio < factor * LIKE:
-                return say("{slip} in the nominal scale factor", slip=slip), Correction(Remedy.NOMINAL, sensors, factor)
+                return say("{slip} in the nominal scale factor", slip=slip), FileCorrection(
+                    Remedy.NOMINAL, sensors, factor
+                )
     return "the unit, sensor or nominal scale factor is not the one in the file", None
 
 
@@ -190,11 +192,11 @@ def _of_axes(found: Found) -> Iterator[Doubt]:
             yield Doubt(
                 say("{name} has the wrong sign", name=name),
                 "its sign is reversed",
-                Correction(Remedy.READINGS, (name,), -1.0),
+                FileCorrection(Remedy.READINGS, (name,), -1.0),
             )
         elif other is not None:
             done |= {name, other}
-            pair = Correction(Remedy.EXCHANGE, (name, other))
+            pair = FileCorrection(Remedy.EXCHANGE, (name, other))
             yield Doubt(
                 say(
                     "{name} measures along the axis of {other}, and {other} along that of {name}",

@@ -74,7 +74,7 @@ class Pooled(Document, forms=dict.fromkeys(("first", "last", "since"), MOMENT)):
 
 
 @dataclass(frozen=True)
-class Evidence:
+class AcceptedFinding:
     """The finding on which a cause was accepted, and its gain."""
 
     p_value: float
@@ -109,7 +109,7 @@ class ModelRevision:
     """Sensors that it acts on; none for a cause of stand or fixture."""
     session: str
     """The session that showed it."""
-    evidence: Evidence | None
+    evidence: AcceptedFinding | None
     """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions adds,
     null where a single session showed it."""
     accepted_by: str

@@ -8,7 +8,7 @@ from estimator.groups.layout import EVERY
 from estimator.moments import moment
 from estimator.results import SensorCalibration
 from service.ingest.checked import Checked
-from service.models.records import Evidence, Model, ModelRevision, Pooled, Scope
+from service.models.records import AcceptedFinding, Model, ModelRevision, Pooled, Scope
 from service.models.store import Models
 from service.storage.queries import Store
 
@@ -63,7 +63,7 @@ def _fixed(revisions: Sequence[ModelRevision], at: datetime) -> Iterator[FixedEf
             yield _effect(revision, evidence, pooled)
 
 
-def _effect(revision: ModelRevision, evidence: Evidence, pooled: Pooled) -> FixedEffect:
+def _effect(revision: ModelRevision, evidence: AcceptedFinding, pooled: Pooled) -> FixedEffect:
     return FixedEffect(
         cause=revision.cause,
         sensors=revision.sensors,

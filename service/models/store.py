@@ -10,7 +10,7 @@ from estimator.message import say
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
 from service.models.records import (
-    Evidence,
+    AcceptedFinding,
     ModelRevision,
     MovedParameter,
     MovedVerdict,
@@ -34,14 +34,14 @@ from service.types.tables import UnitTypeRow
 from service.units.tables import UnitRow
 
 
-def evidence_to_dict(evidence: Evidence | None) -> Json:
+def evidence_to_dict(evidence: AcceptedFinding | None) -> Json:
     """The document of a revision's evidence; empty for a withdrawal."""
     return {} if evidence is None else STORED.written(evidence)
 
 
-def evidence_from_dict(entry: Json) -> Evidence | None:
+def evidence_from_dict(entry: Json) -> AcceptedFinding | None:
     """Reads a document of `evidence_to_dict`."""
-    return STORED.read(Evidence, entry) if entry else None
+    return STORED.read(AcceptedFinding, entry) if entry else None
 
 
 OWNER = or_(

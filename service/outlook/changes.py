@@ -37,14 +37,14 @@ class Sources:
 
     past: Past
     known: Histories
-    """The unit's own."""
+    """The unit's."""
     histories: TypeHistories
     together: tuple[str, ...]
     """What all sensors did together, and what a diagnosis explains of the latest changes, in words."""
 
 
 def known_of(store: Store, serial: str) -> Histories:
-    """A unit's own histories since its last break."""
+    """The histories of a unit since its last break."""
     unit = Units(store).key(serial)
     since, _ = Services(store).around(unit, END_OF_TIME)
     changes, references = Outlooks(store).changes(unit, since), Outlooks(store).references(unit, since)

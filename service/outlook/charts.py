@@ -11,7 +11,7 @@ import altair as alt
 from estimator.json_object import Json
 from service.kit.measures import Measure, day_of, deviation_measure, in_measure, limit, measured, signed
 from service.outlook.records import ParameterTrend
-from service.outlook.rules.histories import Change, changes_of
+from service.outlook.rules.histories import MeasuredChange, changes_of
 from service.sessions.charts import (
     DATA_FORM,
     HIGH,
@@ -60,7 +60,7 @@ class TrackPoint:
 
 
 @dataclass(frozen=True)
-class Track:
+class ParameterCourse:
     """One parameter of one sensor through time, oldest first; never empty."""
 
     name: str
@@ -80,7 +80,7 @@ class Track:
         return tuple(firsts)
 
 
-def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> tuple[tuple[Track, ...], ...]:
+def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> tuple[tuple[ParameterCourse, ...], ...]:
     """The tracks of a unit, grouped by parameter and kind of sensor, sensors in the order they come."""
     groups: dict[tuple[int, str], dict[str, list[HistoryPoint]]] = {}
     for point in sorted(history, key=lambda p: p.at):
@@ -89,14 +89,16 @@ def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> t
     return tuple(_group(groups[key], services) for key in sorted(groups))
 
 
-def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]) -> tuple[Track, ...]:
+def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]) -> tuple[ParameterCourse, ...]:
     changes = {name: changes_of(by_sensor[name], services) for name in sorted(by_sensor, key=_natural)}
     first = next(iter(changes.values()))[0].point
-    largest = max(change.largest for own in changes.values() for change in own)
+    largest = max(change.largest for course in changes.values() for change in course)
     unit = deviation_measure(first.kind, first.parameter, largest)
     return tuple(
-        Track(f"{first.parameter}-{first.kind}", name, first.parameter, unit, tuple(_track_point(c, unit) for c in own))
-        for name, own in changes.items()
+        ParameterCourse(
+            f"{first.parameter}-{first.kind}", name, first.parameter, unit, tuple(_track_point(c, unit) for c in course)
+        )
+        for name, course in changes.items()
     )
 
 
@@ -106,7 +108,7 @@ def _natural(name: str) -> tuple[str, int, str]:
     return name.rstrip("0123456789"), int(digits or 0), name
 
 
-def _track_point(change: Change, unit: Measure) -> TrackPoint:
+def _track_point(change: MeasuredChange, unit: Measure) -> TrackPoint:
     point, allowed = change.point, in_measure(change.tolerance, unit)
     floor = None if allowed is None else -allowed
     return TrackPoint(
@@ -125,14 +127,14 @@ def _track_point(change: Change, unit: Measure) -> TrackPoint:
     )
 
 
-def _text(change: Change, unit: Measure) -> str:
+def _text(change: MeasuredChange, unit: Measure) -> str:
     if change.value is None:
         return "not observable"
     write = measured if change.is_angle else signed
     return write(change.value, change.expanded, unit)
 
 
-def tolerance_text(track: Track) -> str:
+def tolerance_text(track: ParameterCourse) -> str:
     """``±40 µg`` as it holds now."""
     last = next((p.limit_upper for p in reversed(track.points) if p.limit_upper is not None), None)
     if last is None:
@@ -155,13 +157,16 @@ def trends_by_place(trends: Sequence[ParameterTrend]) -> Trends:
     return {(trend.sensor, trend.kind, trend.parameter): trend for trend in trends}
 
 
-def trend_of(track: Track, trends: Trends) -> ParameterTrend | None:
+def trend_of(track: ParameterCourse, trends: Trends) -> ParameterTrend | None:
     """The trend of a track."""
     return trends.get((track.sensor, track.name.rpartition("-")[2], track.parameter))
 
 
 def forecast_data(
-    track: Track, trends: Trends, iso: Callable[[datetime], str], short: Callable[[float | None], float | None]
+    track: ParameterCourse,
+    trends: Trends,
+    iso: Callable[[datetime], str],
+    short: Callable[[float | None], float | None],
 ) -> dict[str, list[Json]]:
     """The data sets of one panel; empty without a trend."""
     trend = trend_of(track, trends)
@@ -191,13 +196,13 @@ def forecast_layers(x: alt.X) -> list[alt.Chart]:
     ]
 
 
-def forecast_dates(tracks: Sequence[Track], trends: Trends) -> list[datetime]:
+def forecast_dates(tracks: Sequence[ParameterCourse], trends: Trends) -> list[datetime]:
     """The dates that a chart must have room for."""
     found = (trend_of(track, trends) for track in tracks)
     return [point.at for trend in found if trend is not None for point in trend.fan]
 
 
-def forecast_edges(tracks: Sequence[Track], trends: Trends) -> list[float]:
+def forecast_edges(tracks: Sequence[ParameterCourse], trends: Trends) -> list[float]:
     """The values that a chart must have room for: the inner bounds, up to one and a half tolerances."""
     edges = []
     for track in tracks:
@@ -292,7 +297,7 @@ AIR = 0.04
 
 
 def history_charts(
-    tracks: Sequence[Track],
+    tracks: Sequence[ParameterCourse],
     services: Sequence[Service],
     notes: Sequence[Note] = (),
     trends: Sequence[ParameterTrend] = (),
@@ -308,7 +313,9 @@ def history_charts(
     )
 
 
-def _panel(track: Track, services: Sequence[Service], notes: Sequence[Note], span: list[str], trends: Trends) -> Panel:
+def _panel(
+    track: ParameterCourse, services: Sequence[Service], notes: Sequence[Note], span: list[str], trends: Trends
+) -> Panel:
     return Panel(
         title=track.sensor,
         description=track.points[-1].text,
@@ -336,7 +343,7 @@ def _point(point: TrackPoint) -> Json:
     }
 
 
-def _limits(track: Track, span: list[str]) -> list[Json]:
+def _limits(track: ParameterCourse, span: list[str]) -> list[Json]:
     """Tolerance and reference, each stretch until the next one begins, from edge to edge of the chart."""
     starts = [_iso(point.at) for point in track.limits]
     return [
@@ -354,14 +361,14 @@ def _short(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.6g}")
 
 
-def _filled(tracks: Sequence[Track], span: list[str], trends: Trends) -> Json:
+def _filled(tracks: Sequence[ParameterCourse], span: list[str], trends: Trends) -> Json:
     low, high = _range(tracks, trends)
     values = {UNIT: tracks[0].unit.label, LEFT: span[0], RIGHT: span[1], LOW: low, HIGH: high}
     found: Json = filled(history_spec(), values)
     return found
 
 
-def _span(tracks: Sequence[Track], trends: Trends, events: Sequence[datetime]) -> list[str]:
+def _span(tracks: Sequence[ParameterCourse], trends: Trends, events: Sequence[datetime]) -> list[str]:
     """One stretch of time for all sensors, so that what happened together stands in line; with what happened since
     their first session, a note of today among it."""
     dates = [p.at for track in tracks for p in track.points] + forecast_dates(tracks, trends)
@@ -370,7 +377,7 @@ def _span(tracks: Sequence[Track], trends: Trends, events: Sequence[datetime]) -
     return [_iso(min(dates) - air), _iso(max(dates) + air)]
 
 
-def _range(tracks: Sequence[Track], trends: Trends) -> list[float]:
+def _range(tracks: Sequence[ParameterCourse], trends: Trends) -> list[float]:
     """One range for all sensors: which of them stands out is then seen at a glance."""
     edges = [
         edge

@@ -34,12 +34,12 @@ SHARED_SCOPES = ("stand", "fixture", "record")
 
 
 @dataclass(frozen=True, eq=False)
-class _Explained:
+class _ExplainedSession:
     """One session whose diagnosis explains a part of its changes."""
 
     session: str
     found: Diagnosed
-    own: Calibration
+    calibration: Calibration
     """In force."""
     reference: Calibration
     """That its changes are counted from."""
@@ -58,14 +58,16 @@ def left_of(
     against = {id: first[sessions[id]] for id in found if sessions[id] in first}
     known = Calibrations(store).in_force({*against, *against.values()})
     tolerances = tolerances_of(UnitTypes(store).of_unit(serial))
-    each = (_Explained(id, found[id], known[id], known[reference]) for id, reference in against.items())
+    each = (_ExplainedSession(id, found[id], known[id], known[reference]) for id, reference in against.items())
     return {place: left for one in each for place, left in _left(one, tolerances).items()}
 
 
 @outside_writing
-def _left(one: _Explained, tolerances: Mapping[tuple[str, str], float]) -> dict[Place, Left]:
-    whole = {(own.sensor, own.parameter): own for own in judge(one.own, one.reference, tolerances)}
-    rest = {(own.sensor, own.parameter): own for own in judge(one.found.calibration, one.reference, tolerances)}
+def _left(one: _ExplainedSession, tolerances: Mapping[tuple[str, str], float]) -> dict[Place, Left]:
+    whole = {(judged.sensor, judged.parameter): judged for judged in judge(one.calibration, one.reference, tolerances)}
+    rest = {
+        (judged.sensor, judged.parameter): judged for judged in judge(one.found.calibration, one.reference, tolerances)
+    }
     doubt, apart = _doubt(one.found.findings), _with_causes_of_their_own(one.found.findings)
     pairs = {key: (whole[key], rest[key]) for key in whole.keys() & rest.keys() if key[0] not in apart}
     found = {(one.session, *key): _beside(*pair, doubt) for key, pair in pairs.items()}
@@ -77,14 +79,14 @@ def _beside(whole: ParameterJudgement, rest: ParameterJudgement, doubt: float) -
     if whole.change is None or rest.change is None or rest.change_own is None:
         return None
     part = np.subtract(whole.change, rest.change)
-    own = np.sqrt(np.square(rest.change_own) + doubt * part**2)
-    return Left(change=list(rest.change), own=own.tolist(), dof=rest.dof, part=part.tolist())
+    sigma = np.sqrt(np.square(rest.change_own) + doubt * part**2)
+    return Left(change=list(rest.change), own=sigma.tolist(), dof=rest.dof, part=part.tolist())
 
 
 def explains(found: Diagnosed) -> bool:
     """Whether any of what was named is no sensor's own, and every sensor that has a cause of its own is known."""
-    own = [finding for finding in found.findings if not _is_shared(finding)]
-    return len(own) < len(found.findings) and all(finding.sensors for finding in own)
+    individual = [finding for finding in found.findings if not _is_shared(finding)]
+    return len(individual) < len(found.findings) and all(finding.sensors for finding in individual)
 
 
 def _is_shared(finding: Finding) -> bool:

@@ -20,13 +20,13 @@ from service.units.store import Units
 
 def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
     """One unit's outlook within a transaction."""
-    own = Outlooks(store).of_unit(serial)
-    if own is None:
+    known = Outlooks(store).of_unit(serial)
+    if known is None:
         Units(store).key(serial)
-        own = nothing_known(serial)
+        known = nothing_known(serial)
     why = WorkQueue(store, WorkKind.OUTLOOK).failed(serial)
     return replace(
-        compared(own, Populations(store).of_type(own.unit_type), now), failed=unit_failed(why) if why else ""
+        compared(known, Populations(store).of_type(known.unit_type), now), failed=unit_failed(why) if why else ""
     )
 
 

@@ -72,7 +72,7 @@ def unpacked(content: bytes) -> tuple[Evidence, ...]:
     if parts != SHAPE[1]:  # of temperature they tell nothing: as likely with it as without
         evidence = np.concatenate([evidence, np.repeat(evidence[..., :1], WARM, axis=2)], axis=2)
     return tuple(
-        Evidence(float(row[0]), *own) for row, own in zip(rows, zip(evidence, tails, strict=True), strict=True)
+        Evidence(float(row[0]), *rest) for row, rest in zip(rows, zip(evidence, tails, strict=True), strict=True)
     )
 
 
@@ -152,11 +152,11 @@ class Outlooks(Queries):
 
     def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
         """The sessions since a time that others are judged against, oldest first."""
-        own = (ParameterRow.session_id == SessionRow.id) & (ParameterRow.revision == SessionRow.revision)
+        of_session = (ParameterRow.session_id == SessionRow.id) & (ParameterRow.revision == SessionRow.revision)
         query = select(
             SessionRow.id, SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature,
             ParameterRow.sensor, ParameterRow.parameter, ParameterRow.u,
-        ).outerjoin(ParameterRow, own & ParameterRow.parameter.in_(FOLLOW))  # fmt: skip
+        ).outerjoin(ParameterRow, of_session & ParameterRow.parameter.in_(FOLLOW))  # fmt: skip
         order = (SessionRow.started_at, SessionRow.id)
         rows = self._session.execute(query.where(SessionRow.is_reference, *_within(unit, since)).order_by(*order))
         found: dict[str, ReferenceRow] = {}
@@ -274,14 +274,14 @@ def overdue_count(now: datetime) -> Select[int]:
 
 def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
     """Sessions of a unit from a time on."""
-    own = [SessionRow.unit_id == unit, IS_ACCEPTED]
-    return own if since is None else [*own, SessionRow.started_at >= since]
+    conditions = [SessionRow.unit_id == unit, IS_ACCEPTED]
+    return conditions if since is None else [*conditions, SessionRow.started_at >= since]
 
 
 def _newest(unit: int) -> Select[str, datetime]:
     """The latest session of a unit, and when."""
-    own = select(SessionRow.id, SessionRow.started_at).where(*_within(unit, None))
-    return own.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(1)
+    sessions = select(SessionRow.id, SessionRow.started_at).where(*_within(unit, None))
+    return sessions.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(1)
 
 
 def _outlooks() -> Select[OutlookRow, str | None, str]:
@@ -328,23 +328,23 @@ class Populations(Queries):
 
     def furthest(self, most: int) -> FarOut:
         """So many populations of those with the furthest units, and of those with the furthest lots."""
-        own = PopulationRow
+        table = PopulationRow
         far, lots = (
             select(column).where(column > 0).order_by(column.desc()).offset(most - 1).limit(1).scalar_subquery()
-            for column in (own.furthest, own.furthest_lot)
+            for column in (table.furthest, table.furthest_lot)
         )
-        among = (func.coalesce(select(func.sum(column)).scalar_subquery(), 0) for column in (own.rates, own.lots))
+        among = (func.coalesce(select(func.sum(column)).scalar_subquery(), 0) for column in (table.rates, table.lots))
         query = (
             _populations()
             .add_columns(*among)
             .where(
                 or_(
-                    (own.furthest > 0) & (own.furthest >= func.coalesce(far, 0.0)),
-                    (own.furthest_lot > 0) & (own.furthest_lot >= func.coalesce(lots, 0.0)),
+                    (table.furthest > 0) & (table.furthest >= func.coalesce(far, 0.0)),
+                    (table.furthest_lot > 0) & (table.furthest_lot >= func.coalesce(lots, 0.0)),
                 )
             )
         )
-        rows = self._session.execute(query.order_by(own.unit_type_id, own.kind, own.parameter)).all()
+        rows = self._session.execute(query.order_by(table.unit_type_id, table.kind, table.parameter)).all()
         rates, lots_in_all = rows[0][2:] if rows else (0, 0)
         return FarOut(tuple(_population(row[:2]) for row in rows), rates, lots_in_all)
 

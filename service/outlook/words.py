@@ -249,7 +249,7 @@ def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:
 
 
 def has_moved(trend: ParameterTrend) -> bool:
-    """Whether a parameter is far from its reference: beyond its own uncertainty, and a good part of its tolerance."""
+    """Whether a parameter is far from its reference: beyond its uncertainty, and a good part of its tolerance."""
     return abs(trend.level) > max(FAR * trend.level_sigma, trend.tolerance / 2)
 
 

@@ -1,6 +1,6 @@
 """The pages that explain the service.
 
-What a word means is what `docs/glossary.md` says first, to the letter; a test holds the two together.
+A word that stands in `docs/glossary.md` too means the same there, to the letter; a test holds the two together.
 """
 
 from collections.abc import Mapping
@@ -218,8 +218,8 @@ def _answer(status: str, said: Mapping[str, Any]) -> Answer:
 def _schema(name: str, schema: Mapping[str, Any]) -> Schema:
     needed = schema.get("required", ())
     fields = tuple(
-        FieldHelp(field, "", _kind(own), _schema_of(own), field in needed, own.get("description", ""))
-        for field, own in schema.get("properties", {}).items()
+        FieldHelp(field, "", _kind(described), _schema_of(described), field in needed, described.get("description", ""))
+        for field, described in schema.get("properties", {}).items()
     )
     return Schema(name, schema.get("description", ""), fields)
 

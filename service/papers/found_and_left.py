@@ -89,8 +89,8 @@ def found_and_left(
         """By the current tolerances; as found at the reference's temperature where a law is known."""
         if session is None or reference is None:
             return ()
-        own = steps.get(session.id, NO_STEPS) if session is found else NO_STEPS
-        return decisions_of(calibrations[session.id], calibrations[reference], unit_type, coverage_factor, own)
+        step = steps.get(session.id, NO_STEPS) if session is found else NO_STEPS
+        return decisions_of(calibrations[session.id], calibrations[reference], unit_type, coverage_factor, step)
 
     return FoundAndLeft(None if reference == found.id else reference, found, left, _paired(judged(found), judged(left)))
 

@@ -32,7 +32,7 @@ class Seal:
 
 
 def seal_room() -> ModuleType:
-    """The part that needs libraries of its own; ServiceError in words where they are not installed."""
+    """The part that needs further libraries; ServiceError in words where they are not installed."""
     try:
         return import_module(ROOM)
     except ModuleNotFoundError as fault:

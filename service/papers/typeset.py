@@ -52,7 +52,7 @@ def _compiled(template: str, record: Any, language: Language, **options: Any) ->
 
 @lru_cache
 def _words(language: Language) -> Mapping[str, str]:
-    """Translations of the templates' own texts; English is in the templates."""
+    """Translations of the templates' texts; English is in the templates."""
     if language is ENGLISH:
         return {}
     sources = (path.read_text("utf-8") for path in sorted(TEMPLATES.glob("*.typ")))

@@ -72,7 +72,7 @@ class Claims:
 
 
 @dataclass(frozen=True)
-class Answer:
+class Callback:
     """Parameters of the callback."""
 
     code: str
@@ -89,7 +89,7 @@ class Provider(Protocol):
     def address(self, journey: Journey, back: str) -> str:
         """Address of the sign-in page; AwayError where the provider does not answer."""
 
-    def claims(self, answer: Answer, journey: Journey, back: str, now: datetime) -> Claims:
+    def claims(self, answer: Callback, journey: Journey, back: str, now: datetime) -> Claims:
         """The person's claims; SignInError for an invalid answer."""
 
 

@@ -104,7 +104,7 @@ def judged_by_defaults(session: CalibrationSession, asked: ReadyQuestion) -> Ask
 
 def defaults() -> dict[tuple[str, str], float]:
     """The tolerances that hold until an engineer sets others."""
-    stated = {(kind, name): getattr(own, name) for kind, own in DEFAULTS.items() for name in PARAMETERS}
+    stated = {(kind, name): getattr(default, name) for kind, default in DEFAULTS.items() for name in PARAMETERS}
     return {key: tolerance for key, tolerance in stated.items() if tolerance is not None}
 
 

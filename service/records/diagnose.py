@@ -49,7 +49,7 @@ MOST_EARLIER = 10
 
 
 @dataclass(frozen=True)
-class Task:
+class DiagnosisTask:
     """A stored session with what its diagnosis looks at."""
 
     session: StoredSession
@@ -58,12 +58,12 @@ class Task:
     model_revision: int
 
 
-def task_of(store: Store, id: str) -> Task:
+def task_of(store: Store, id: str) -> DiagnosisTask:
     """What the diagnosis of a session looks at."""
     session = Sessions(store).get(id)
     since, _ = Services(store).around(Units(store).key(session.unit), session.started_at)
     revisions = Models(store).of_session(id)
-    return Task(
+    return DiagnosisTask(
         session, Sessions(store).before(session, since, MOST_EARLIER), max((r.id for r in revisions), default=0)
     )
 
@@ -129,7 +129,7 @@ def known_of(store: Store, id: str) -> StoredDiagnosis | None:
 
 
 @outside_writing
-def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
+def _made(storage: Storage, task: DiagnosisTask, now: datetime) -> StoredDiagnosis:
     """Reads the stored bytes again and looks for causes, where the programme is one that can show any."""
     if task.session.programme not in DIAGNOSED:
         nothing = json_text(inapplicable_to_dict(task.session.unit))
@@ -141,7 +141,7 @@ def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
         return _failed(task, cannot_be_diagnosed(fault), now)
 
 
-def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
+def _found(storage: Storage, task: DiagnosisTask, now: datetime) -> StoredDiagnosis:
     """The session's causes, and its verdict with them in the model."""
     session = _read(storage.files, task.session)
     earlier = _comparable(storage.files, task, session)
@@ -163,12 +163,12 @@ def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     )
 
 
-def _failed(task: Task, summary: str, now: datetime) -> StoredDiagnosis:
+def _failed(task: DiagnosisTask, summary: str, now: datetime) -> StoredDiagnosis:
     """Why there is none: the verdict was not checked."""
     return replace(_nothing_found(task, DiagnosisState.FAILED, summary, now), reservations=UNCHECKED)
 
 
-def _nothing_found(task: Task, state: DiagnosisState, summary: str, now: datetime) -> StoredDiagnosis:
+def _nothing_found(task: DiagnosisTask, state: DiagnosisState, summary: str, now: datetime) -> StoredDiagnosis:
     """What it came to in one line, and no more."""
     return StoredDiagnosis(
         session=task.session.id,
@@ -187,7 +187,7 @@ def _read(files: Files, stored: StoredSession) -> CalibrationSession:
     return dated(read_upload(files.content(stored.sha256), stored.filename), stored.started_at)
 
 
-def _comparable(files: Files, task: Task, session: CalibrationSession) -> dict[str, CalibrationSession]:
+def _comparable(files: Files, task: DiagnosisTask, session: CalibrationSession) -> dict[str, CalibrationSession]:
     """Earlier sessions of the same sensors measured in the same way, oldest first, by their identifier; a lost file is
     passed over.
 

@@ -23,7 +23,7 @@ from service.judging.reference import KnownUnit, alike
 from service.judging.store import Derivations
 from service.kit.measures import YEAR
 from service.records.flagging.fold import verdict_evidence
-from service.records.keep import Made, made
+from service.records.keep import MadeCalibration, made
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Judged, Opening
 from service.sessions.history_store import History
@@ -186,7 +186,7 @@ class Rejudgement:
     basis: str
     unit_type: UnitType
     judged: Judged
-    moved: Made | None = None
+    moved: MadeCalibration | None = None
     """Of a recording in service that can be compared: the calibration that it moves."""
 
 
@@ -293,7 +293,7 @@ def put(known: KnownUnit, places: Sequence[Place], foreseen: Foreseen, diagnosed
     Derivations(known.store).put_judged(decided)
 
 
-def _move(known: KnownUnit, id: str, moved: Made | None) -> None:
+def _move(known: KnownUnit, id: str, moved: MadeCalibration | None) -> None:
     session = Sessions(known.store).get(id)
     History(known.store).drop(session)
     if moved is not None:

@@ -16,7 +16,7 @@ from service.ingest.checked import as_checked
 from service.ingest.stream import open_recording
 from service.judging.calibrate import parameter_values
 from service.judging.reference import calibration_to_compare_with
-from service.sessions.calibrations_store import Calibrations, Noises, Packed, pack
+from service.sessions.calibrations_store import Calibrations, PackedCalibration, SessionNoises, pack
 from service.sessions.history_store import History
 from service.sessions.records import ParameterValue, StoredSession
 from service.sessions.store import Sessions
@@ -28,20 +28,20 @@ from service.units.store import Units
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class MadeCalibration:
     """A calibration on its way into the store."""
 
     calibration: Calibration
-    packed: Packed
+    packed: PackedCalibration
     values: tuple[ParameterValue, ...]
 
 
-def made(calibration: Calibration) -> Made:
+def made(calibration: Calibration) -> MadeCalibration:
     """Ready to be kept, with no transaction open."""
-    return Made(calibration, pack(calibration), parameter_values(calibration))
+    return MadeCalibration(calibration, pack(calibration), parameter_values(calibration))
 
 
-def keep(store: Store, unit: int, new: Sequence[tuple[StoredSession, Made]], at: datetime) -> None:
+def keep(store: Store, unit: int, new: Sequence[tuple[StoredSession, MadeCalibration]], at: datetime) -> None:
     """The calibrations and the parameters of the history; what is decided of them is derived."""
     Calibrations(store).add([(record, one.packed) for record, one in new], at)
     History(store).add(unit, [(record, one.values) for record, one in new])
@@ -55,7 +55,7 @@ def keep_noise(storage: Storage, session: str, now: datetime) -> None:
     """Makes it where it is still to be made; averaged sessions hold no rests and keep nothing."""
     with storage.database.reading() as store:
         stored = Sessions(store).get(session)
-        if Noises(store).has(session):
+        if SessionNoises(store).has(session):
             return
     try:
         found = _noise(storage, stored)
@@ -65,7 +65,7 @@ def keep_noise(storage: Storage, session: str, now: datetime) -> None:
         return
     with storage.database.writing() as store:
         unit = Units(store).hold(stored.unit)
-        Noises(store).put_once(unit, Sessions(store).get(session), found, VERSION, now)
+        SessionNoises(store).put_once(unit, Sessions(store).get(session), found, VERSION, now)
 
 
 def _noise(storage: Storage, stored: StoredSession) -> BlockNoise | None:

@@ -44,7 +44,7 @@ WITHOUT = "Computing in several processes needs a library that is missing: {faul
 
 
 @dataclass(frozen=True)
-class Outcome:
+class UnitOutcome:
     """What became of a unit: one of the two is there."""
 
     unit: str
@@ -52,7 +52,7 @@ class Outcome:
     failure: Failure | None
 
 
-Run = Callable[[Iterable[str]], Iterator[Outcome]]
+Run = Callable[[Iterable[str]], Iterator[UnitOutcome]]
 """Computes units again, by serial number, and reports each when it is done."""
 
 
@@ -68,12 +68,12 @@ def units_behind(storage: Storage) -> Iterator[str]:
         last = page[-1]
 
 
-def recalibrate_one(storage: Storage, serial: str, now: datetime, coverage_factor: float) -> Outcome:
+def recalibrate_one(storage: Storage, serial: str, now: datetime, coverage_factor: float) -> UnitOutcome:
     """A unit's sessions; whatever fails is reported."""
     done = None
     with ending_here("recalibration", serial) as met:
         done = recalibrate(storage, serial, now, coverage_factor=coverage_factor)
-    return Outcome(serial, done, met.failure)
+    return UnitOutcome(serial, done, met.failure)
 
 
 def one_by_one(storage: Storage, clock: Callable[[], datetime], coverage_factor: float) -> Run:
@@ -153,7 +153,7 @@ def running(cluster: AbstractContextManager[Client], last: str, clock: Callable[
         yield lambda serials: _run(client, serials, last, clock)
 
 
-def _run(client: Client, serials: Iterable[str], last: str, clock: Callable[[], datetime]) -> Iterator[Outcome]:
+def _run(client: Client, serials: Iterable[str], last: str, clock: Callable[[], datetime]) -> Iterator[UnitOutcome]:
     waiting, names, begun = iter(serials), dict[object, str](), as_completed(loop=client.loop)
 
     def begin(most: int) -> None:
@@ -168,15 +168,15 @@ def _run(client: Client, serials: Iterable[str], last: str, clock: Callable[[], 
         begin(1)
 
 
-def _outcome(future: Future[Outcome], serial: str) -> Outcome:
+def _outcome(future: Future[UnitOutcome], serial: str) -> UnitOutcome:
     """A unit at which worker after worker died is reported like one that failed."""
     if future.status == "finished":
         return future.result()
     fault = future.exception() if future.status == "error" else CancelledError("it was called off")
-    return Outcome(serial, None, Failure(type(fault).__name__, str(fault), is_foreseen=False))
+    return UnitOutcome(serial, None, Failure(type(fault).__name__, str(fault), is_foreseen=False))
 
 
-def _work(last: str, serial: str, now: datetime) -> Outcome:
+def _work(last: str, serial: str, now: datetime) -> UnitOutcome:
     """In the worker."""
     storage, coverage_factor = _own(last)
     return recalibrate_one(storage, serial, now, coverage_factor)

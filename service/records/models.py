@@ -25,7 +25,7 @@ from service.groups.records import Group, GroupShown
 from service.groups.store import read_group
 from service.groups.words import equation_of
 from service.jobs.changes import add_model_job
-from service.models.records import SCOPES, Evidence, ModelRevision, NewLasting, NewModel, Pooled, Scope
+from service.models.records import SCOPES, AcceptedFinding, ModelRevision, NewLasting, NewModel, Pooled, Scope
 from service.models.rules import in_force, pooled_of
 from service.models.store import Models, Recomputations
 from service.records.flagging.lasting import settle_accepted
@@ -112,8 +112,8 @@ def _as_alternative(finding: Finding, wanted: str) -> Finding:
     return replace(finding, sensors=sensors, amplitude=(), sigma=(), units=(), nonlinear_each=({},))
 
 
-def _evidence(finding: Finding, gain: Gain) -> Evidence:
-    return Evidence(
+def _evidence(finding: Finding, gain: Gain) -> AcceptedFinding:
+    return AcceptedFinding(
         p_value=finding.p_value,
         strength=finding.strength,
         amplitude=finding.amplitude,
@@ -207,10 +207,10 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
         return revision
 
 
-def evidence_of(finding: GroupFinding, shown: GroupShown) -> Evidence:
+def evidence_of(finding: GroupFinding, shown: GroupShown) -> AcceptedFinding:
     """The finding as a revision keeps it; 1/e bounds the probability of such evidence without an effect (Markov)."""
     gain = shown.gain
-    return Evidence(
+    return AcceptedFinding(
         p_value=min(1.0, 1 / finding.e_value),
         strength=finding.strength,
         amplitude=finding.amplitude,
@@ -237,9 +237,9 @@ def evidence_of(finding: GroupFinding, shown: GroupShown) -> Evidence:
     )
 
 
-def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> Evidence:
+def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> AcceptedFinding:
     """A learned term as a revision keeps it: its evidence is what it gains on the sessions that took no part."""
-    return Evidence(
+    return AcceptedFinding(
         p_value=min(1.0, exp(-max(term.gain, 0.0))),
         strength=hypot(*(a / s for a, s in zip(term.amplitude, term.sigma, strict=True))),
         amplitude=term.amplitude,

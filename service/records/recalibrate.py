@@ -34,9 +34,9 @@ from service.models.store import Models, Recomputations
 from service.records.derive_again import NOTHING_FORESEEN, Derived, Deriving, derive_again, foresee_revisions
 from service.records.follow import follow
 from service.records.judge_again import Foreseen
-from service.records.keep import Made, keep, made
+from service.records.keep import MadeCalibration, keep, made
 from service.records.reception import Reception
-from service.sessions.calibrations_store import Calibrations, Noises
+from service.sessions.calibrations_store import Calibrations, SessionNoises
 from service.sessions.history_store import History
 from service.sessions.records import ParameterValue, StoredSession
 from service.sessions.store import Sessions
@@ -180,7 +180,7 @@ class _Recomputed:
 
     session: StoredSession
     model: Model
-    made: Made
+    made: MadeCalibration
     moved: tuple[MovedParameter, ...]
 
 
@@ -220,7 +220,7 @@ def _put_in_force(store: Store, way: Deriving, serial: str, new: Sequence[_Recom
     revisions = {one.session.id: one.model.revision for one in new}
     Derivations(store).put_revisions(revisions)
     keep(store, unit, [(replace(one.session, revision=one.model.revision), one.made) for one in new], way.at)
-    Noises(store).carry(revisions)
+    SessionNoises(store).carry(revisions)
     made = {one.session.id: one.made.calibration for one in new}
     known, since = known_unit(store, unit, made, foreseen.references), min(one.session.started_at for one in new)
     return derive_again(store, way, serial, since, tuple(made), known=known, foreseen=foreseen)

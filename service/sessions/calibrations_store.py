@@ -28,7 +28,7 @@ LEVEL = 4
 
 
 @dataclass(frozen=True)
-class Packed:
+class PackedCalibration:
     """A calibration as it is kept."""
 
     method: str
@@ -36,9 +36,9 @@ class Packed:
     """The whole imu-calibration/1, deflated."""
 
 
-def pack(calibration: Calibration) -> Packed:
+def pack(calibration: Calibration) -> PackedCalibration:
     """Ready to be stored, so that no transaction waits for it."""
-    return Packed(calibration.method, zlib.compress(json_text(STORED.written(calibration)).encode(), LEVEL))
+    return PackedCalibration(calibration.method, zlib.compress(json_text(STORED.written(calibration)).encode(), LEVEL))
 
 
 AT_HAND = 32
@@ -48,7 +48,7 @@ AT_HAND = 32
 class Calibrations(Queries):
     """Calibrations by session and model revision."""
 
-    def add(self, new: Sequence[tuple[StoredSession, Packed]], at: datetime) -> None:
+    def add(self, new: Sequence[tuple[StoredSession, PackedCalibration]], at: datetime) -> None:
         """Stores new calibrations of sessions under their revisions, with full covariance and residuals; they are
         still to be judged."""
         rows = [
@@ -61,7 +61,7 @@ class Calibrations(Queries):
         ]  # fmt: skip
         self.insert_many(CalibrationRow, rows)
 
-    def put(self, session: str, revision: int, packed: Packed) -> None:
+    def put(self, session: str, revision: int, packed: PackedCalibration) -> None:
         """Stores another calibration in place of the one of a session and revision."""
         own = (CalibrationRow.session_id == session, CalibrationRow.revision == revision)
         values = {"method": packed.method, "document": packed.document}
@@ -145,7 +145,7 @@ def _read(document: bytes) -> Calibration:
     return Calibration.from_dict(json.loads(document))
 
 
-class Noises(Queries):
+class SessionNoises(Queries):
     """Noise by session; its terms are rows of the history under the model revision in force."""
 
     def has(self, session: str) -> bool:

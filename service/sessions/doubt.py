@@ -25,7 +25,7 @@ class Remedy(StrEnum):
 
 
 @dataclass(frozen=True)
-class Correction:
+class FileCorrection:
     """A corrected file that can be made of the first one."""
 
     remedy: Remedy
@@ -53,7 +53,7 @@ class Doubt:
     """Beyond what physics allows, with the numbers."""
     slip: str
     """What has probably happened."""
-    correction: Correction | None = None
+    correction: FileCorrection | None = None
     """None where no factor and no exchange puts it right."""
     stands_for: str | None = None
     """The session that this one counts twice with, and could stand for."""

@@ -20,7 +20,7 @@ from service.judging.plausible import doubts
 from service.judging.reference import known_unit
 from service.records.reception import Reception
 from service.records.supersede import supersede_session
-from service.sessions.doubt import Correction, Doubt, Remedies, Remedy, remedies_among
+from service.sessions.doubt import Doubt, FileCorrection, Remedies, Remedy, remedies_among
 from service.sessions.records import Receipt
 from service.sessions.sent import Replaced, SentFile
 from service.sessions.states import RecordState, StateChange
@@ -86,7 +86,7 @@ def _doubts_of(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Dou
     return source, doubts_found
 
 
-def corrected(session: CalibrationSession, corrections: Sequence[Correction], note: str) -> CalibrationSession:
+def corrected(session: CalibrationSession, corrections: Sequence[FileCorrection], note: str) -> CalibrationSession:
     """The session with corrected readings, standard errors and nominal scale factors; the note is appended."""
     readings, errors, sensors = session.readings.copy(), session.standard_errors.copy(), list(session.sensors)
     names = [sensor.name for sensor in sensors]

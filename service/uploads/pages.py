@@ -31,7 +31,7 @@ class Became(StrEnum):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FileOutcome:
     """One uploaded file: either a receipt or the problems."""
 
     filename: str
@@ -75,10 +75,10 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class UploadPage:
+class UploadsPage:
     """Contents of the upload page."""
 
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[FileOutcome, ...]
     limit: str
     """Size limit of files of one upload."""
     log_limit: str
@@ -103,43 +103,43 @@ def outcomes_of(
     files: Sequence[SentFile],
     results: Sequence[Receipt | RefusedError],
     summary: Callable[[str], DiagnosisSummary | None],
-) -> tuple[Outcome, ...]:
+) -> tuple[FileOutcome, ...]:
     """Every file with its outcome; ``summary``: the diagnosis of a session, where available."""
     return tuple(_outcome(file.filename, result, summary) for file, result in zip(files, results, strict=True))
 
 
-def table_outcome(file: SentFile, carried: Carried) -> Outcome:
+def table_outcome(file: SentFile, carried: Carried) -> FileOutcome:
     """A table of custom layout, for its page."""
-    return Outcome(file.filename, is_table=True, carried=carried)
+    return FileOutcome(file.filename, is_table=True, carried=carried)
 
 
-def job_outcome(job: Job) -> Outcome:
+def job_outcome(job: Job) -> FileOutcome:
     """A large file in progress, or one without a result."""
-    return Outcome(job.subject, job=job, progress=progress_of(job) or ending_of(job))
+    return FileOutcome(job.subject, job=job, progress=progress_of(job) or ending_of(job))
 
 
 def _outcome(
     filename: str, result: Receipt | RefusedError, summary: Callable[[str], DiagnosisSummary | None]
-) -> Outcome:
+) -> FileOutcome:
     if isinstance(result, RefusedError):
-        return Outcome(filename, problems=result.problems)
+        return FileOutcome(filename, problems=result.problems)
     diagnosis = summary(result.id)
-    return Outcome(filename, result, diagnosis=diagnosis_line(diagnosis), pending=diagnosis is None)
+    return FileOutcome(filename, result, diagnosis=diagnosis_line(diagnosis), pending=diagnosis is None)
 
 
-def outcome_of(session: StoredSession, diagnosis: DiagnosisSummary | None, remark: str = "") -> Outcome:
+def outcome_of(session: StoredSession, diagnosis: DiagnosisSummary | None, remark: str = "") -> FileOutcome:
     """Outcome of a file that was uploaded a while ago."""
     values = {f.name: getattr(session, f.name) for f in fields(Receipt) if f.name not in ("created", "remark")}
     receipt = Receipt(created=True, remark=remark, **values)
-    return Outcome(session.filename, receipt, (), diagnosis_line(diagnosis), diagnosis is None)
+    return FileOutcome(session.filename, receipt, (), diagnosis_line(diagnosis), diagnosis is None)
 
 
-def upload_page(outcomes: Sequence[Outcome], settings: Settings, unit_types: Sequence[str] = ()) -> UploadPage:
+def upload_page(outcomes: Sequence[FileOutcome], settings: Settings, unit_types: Sequence[str] = ()) -> UploadsPage:
     """The page before (no outcomes) or after an upload."""
     follows = settings.diagnosis_workers > 0
     limit, log_limit = _limit(in_force().whole), _limit(in_force().log)
     in_order = sorted(outcomes, key=lambda outcome: list(Became).index(outcome.became))
-    return UploadPage(tuple(in_order), limit, log_limit, follows, tuple(unit_types))
+    return UploadsPage(tuple(in_order), limit, log_limit, follows, tuple(unit_types))
 
 
 def _limit(size: int) -> str:

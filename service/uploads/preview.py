@@ -16,7 +16,7 @@ from service.ingest import look_at, read_upload
 from service.ingest.layout.envelope import wrapped
 from service.ingest.layout.look import fingerprint
 from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, layout_of
-from service.ingest.layout.understand import Seen, understood
+from service.ingest.layout.understand import SeenColumn, understood
 from service.ingest.layout.vocabulary import plain_label
 from service.planning.pattern import earlier
 from service.storage import Storage
@@ -80,7 +80,7 @@ def _proposed(storage: Storage, look: Mapping[str, Any], unit: str, unit_type: s
         facts = found["session"] if not unit else facts_of(storage, unit, unit_type) or found["session"]
         return {**found, "session": _with_unit(_titled({**facts, **_log_facts(look)}, look), unit)}, True
     facts = facts_of(storage, unit, unit_type)
-    columns = understood([Seen(**column) for column in look["columns"]], facts.get("sensors", ()))
+    columns = understood([SeenColumn(**column) for column in look["columns"]], facts.get("sensors", ()))
     found = {**facts, **look["facts"]} or _unknown(columns)
     return {"columns": columns, "session": _with_unit(_titled(found, look), unit)}, False
 
@@ -143,7 +143,7 @@ def _columns_for(look: Mapping[str, Any], mapping: Mapping[str, Any]) -> list[An
         return list(columns)
     sensors = mapping.get("session", {}).get("sensors", ())
     sensors_known = [sensor for sensor in sensors if isinstance(sensor, Mapping)]
-    return understood([Seen(**column) for column in look["columns"]], sensors_known)
+    return understood([SeenColumn(**column) for column in look["columns"]], sensors_known)
 
 
 def _read(

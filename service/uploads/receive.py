@@ -32,7 +32,7 @@ from service.records.changes import question
 from service.records.derive_again import Derived, Deriving, derive_again, foresee_upload
 from service.records.follow import follow
 from service.records.judge_again import Foreseen
-from service.records.keep import Made, keep, made
+from service.records.keep import MadeCalibration, keep, made
 from service.records.reception import Reception
 from service.records.register import retired_in_words
 from service.records.supersede import give_way, settled_by, supersede
@@ -199,7 +199,7 @@ class _Ready:
 
     new: Calibrated
     digests: Digests
-    made: Made
+    made: MadeCalibration
     foreseen: Foreseen
     settled: str | None
     """From `settled_by`, where its content is stored already."""

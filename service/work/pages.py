@@ -24,7 +24,7 @@ from service.people.admission import PersonOf
 from service.people.dependencies import SEE_OTHER, By, Number, StorageOf
 from service.sessions.store import Sessions
 from service.storage.queries import Store
-from service.uploads.pages import Outcome, job_outcome, outcome_of, upload_page
+from service.uploads.pages import FileOutcome, job_outcome, outcome_of, upload_page
 from service.uploads.store import Arrivals
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
 from service.web.fields import NO_NUL
@@ -219,11 +219,11 @@ def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Num
     return render(request, "outcome.html", upload_page((_outcome(store, job),), settings))
 
 
-def _outcome(store: Store, job: Job) -> Outcome:
+def _outcome(store: Store, job: Job) -> FileOutcome:
     if job.session:
         return outcome_of(Sessions(store).get(job.session), Diagnoses(store).summary(job.session))
     if job.refusal is not None:
-        return Outcome(job.subject, problems=Arrivals(store).refusal(job.refusal).problems)
+        return FileOutcome(job.subject, problems=Arrivals(store).refusal(job.refusal).problems)
     return job_outcome(job)
 
 

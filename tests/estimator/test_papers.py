@@ -1,12 +1,11 @@
-"""The papers' tables are reproduced, and docs/papers.md is what the command prints."""
+"""The papers' tables are reproduced, and the page of them is what the command prints."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from benchmarks.details import published
+from benchmarks.details import RESULTS
 from benchmarks.papers.__main__ import PAGES
 from benchmarks.papers.analytic import PLACES
 from benchmarks.papers.formulas import instrument_only
@@ -18,8 +17,7 @@ from benchmarks.papers.tables import by_half_sums, fitted_noise, sessions, two_s
 from estimator.planning import optimal_elevation
 from estimator.published.printed import checked
 
-FOLDER = Path(__file__).parents[2] / "docs"
-PAGE = (FOLDER / "papers.md").read_text(encoding="utf-8")
+PAGE = (RESULTS / "papers.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -59,12 +57,12 @@ def test_the_gyros_elevation_follows_from_31() -> None:
     ids=["conditioning", "orientations", "instrument"],
 )
 def test_the_page_holds_what_the_command_prints(printed: object) -> None:
-    assert printed() in published(FOLDER / "papers.md")  # type: ignore[operator]
+    assert printed() in PAGE  # type: ignore[operator]
 
 
 @pytest.mark.parametrize("name", PAGES)
 def test_every_page_says_by_which_one_command_it_is_written(name: str) -> None:
-    text = (FOLDER / name).read_text(encoding="utf-8")
+    text = (RESULTS / name).read_text(encoding="utf-8")
     assert "`make papers` (`python -m benchmarks.papers`)" in " ".join(text.split())
 
 
@@ -72,7 +70,7 @@ def test_the_overview_leads_to_every_table_and_figure() -> None:
     for _, _, where, _ in PLACES:
         assert where in PAGE
     for name, anchor in re.findall(r"\((papers[\w-]*\.md)?#([\w-]+)\)", PAGE):
-        headings = re.findall(r"^## (.+)$", (FOLDER / (name or "papers.md")).read_text(encoding="utf-8"), re.M)
+        headings = re.findall(r"^## (.+)$", (RESULTS / (name or "papers.md")).read_text(encoding="utf-8"), re.M)
         assert anchor in {re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in headings}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import optimize
 from scipy.special import chndtr
 
-from estimator.causes.contract import Cause, Correction, Signature
+from estimator.causes.contract import Cause, RecordCorrection, Signature
 from estimator.diagnosis.results import Limit
 from estimator.diagnosis.selection.search_state import LEVEL, SearchState
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
@@ -40,7 +40,7 @@ def limits(state: SearchState) -> tuple[Limit, ...]:
 
 def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
     """The limit of one cause; ``traces`` None where the session lacks what the cause needs."""
-    if isinstance(cause, Correction):
+    if isinstance(cause, RecordCorrection):
         lacking = missing(state, cause)
         return Limit(
             cause.identifier,

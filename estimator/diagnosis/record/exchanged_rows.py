@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from estimator.causes.contract import Correction
+from estimator.causes.contract import RecordCorrection
 from estimator.causes.record import exchange_rows
 from estimator.diagnosis.record.record_error import BETTER, RecordAttempt, RecordError
 from estimator.diagnosis.residuals.baseline import Baseline
@@ -32,7 +32,7 @@ FITTED = 12
 """Exchanges that are fitted: the linear screen ranks the true one among the first."""
 
 
-def exchanged_rows(baseline: Baseline, known: Sequence[Correction]) -> RecordError | None:
+def exchanged_rows(baseline: Baseline, known: Sequence[RecordCorrection]) -> RecordError | None:
     """Two rows whose readings are exchanged, or None."""
     chi2 = weighted_square(baseline)
     cause = next((c for c in known if c.of_rows), None)
@@ -51,7 +51,7 @@ def exchanged_rows(baseline: Baseline, known: Sequence[Correction]) -> RecordErr
 
 
 def exchanged_back(
-    baseline: Baseline, cause: Correction, rows: tuple[int, int], alternatives: int
+    baseline: Baseline, cause: RecordCorrection, rows: tuple[int, int], alternatives: int
 ) -> tuple[RecordAttempt, float]:
     """One exchange, among so many ways, with the χ² that the corrected record leaves under the same noise."""
     before, freedom = weighted_square(baseline), baseline.residual.size

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from estimator.causes.contract import Correction
+from estimator.causes.contract import RecordCorrection
 from estimator.session import CalibrationSession
 
 BETTER = 10.0
@@ -16,7 +16,7 @@ BETTER = 10.0
 class RecordAttempt:
     """One way to put a record right."""
 
-    cause: Correction
+    cause: RecordCorrection
     places: tuple[int, ...]
     """Sensors, or rows counted from 0 for exchanged positions."""
     session: CalibrationSession

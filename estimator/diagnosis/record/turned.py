@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.causes.contract import Correction
+from estimator.causes.contract import RecordCorrection
 from estimator.diagnosis.record.record_error import BETTER, RecordAttempt, RecordError
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -30,7 +30,7 @@ LEAST = 1e-10
 """rad² an axis, (2 arcsec)²: how well axes agree at best, so that a perfect agreement does not count without bound."""
 
 
-def turned_record(baseline: Baseline, expected: Array, known: Sequence[Correction]) -> RecordError | None:
+def turned_record(baseline: Baseline, expected: Array, known: Sequence[RecordCorrection]) -> RecordError | None:
     """The record error that explains axes far from the ``expected`` ones (m, 3), unit vectors; None without one."""
     before, worst = misfit(baseline, expected)
     if worst < TELLING:
@@ -79,7 +79,7 @@ def misfit_of(session: CalibrationSession, expected: Array) -> tuple[float, floa
         return float("inf"), float("inf")
 
 
-def usable(cause: Correction, session: CalibrationSession) -> bool:
+def usable(cause: RecordCorrection, session: CalibrationSession) -> bool:
     """Whether a correction makes sense for the session's programme and runs."""
     if session.programme != TWO_AXIS_STAND:
         return not cause.needs & {"stand", "both runs"}

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from estimator.causes.contract import Cause, Correction
+from estimator.causes.contract import Cause, RecordCorrection
 from estimator.diagnosis.record.exchanged_rows import exchanged_rows
 from estimator.diagnosis.record.record_error import RecordError
 from estimator.diagnosis.record.turned import expected_axes, turned_record
@@ -17,7 +17,7 @@ def undo_record_errors(
     baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]
 ) -> tuple[list[RecordError], Baseline]:
     """The record errors of the catalogue that were found in a fitted session, and the corrected session, fitted."""
-    known = [c for c in catalogue if isinstance(c, Correction)]
+    known = [c for c in catalogue if isinstance(c, RecordCorrection)]
     errors: list[RecordError] = []
     for _ in range(MOST):
         expected = expected_axes(history, baseline.session)

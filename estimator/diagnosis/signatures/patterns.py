@@ -149,7 +149,7 @@ class TemperatureWave(Pattern):
             )
 
 
-class TemperatureStep(Pattern):
+class StepInTemperature(Pattern):
     identifier = "temperature-step"
     needs = frozenset({"temperature"})
     sentence = "a step at {0} °C"
@@ -249,7 +249,7 @@ PATTERNS: tuple[Pattern, ...] = (
     SensorTrend(),
     TemperatureCurve(),
     TemperatureWave(),
-    TemperatureStep(),
+    StepInTemperature(),
     InputCurve(),
     TurningScale(),
     CommonHarmonic(),

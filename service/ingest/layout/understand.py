@@ -27,7 +27,7 @@ NUMBERED = re.compile(r"^(?P<word>\D*?)[ _.\-№#]*(?P<place>\d{1,3}|[xyzXYZ])$"
 
 
 @dataclass(frozen=True)
-class Seen:
+class SeenColumn:
     """One column as it stands in the file."""
 
     heading: str
@@ -44,7 +44,7 @@ class Seen:
     """Meaning stated in the file."""
 
 
-def understood(columns: Sequence[Seen], sensors: Sequence[Mapping[str, Any]]) -> list[Json]:
+def understood(columns: Sequence[SeenColumn], sensors: Sequence[Mapping[str, Any]]) -> list[Json]:
     """Columns of a mapping; ``sensors`` are those of the unit or its type, empty where unknown."""
     names = {_plain(str(sensor.get("name", ""))): str(sensor.get("name", "")) for sensor in sensors}
     guesses: list[Json] = []
@@ -77,7 +77,7 @@ def split_unit(heading: str) -> tuple[str, str]:
     return (match_any["name"], "") if match_any else (heading, "")
 
 
-def _guess(column: Seen, names: Mapping[str, str]) -> Json:
+def _guess(column: SeenColumn, names: Mapping[str, str]) -> Json:
     name, unit = split_unit(column.heading)
     guess: Json = {"heading": column.heading, "as": None}
     if column.empty:
@@ -91,7 +91,7 @@ def _guess(column: Seen, names: Mapping[str, str]) -> Json:
     return guess
 
 
-def _meaning(name: str, unit: str, column: Seen, names: Mapping[str, str]) -> str | None:
+def _meaning(name: str, unit: str, column: SeenColumn, names: Mapping[str, str]) -> str | None:
     """A column of a session, a sensor, a sensor's standard error, or None."""
     plain, quantity = _plain(name), getattr(unit_of(unit), "quantity", "") if unit else ""
     if quantity == "temperature" and plain in ("t", "т", "temp", "температура"):

@@ -19,7 +19,7 @@ from service.units.records import Service
 
 
 @dataclass(frozen=True)
-class Change:
+class MeasuredChange:
     """One point of a history and what its change is measured from."""
 
     point: HistoryPoint
@@ -77,7 +77,7 @@ class Change:
         return (abs(self.origin) or 1.0) if self.point.parameter == "scale" else 1.0
 
 
-def changes_of(points: Sequence[HistoryPoint], services: Sequence[Service]) -> tuple[Change, ...]:
+def changes_of(points: Sequence[HistoryPoint], services: Sequence[Service]) -> tuple[MeasuredChange, ...]:
     """The changes of one parameter of one sensor, oldest first; without a reference, from its epoch's first value."""
     epochs = [sum(service.at <= point.at for service in services) for point in points]
     starts: dict[int, float] = {}
@@ -86,7 +86,7 @@ def changes_of(points: Sequence[HistoryPoint], services: Sequence[Service]) -> t
         if start is not None:
             starts.setdefault(epoch, start)
     return tuple(
-        Change(point, epoch, starts.get(epoch, 0.0) if point.reference is None else point.reference)
+        MeasuredChange(point, epoch, starts.get(epoch, 0.0) if point.reference is None else point.reference)
         for epoch, point in zip(epochs, points, strict=True)
     )
 
@@ -174,11 +174,11 @@ def _groups(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) ->
         first.setdefault((reference.block, comparable(reference.programme)), reference)
     groups: dict[TrackKey, Group] = {}
     for row in changes:
-        own = first.get((row.block, comparable(row.programme)))
-        if own is not None:
+        counted_from = first.get((row.block, comparable(row.programme)))
+        if counted_from is not None:
             key = TrackKey(row.sensor, row.kind, row.parameter)
-            rows, known = groups.get(key, ([], own))
-            groups[key] = ([*rows, row], known) if known is own else ([row], own)
+            rows, known = groups.get(key, ([], counted_from))
+            groups[key] = ([*rows, row], known) if known is counted_from else ([row], counted_from)
     return groups
 
 

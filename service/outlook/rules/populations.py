@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.population import group_standing, outliers, spread
-from service.outlook.populations import TINY, Placed, Population
+from estimator.health.population import group_standing, outliers, spread, standing
+from service.outlook.populations import Placed, Population
 from service.outlook.records import Rate
 from service.outlook.store import FarOut, Populations
 from service.outlook.words import drift_stands_out, lot_stands_out
@@ -31,19 +31,19 @@ def populations(rates: Sequence[Rate]) -> tuple[Population, ...]:
     groups: dict[tuple[str, str], Group] = {}
     for rate in rates:
         groups.setdefault((rate.kind, rate.parameter), []).append(rate)
-    found = (_population(*place, own) for place, own in sorted(groups.items()))
+    found = (_population(*place, group) for place, group in sorted(groups.items()))
     return tuple(one for one in found if one.rates or one.lots)
 
 
-def _population(kind: str, parameter: str, own: Group) -> Population:
-    values, sigmas = np.array([(rate.value, rate.sigma) for rate in own]).T
+def _population(kind: str, parameter: str, group: Group) -> Population:
+    values, sigmas = np.array([(rate.value, rate.sigma) for rate in group]).T
     centre, wide = spread(values, sigmas)
-    is_one = len({rate.serial for rate in own}) >= FEWEST_UNITS
-    z = (values - centre) / np.sqrt(wide**2 + sigmas**2 + TINY)
-    placed = [_placed(own[i], float(z[i])) for i in np.argsort(-np.abs(z), kind="stable")] if is_one else []
-    lots = sorted(_lots(own), key=lambda lot: -abs(lot[1]))
+    is_one = len({rate.serial for rate in group}) >= FEWEST_UNITS
+    z = standing(values, sigmas, centre, wide)
+    placed = [_placed(group[i], float(z[i])) for i in np.argsort(-np.abs(z), kind="stable")] if is_one else []
+    lots = sorted(_lots(group), key=lambda lot: -abs(lot[1]))
     return Population(
-        unit_type=own[0].unit_type,
+        unit_type=group[0].unit_type,
         kind=kind,
         parameter=parameter,
         centre=centre,
@@ -65,14 +65,14 @@ def _first(found: Iterator[Placed]) -> tuple[Placed, ...]:
     return tuple(one for one, _ in zip(found, range(KEPT), strict=False))
 
 
-def _lots(own: Group) -> list[tuple[str, float]]:
+def _lots(group: Group) -> list[tuple[str, float]]:
     """Lots of several units and their distances."""
-    if not any(rate.lot for rate in own):
+    if not any(rate.lot for rate in group):
         return []
     units: dict[str, set[str]] = {}
-    for rate in own:
+    for rate in group:
         units.setdefault(rate.lot or "", set()).add(rate.serial)
-    z = group_standing([(rate.value, rate.sigma) for rate in own], [rate.lot or "" for rate in own])
+    z = group_standing([(rate.value, rate.sigma) for rate in group], [rate.lot or "" for rate in group])
     return [(lot, far) for lot, far in z.items() if len(units[lot]) > 1]
 
 

@@ -14,7 +14,7 @@ from service.pages.due.view import OVERDUE, UNKNOWN, month_after, month_begin
 from service.sessions.words.conditions import condition_of
 
 MONTHS = 12
-"""That have a tile of their own even where nothing is due, with this one."""
+"""That have a tile even where nothing is due, with this one."""
 
 
 @answer

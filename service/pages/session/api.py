@@ -17,7 +17,7 @@ from service.records.changes import set_mark, set_stage
 from service.records.dependencies import ReceptionOf
 from service.records.event_schemas import NewStage
 from service.records.reception import Reception
-from service.sessions.calibrations_store import Calibrations, Noises
+from service.sessions.calibrations_store import Calibrations, SessionNoises
 from service.sessions.decision import Verdict
 from service.sessions.records import NoiseDocument, SessionOrder, SessionQuery
 from service.sessions.schemas import (
@@ -133,7 +133,7 @@ def read_calibration(id: SessionId, store: Reading, revision: Revision = None) -
 def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
     """The noise of its sensors at rest, imu-noise/1: Allan terms and curves; only raw logs tell it."""
     Sessions(store).get(id)
-    found = Noises(store).get(id)
+    found = SessionNoises(store).get(id)
     if found is None:
         raise NotFoundError(
             say("Session {id} has no noise results: it contains no rest periods, or is not evaluated yet.", id=id)

@@ -54,7 +54,7 @@ class ComparisonView:
     after: Calibration
     judged: Judged
     """The later one, judged as if the earlier one were its reference."""
-    own: Mapping[tuple[str, str], float]
+    on_one_stand: Mapping[tuple[str, str], float]
     """By sensor and parameter: standard uncertainty of the change without what the stand does to both alike. Empty
     where they were not measured on one stand."""
     services: tuple[Service, ...]
@@ -82,7 +82,7 @@ def compare(store: Store, a: str, b: str, coverage_factor: float) -> ComparisonV
         before=before,
         after=after,
         judged=judge(after, before, UnitTypes(store).of_unit(first.unit), coverage_factor),
-        own=_own_of_comparison(before, after) if first.stand is not None and first.stand == second.stand else {},
+        on_one_stand=_repeatabilities(before, after) if first.stand is not None and first.stand == second.stand else {},
         services=tuple(
             service
             for service in Services(store).recorded(first.unit)
@@ -91,7 +91,7 @@ def compare(store: Store, a: str, b: str, coverage_factor: float) -> ComparisonV
     )
 
 
-def _own_of_comparison(before: Calibration, after: Calibration) -> dict[tuple[str, str], float]:
+def _repeatabilities(before: Calibration, after: Calibration) -> dict[tuple[str, str], float]:
     """√(R_1 + R_2) of every parameter that both sessions tell."""
     earlier = {sensor.name: sensor for sensor in before.sensors}
     found = {
@@ -124,13 +124,13 @@ def _axis_spread(before: Array | None, after: Array | None) -> float | None:
 
 
 def _axis_repeatability(calibration: Calibration, sensor: SensorCalibration) -> Array | None:
-    """(3, 3) in block axes, rad²: each session has tangents of its own. None where it does not tell it."""
+    """(3, 3) in block axes, rad²: sessions have different tangents. None where it is not observed."""
     names = [f"{sensor.name}.axis_1", f"{sensor.name}.axis_2"]
     if not set(names) <= set(calibration.names):
         return None
     places = [calibration.names.index(name) for name in names]
-    own = sensor.axis_tangents @ calibration.repeatability[np.ix_(places, places)] @ sensor.axis_tangents.T
-    return np.asarray(own) if np.isfinite(own).all() else None
+    covariance = sensor.axis_tangents @ calibration.repeatability[np.ix_(places, places)] @ sensor.axis_tangents.T
+    return np.asarray(covariance) if np.isfinite(covariance).all() else None
 
 
 DIRECT = "They are compared directly, so the reference that both are judged against plays no part in the difference."
@@ -205,7 +205,7 @@ class ComparisonPage:
     motions: tuple[MotionLine, ...]
     rows: tuple[ParameterChangeRow, ...]
     """By sensor, as they stand in the file."""
-    has_own: bool
+    is_one_stand: bool
     """Whether both were measured on one stand."""
     coverage: str
 
@@ -227,7 +227,7 @@ def comparison_page(found: ComparisonView) -> ComparisonPage:
             for sensor in found.after.sensors
             for parameter in _parameters(found.before, found.after)
         ),
-        has_own=bool(found.own),
+        is_one_stand=bool(found.on_one_stand),
         coverage=f"k = {k:g}",
     )
 
@@ -247,7 +247,7 @@ def _row(
 ) -> ParameterChangeRow:
     found, k = way
     units = reading_units(found.after)
-    own = found.own.get((now.name, parameter))
+    spread = found.on_one_stand.get((now.name, parameter))
     known = decision if decision is not None and decision.deviation is not None else None
     return ParameterChangeRow(
         sensor=now.name,
@@ -255,7 +255,7 @@ def _row(
         before="–" if then is None else value_in_words(then, parameter, k, units.get(now.name, "")),
         after=value_in_words(now, parameter, k, units.get(now.name, "")),
         change=NOT_COMPARED if known is None else deviation_in_words(known),
-        on_one_stand="" if known is None or own is None else _own(known, own),
+        on_one_stand="" if known is None or spread is None else _on_one_stand(known, spread),
         tolerance=tolerance_in_words(decision),
         used=None if known is None else _used(known),
         condition=None if known is None else condition_of(known.verdict),
@@ -269,5 +269,5 @@ def _used(decision: Decision) -> Margin | None:
     return margin_of(used)
 
 
-def _own(decision: Decision, spread: float) -> str:
+def _on_one_stand(decision: Decision, spread: float) -> str:
     return f"± {measured(decision.coverage_factor * spread, None, decision_measure(decision))}"

@@ -125,7 +125,7 @@ def stand_report(store: Store, name: str, now: datetime) -> StandReport:
 
 
 @dataclass(frozen=True)
-class StandRow:
+class ListedStand:
     """One stand in the list."""
 
     use: StandUse
@@ -140,7 +140,7 @@ class StandRow:
 class StandsPage:
     """Everything the list of stands shows."""
 
-    rows: tuple[StandRow, ...]
+    rows: tuple[ListedStand, ...]
     """What needs a hand first, then by name."""
 
 
@@ -158,7 +158,7 @@ class ShiftRow:
 
 @dataclass(frozen=True)
 class StandPage:
-    """Everything the page of one stand shows; of what is listed, one more would be on a page of its own."""
+    """Everything the page of one stand shows; of what is listed, one more would be on the next page."""
 
     use: StandUse
     word: StandWord
@@ -210,10 +210,10 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
     )
 
 
-def _row(line: StandLine, now: datetime) -> StandRow:
+def _row(line: StandLine, now: datetime) -> ListedStand:
     latest = held(line.certificates, now.date())
     until = "none recorded" if latest is None else say("until {valid_until}", valid_until=day_of(latest.valid_until))
-    return StandRow(
+    return ListedStand(
         line.use,
         _word(line, now),
         condition_in_words(line.condition, is_pending=line.is_pending),
@@ -226,8 +226,8 @@ def _word(line: StandLine, now: datetime) -> StandWord:
     return stand_word(line.condition, line.certificates, line.flags, now.date())
 
 
-def _certificate(own: StandCertificate) -> tuple[str, str, str, str]:
-    return own.number, own.issued_by, day_of(own.issued_on), day_of(own.valid_until)
+def _certificate(found: StandCertificate) -> tuple[str, str, str, str]:
+    return found.number, found.issued_by, day_of(found.issued_on), day_of(found.valid_until)
 
 
 def _shifts(condition: StandCondition) -> tuple[ShiftRow, ...]:
@@ -260,7 +260,7 @@ def _shift_row(one: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
 
 
 def _seating(condition: StandCondition) -> tuple[tuple[str, str], ...]:
-    return tuple((kind_of_shift(own.kind, own.quantity), scatter_of(own)) for own in condition.seating)
+    return tuple((kind_of_shift(seating.kind, seating.quantity), scatter_of(seating)) for seating in condition.seating)
 
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
@@ -294,7 +294,7 @@ def record_certificate(
     storage: StorageOf,
     now: Now,
 ) -> RedirectResponse:
-    """Keeps the certificate of the stand's own calibration."""
+    """Keeps the certificate of the stand's calibration."""
     given = StandCertificate(name, number.strip(), issued_by.strip(), issued_on, valid_until)
     record_stand_certificate(storage, given, now, who=by)
     return RedirectResponse(f"/stands/{quote(name)}#certificates", SEE_OTHER)

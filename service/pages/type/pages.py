@@ -245,7 +245,7 @@ def _revision(one: ToleranceRevision, known: UnitType, report: TypeReport) -> Re
 
 
 def _limits(known: UnitType) -> tuple[tuple[str, str], ...]:
-    """What units are judged by; of a mixed block each kind of sensor has its own."""
+    """What units are judged by; of a mixed block for each kind of sensor."""
     allowed = tolerances_of(known)
     kinds = (known.block,) if known.gyro_tolerances is None else (ACCELEROMETER, GYROSCOPE)
     of = {kind: f"{KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}

@@ -104,8 +104,8 @@ def wanted(known: UnitType, form: Mapping[str, str]) -> ToleranceForm:
     watch = _watch(known, form, faults)
     if faults:
         raise RefusedError("The tolerances cannot be set.", tuple(faults))
-    own, *others = read.values()
-    return ToleranceForm(own, others[0] if others else None, watch)
+    first, *others = read.values()
+    return ToleranceForm(first, others[0] if others else None, watch)
 
 
 def _watch(known: UnitType, form: Mapping[str, str], faults: list[Problem]) -> Watch:
@@ -213,7 +213,7 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
 
 
 CARRIED_APART = ("by", "why", "csrf")
-"""Fields that the page's own form asks for."""
+"""Fields that the form of the page asks for."""
 
 
 @dataclass(frozen=True)
@@ -384,12 +384,12 @@ def _change(
     steps: Mapping[str, Steps],
 ) -> VerdictChange | None:
     """A session and its reference are the pair."""
-    own, reference = pair
-    if own.parity is None:
-        found = judge(own, reference, other, coverage_factor, steps=steps.get(one.session, NO_STEPS))
+    calibration, reference = pair
+    if calibration.parity is None:
+        found = judge(calibration, reference, other, coverage_factor, steps=steps.get(one.session, NO_STEPS))
     else:
-        seen = ReferenceComparison(reference, ParityResult.from_dict(own.parity))
-        found = judge_recording(own, seen, other, coverage_factor)
+        seen = ReferenceComparison(reference, ParityResult.from_dict(calibration.parity))
+        found = judge_recording(calibration, seen, other, coverage_factor)
     if found.verdict is one.verdict:
         return None
     worst = found.worst

@@ -14,7 +14,7 @@ from service.judging.usable_words import next_in_words
 from service.judging.use import Use, in_words
 from service.kit.failure import unit_failed
 from service.kit.measures import NOISE, day_of, heading, in_measure
-from service.outlook.charts import Track, TrackPoint, history_charts, tolerance_text, tracks_of
+from service.outlook.charts import ParameterCourse, TrackPoint, history_charts, tolerance_text, tracks_of
 from service.outlook.records import ParameterTrend, UnitOutlook
 from service.outlook.words import NextCalibration, next_calibration
 from service.pages.unit.events import KINDS, STEPS, StageTable, UnitEvent, events_of, stage_table
@@ -71,11 +71,11 @@ def noise_part(points: Sequence[HistoryPoint], services: Sequence[Service], note
     sections, undecided = [], []
     for name in NAMES:
         for kind in kinds:
-            own = [point for point in points if (point.parameter, point.kind) == (name, kind)]
+            of_name = [point for point in points if (point.parameter, point.kind) == (name, kind)]
             heading = say("{heading}, {kind}", heading=NAMES[name], kind=f"{kind}s") if len(kinds) > 1 else NAMES[name]
-            if any(point.value is not None for point in own):
-                sections.append(_noise_section(own, heading, services, notes))
-            elif own:
+            if any(point.value is not None for point in of_name):
+                sections.append(_noise_section(of_name, heading, services, notes))
+            elif of_name:
                 undecided.append(heading)
     return NoisePart(grown(points), tuple(sections), tuple(undecided))
 
@@ -99,11 +99,11 @@ def _noise_section(
         meaning=MEANINGS[first.parameter],
         charts=history_charts(tracks, services, notes),
         sensors=sensors,
-        rows=tuple(reversed([_row(list(own), sensors) for _, own in groupby(points, key=lambda p: p.session)])),
+        rows=tuple(reversed([_row(list(group), sensors) for _, group in groupby(points, key=lambda p: p.session)])),
     )
 
 
-def _track(points: Sequence[HistoryPoint]) -> Track:
+def _track(points: Sequence[HistoryPoint]) -> ParameterCourse:
     first = points[0]
     measure = NOISE[first.kind, first.parameter]
     shown = tuple(
@@ -121,7 +121,7 @@ def _track(points: Sequence[HistoryPoint]) -> Track:
         )
         for point in points
     )
-    return Track(f"{first.parameter}-{first.kind}", first.sensor, first.parameter, measure, shown)
+    return ParameterCourse(f"{first.parameter}-{first.kind}", first.sensor, first.parameter, measure, shown)
 
 
 def _row(points: Sequence[HistoryPoint], sensors: Sequence[str]) -> NoiseRow:
@@ -292,7 +292,7 @@ def _worst_first(sections: Iterable[ParameterSection], worst: str | None) -> tup
 
 
 def _section(
-    tracks: Sequence[Track],
+    tracks: Sequence[ParameterCourse],
     services: Sequence[Service],
     notes: Sequence[Note],
     trends: Sequence[ParameterTrend],
@@ -320,7 +320,7 @@ def _section(
     )
 
 
-def _rows(tracks: Sequence[Track]) -> tuple[TableRow, ...]:
+def _rows(tracks: Sequence[ParameterCourse]) -> tuple[TableRow, ...]:
     """Sessions newest first, sensors across."""
     found = [{p.session: p for p in track.points} for track in tracks]
     sessions = {p.session: p.at for track in tracks for p in track.points}

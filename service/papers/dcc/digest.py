@@ -1,4 +1,4 @@
-"""The hash of a certificate's own contents: whoever changes a word of it must also change this.
+"""The hash of a certificate's contents: whoever changes a word of it must also change this.
 
 It is the SHA-256 of the canonical XML (C14N 1.0, comments included) of the document without its electronic seal and
 white space between elements, with the text of the hash itself left empty.

@@ -151,7 +151,7 @@ def _history(points: list[HistoryPoint], services: tuple[Service, ...], language
 MOST_RANKED = 100
 """Lines of the ranking: two pages, worst first; the workbook has all units."""
 MOST_SECTIONS = 40
-"""Units with a section of their own, two to three on a page."""
+"""Units with a section each, two to three on a page."""
 MOST_NOTICES = 8
 """Units that are listed as overdue, and parameters that stand out."""
 STANDS_OUT = 5.0
@@ -228,20 +228,20 @@ def _since(one: DueDate, report: FleetReport) -> str:
 def _standing_out(store: Store) -> tuple[PaperNotice, ...]:
     """The furthest out of their types, of those whose drift chance does not explain."""
     populations = Populations(store).most_evident(MOST_NOTICES)
-    found = [(one, own) for own in populations for one in own.evident if abs(one.z) > STANDS_OUT]
+    found = [(one, population) for population in populations for one in population.evident if abs(one.z) > STANDS_OUT]
     furthest = sorted(found, key=lambda pair: (-abs(pair[0].z), pair[0].serial, pair[0].sensor, pair[1].parameter))
-    return tuple(PaperNotice(one.serial, _drift(one, own)) for one, own in furthest[:MOST_NOTICES])
+    return tuple(PaperNotice(one.serial, _drift(one, population)) for one, population in furthest[:MOST_NOTICES])
 
 
-def _drift(one: Placed, own: Population) -> str:
+def _drift(one: Placed, population: Population) -> str:
     """``A6 bias drifts +62 ± 4 µg a year``."""
     rate, sigma = one.value * one.tolerance, one.sigma * one.tolerance
-    unit = deviation_measure(own.kind, own.parameter, abs(rate))
-    write = measured if own.parameter == "axis" else signed
+    unit = deviation_measure(population.kind, population.parameter, abs(rate))
+    write = measured if population.parameter == "axis" else signed
     return say(
         "{sensor} {parameter} drifts {rate} a year",
         sensor=one.sensor,
-        parameter=own.parameter,
+        parameter=population.parameter,
         rate=write(rate, COVERAGE * sigma, unit),
     )
 

@@ -8,7 +8,7 @@ from service.judging.usable_reading import usable_unit
 from service.judging.words import verdict_in_words
 from service.papers.correction import corrected
 from service.papers.onboard.given import ExportInput
-from service.sessions.calibrations_store import Noises
+from service.sessions.calibrations_store import SessionNoises
 from service.sessions.words.conditions import condition_of
 from service.settings import VERSION
 from service.storage import Storage
@@ -22,7 +22,7 @@ def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
         why = "; ".join(f"{name}: {reason}" for name, reason in one.found.left_out)
         raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
     with storage.database.reading() as store:
-        noise, use = Noises(store).get(id), usable_unit(store, one.stored.unit, now)
+        noise, use = SessionNoises(store).get(id), usable_unit(store, one.stored.unit, now)
     return ExportInput(
         unit=one.stored.unit,
         session=one.stored.id,

@@ -1,4 +1,4 @@
-"""Electronic seals: PAdES on PDF, XAdES on XML, with the laboratory's own key."""
+"""Electronic seals: PAdES on PDF, XAdES on XML, with the laboratory's key."""
 
 from functools import partial
 from pathlib import Path

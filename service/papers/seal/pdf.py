@@ -35,7 +35,7 @@ def sealed_pdf(pair: KeyPair, content: bytes) -> bytes:
 
 
 def _signer(pair: KeyPair) -> SimpleSigner:
-    """As pyhanko's own types."""
+    """As pyhanko's types."""
     key = pair.key.private_bytes(Encoding.DER, PrivateFormat.PKCS8, NoEncryption())
     certificates = (Certificate.load(item.public_bytes(Encoding.DER)) for item in (pair.certificate, *pair.chain))
     certificate, *chain = certificates

@@ -45,8 +45,8 @@ def owner_of_seal(content: bytes, trusted: bytes | None) -> str:
     """
     root = etree.fromstring(content)
     try:
-        own = b64decode(root.findtext(f"{DS}Signature/{DS}KeyInfo/{DS}X509Data/{DS}X509Certificate", ""))
-        certificate = load_der_x509_certificate(own) if trusted is None else load_pem_x509_certificate(trusted)
+        enclosed = b64decode(root.findtext(f"{DS}Signature/{DS}KeyInfo/{DS}X509Data/{DS}X509Certificate", ""))
+        certificate = load_der_x509_certificate(enclosed) if trusted is None else load_pem_x509_certificate(trusted)
         at = datetime.fromisoformat(root.findtext(f".//{XADES}SigningTime", ""))
         config = XAdESSignatureConfiguration(location="./", verification_time=at)
         signed = XAdESVerifier().verify(content, x509_cert=certificate, expect_config=config)

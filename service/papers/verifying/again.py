@@ -48,7 +48,7 @@ def stated_again(raw: RawFile, inputs: RecomputationInputs, printed: Printed, no
 def with_reference(
     inputs: RecomputationInputs, reference: ReferenceSession, file: RawFile, now: datetime
 ) -> RecomputationInputs:
-    """With the reference's calibration computed again from its own file."""
+    """With the reference's calibration computed again from its file."""
     new = check(file.content, file.name, now, lambda _: True)
     found = calibrate(new, CalibrationBasis(reference.model, None))
     return replace(inputs, reference=replace(reference, calibration=found.calibration))

@@ -37,16 +37,16 @@ def _differences(printed: Element, computed: Element, above: tuple[str, ...], sl
     name, tag = _name(computed), str(computed.tag).rpartition("}")[2]
     place = (*above, name) if name else above
     at = " › ".join((*place, "U" if tag == U else tag))
-    own, other = (element.findall("{*}*") for element in (printed, computed))
+    stated, other = (element.findall("{*}*") for element in (printed, computed))
     if dict(printed.attrib) != dict(computed.attrib):
         yield at, f"{dict(printed.attrib)}", f"{dict(computed.attrib)}"
-    if [child.tag for child in own] != [child.tag for child in other]:
-        said, wanted = (", ".join(_name(child) or str(child.tag) for child in children) for children in (own, other))
+    if [child.tag for child in stated] != [child.tag for child in other]:
+        said, wanted = (", ".join(_name(child) or str(child.tag) for child in children) for children in (stated, other))
         yield at, said, wanted
         return
     if not _agree(_text(printed), _text(computed), slack.get(computed, ())):
         yield at, _text(printed), _text(computed)
-    for one, again in zip(own, other, strict=True):
+    for one, again in zip(stated, other, strict=True):
         yield from _differences(one, again, place, slack)
 
 
@@ -57,7 +57,7 @@ def _agree(printed: str, computed: str, slack: tuple[float, ...]) -> bool:
         pairs = list(zip(map(float, printed.split()), map(float, computed.split()), slack, strict=True))
     except ValueError:
         return False
-    return all(isfinite(own) and abs(own - other) <= least for own, other, least in pairs)
+    return all(isfinite(number) and abs(number - other) <= least for number, other, least in pairs)
 
 
 def _slack(root: Element) -> Slack:
@@ -79,15 +79,15 @@ def _slack(root: Element) -> Slack:
 
 
 def _of_covariances(root: Element) -> Iterator[tuple[Element, tuple[float, ...]]]:
-    """Each row begins with the variance of its own parameter."""
+    """Each row begins with the variance of its parameter."""
     rows, sigmas = list[tuple[str, list[str], Element]](), dict[str, float]()
     for numbers in root.iterfind(".//si:realListXMLList", NAMESPACES):
         labels, values = (numbers.find(f"si:{part}XMLList", NAMESPACES) for part in ("label", "value"))
-        own = "_".join(_name(numbers.getparent()).removeprefix(COVARIANCE_OF).split())
-        rows.append((own, _text(labels).split(), values))
-        sigmas.setdefault(own, sqrt(abs(float(_text(values).split()[0]))))
-    for own, names, values in rows:
-        yield values, tuple(AGREEMENT * sigmas[own] * sigmas[name] for name in names)
+        quantity = "_".join(_name(numbers.getparent()).removeprefix(COVARIANCE_OF).split())
+        rows.append((quantity, _text(labels).split(), values))
+        sigmas.setdefault(quantity, sqrt(abs(float(_text(values).split()[0]))))
+    for quantity, names, values in rows:
+        yield values, tuple(AGREEMENT * sigmas[quantity] * sigmas[name] for name in names)
 
 
 def _text(element: Element) -> str:

@@ -29,7 +29,7 @@ def by_schema(certificate: bytes, folder: Path | None) -> Check:
 
 
 def contents(root: Element) -> Check:
-    """Whether they are those that the certificate's own hash was made of."""
+    """Whether they are those that the certificate's hash was made of."""
     stated = stated_digest(root)
     if stated is None:
         says = say("It was made by a release that stated no hash of a certificate's contents.")

@@ -100,8 +100,8 @@ def _numbers(printed: Printed, raw: RawFile, beside: Beside, now: datetime) -> I
 def _compared(printed: Printed, computed: Element) -> Check:
     found = list(differences(unsealed(printed.root), computed))
     says = [
-        say("{place}: printed {printed}, computed {computed}", place=at, printed=own or "-", computed=other or "-")
-        for at, own, other in found[:MOST]
+        say("{place}: printed {printed}, computed {computed}", place=at, printed=stated or "-", computed=other or "-")
+        for at, stated, other in found[:MOST]
     ]
     if len(found) > MOST:
         says.append(say_count("One more difference.", "{number} more differences.", len(found) - MOST))

@@ -10,7 +10,7 @@ from service.errors import NotFoundError, ServiceError, SignInError
 from service.people.account_pages import SignInPage, is_secure, local_address, signed_in
 from service.people.admission import Gate
 from service.people.dependencies import SEE_OTHER, StorageOf
-from service.people.provider import Answer, Journey, Provider, joining_of
+from service.people.provider import Callback, Journey, Provider, joining_of
 from service.people.secret import new_secret
 from service.people.sign_in_elsewhere import sign_in_elsewhere
 from service.settings import Settings
@@ -59,7 +59,7 @@ def come_back(
     secret, _, next = request.cookies.get(COOKIE, "").partition(".")
     to = local_address(unquote(next))
     try:
-        callback = _valid(Answer(code, state, iss), secret)
+        callback = _valid(Callback(code, state, iss), secret)
         claims = provider.claims(callback, Journey(secret), _back(request, settings), now)
         answer: Response = signed_in(
             request, settings, sign_in_elsewhere(storage, claims, joining_of(settings), now), to
@@ -70,7 +70,7 @@ def come_back(
     return answer
 
 
-def _valid(answer: Answer, secret: str) -> Answer:
+def _valid(answer: Callback, secret: str) -> Callback:
     """The answer, if it can be valid at all."""
     if not secret:
         raise SignInError(NOT_BEGUN)

@@ -18,7 +18,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from service.errors import AwayError, SignInError
 from service.kit.log import log
-from service.people.provider import Answer, Claims, Journey, ProviderSettings
+from service.people.provider import Callback, Claims, Journey, ProviderSettings
 from service.people.secret import is_same
 
 ALGORITHMS = ("RS256", "PS256", "ES256", "RS384", "RS512", "ES384", "EdDSA")
@@ -60,7 +60,7 @@ class OpenIdProvider:
         endpoint = self._allowed(metadata, "authorization_endpoint")
         return f"{endpoint}{'&' if urlsplit(endpoint).query else '?'}{urlencode(parameters)}"
 
-    def claims(self, answer: Answer, journey: Journey, back: str, now: datetime) -> Claims:
+    def claims(self, answer: Callback, journey: Journey, back: str, now: datetime) -> Claims:
         """The person's claims; SignInError for an invalid answer."""
         if not is_same(answer.state, journey.state):
             raise _refused("it was not asked for by this browser")
@@ -94,7 +94,7 @@ class OpenIdProvider:
             )
         return address
 
-    def _require_issuer(self, answer: Answer, metadata: Mapping[str, Any]) -> None:
+    def _require_issuer(self, answer: Callback, metadata: Mapping[str, Any]) -> None:
         """Checks that the answer is not of another provider."""
         is_required = metadata.get("authorization_response_iss_parameter_supported") is True
         if answer.issuer != self._own.issuer and (is_required or answer.issuer is not None):

@@ -63,7 +63,7 @@ class ColumnRow:
 
 
 @dataclass(frozen=True)
-class SensorRow:
+class SensorFields:
     """One sensor with what is known of it."""
 
     name: str
@@ -112,7 +112,7 @@ class LayoutPage:
     blocks: tuple[Choice, ...]
     places: tuple[FactField, ...]
     rare: tuple[FactField, ...]
-    sensors: tuple[SensorRow, ...]
+    sensors: tuple[SensorFields, ...]
     problems: tuple[Problem, ...]
     preview: tuple[tuple[str, ...], ...]
     headings: tuple[str, ...]
@@ -251,11 +251,11 @@ def _text_of(session: Mapping[str, Any], key: str) -> str:
     return "" if value is None else str(value)
 
 
-def _sensor(sensor: Mapping[str, Any], session: Mapping[str, Any]) -> SensorRow:
+def _sensor(sensor: Mapping[str, Any], session: Mapping[str, Any]) -> SensorFields:
     axis = sensor.get("nominal_axis") or ()
     shown = " ".join(map(str, axis)) if isinstance(axis, list | tuple) else ""
     scale = sensor.get("nominal_scale")
-    return SensorRow(
+    return SensorFields(
         str(sensor.get("name", "")),
         str(sensor.get("kind") or session.get("block") or ""),
         shown,

@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator import CalibrationSession, Diagnosis, diagnose
 from estimator.applied_vector import stand_geometry
-from estimator.causes import Correction, Signature, cause
+from estimator.causes import RecordCorrection, Signature, cause
 from estimator.diagnosis.residuals.fitted import stand_baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
@@ -76,7 +76,7 @@ def scene_for(identifier: str) -> Scene:
 def spoilt(identifier: str, session: CalibrationSession, where: Scene, rng: np.random.Generator) -> CalibrationSession:
     """The session with the cause in it."""
     known = cause(identifier)
-    if isinstance(known, Correction):
+    if isinstance(known, RecordCorrection):
         ways = list(known.corrected(session))
         return ways[len(ways) // 2][1]
     if not isinstance(known, Signature):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator.applied_vector import stand_geometry
-from estimator.causes import CATALOGUE, Cause, Correction, Setting, Shape, Signature, cause, find
+from estimator.causes import CATALOGUE, Cause, RecordCorrection, Setting, Shape, Signature, cause, find
 from estimator.causes.contract import NEEDS
 from estimator.diagnosis.residuals.fitted import stand_baseline
 from estimator.diagnosis.signatures.lasting import RECORDED
@@ -16,7 +16,7 @@ from tests.estimator.causes.physics import ACTED, SENSOR, World
 from tests.estimator.causes.worlds import truth_of, wandering
 
 SIGNATURES = [c for c in CATALOGUE if isinstance(c, Signature)]
-CORRECTIONS = [c for c in CATALOGUE if isinstance(c, Correction)]
+CORRECTIONS = [c for c in CATALOGUE if isinstance(c, RecordCorrection)]
 TABLE = [
     "cubic-nonlinearity",
     "scale-asymmetry",
@@ -183,7 +183,7 @@ def test_a_need_that_no_session_can_provide_is_an_error() -> None:
 
 @pytest.mark.parametrize("known", CATALOGUE, ids=lambda c: c.identifier)
 def test_a_model_holds_only_what_acts_in_every_session(known: Cause) -> None:
-    one_time = isinstance(known, Correction) or known.between or known.passing or not isinstance(known, Signature)
+    one_time = isinstance(known, RecordCorrection) or known.between or known.passing or not isinstance(known, Signature)
     assert known.can_be_modelled == (not one_time)
 
 
@@ -198,7 +198,7 @@ def test_one_run_makes_causes_of_two_unavailable() -> None:
 
 
 @pytest.mark.parametrize("known", CORRECTIONS, ids=lambda c: c.identifier)
-def test_a_correction_made_twice_is_none(known: Correction) -> None:
+def test_a_correction_made_twice_is_none(known: RecordCorrection) -> None:
     session = WORLD.session
     rng = np.random.default_rng(1)
     session = replace(session, readings=rng.normal(size=session.readings.shape))

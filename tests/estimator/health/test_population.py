@@ -1,10 +1,19 @@
 """Who stands out of a population."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from estimator.health.population import group_standing, outliers, spread, standing
+from estimator.session import Array
+
+
+def standings(rates: Sequence[tuple[float, float]]) -> Array:
+    """Of rates with their sigmas, among themselves."""
+    values, sigmas = np.array(rates, dtype=float).T
+    return standing(values, sigmas, *spread(values, sigmas))
 
 
 def test_a_population_that_agrees_has_no_spread_of_its_own() -> None:
@@ -25,20 +34,20 @@ def test_a_third_of_wild_members_does_not_hide_them() -> None:
     rng = np.random.default_rng(3)
     values = rng.standard_normal(30)
     values[:10] += 40
-    z = standing([(v, 0.3) for v in values])
+    z = standings([(v, 0.3) for v in values])
     assert min(z[:10]) > 8
     assert max(abs(x) for x in z[10:]) < 5
 
 
 def test_ordinary_members_keep_the_level() -> None:
     rng = np.random.default_rng(4)
-    z = [x for _ in range(50) for x in standing([(v, 0.5) for v in rng.normal(0, 1.1, 60)])]
+    z = [x for _ in range(50) for x in standings([(v, 0.5) for v in rng.normal(0, 1.1, 60)])]
     assert np.mean(np.abs(z) > 1.96) == pytest.approx(0.05, abs=0.02)
     assert stats.skew(z) == pytest.approx(0, abs=0.2)
 
 
 def test_equal_rates_are_all_in_the_middle() -> None:
-    assert standing([(1.0, 0.0), (1.0, 0.0), (1.0, 0.0)]) == (0.0, 0.0, 0.0)
+    assert list(standings([(1.0, 0.0), (1.0, 0.0), (1.0, 0.0)])) == [0.0, 0.0, 0.0]
 
 
 @pytest.mark.parametrize("members", [1, 10, 300])

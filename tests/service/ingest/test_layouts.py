@@ -12,7 +12,7 @@ from estimator.reading import read_session
 from service.ingest import is_own_layout, look_at, read_upload
 from service.ingest.digest import content_digest
 from service.ingest.layout.envelope import is_wrapped, unwrapped, wrapped
-from service.ingest.layout.understand import Seen, understood
+from service.ingest.layout.understand import SeenColumn, understood
 from service.ingest.layout.vocabulary import conversion, plain_label
 from tests.service import tables
 
@@ -37,7 +37,7 @@ def mapping_for(content, **changes):
     """As it is proposed, with the facts."""
     document = tables.own_document()
     seen = look_at(content, "own")
-    columns = understood([Seen(**column) for column in seen["columns"]], document["sensors"])
+    columns = understood([SeenColumn(**column) for column in seen["columns"]], document["sensors"])
     facts = tables.facts_of(document)
     return {"format": "imu-mapping/1", "table": dict(seen["taken"]), "columns": columns, "session": facts} | changes
 
@@ -83,7 +83,7 @@ def test_other_files_are_no_table(content):
 )  # fmt: skip
 def test_headings_are_understood(heading, meaning, unit):
     sensors = [{"name": name} for name in ("A1", "A2", "A3")]
-    (column,) = understood([Seen(heading, ("1",), numeric=True, empty=False)], sensors)
+    (column,) = understood([SeenColumn(heading, ("1",), numeric=True, empty=False)], sensors)
     assert (column["as"], column.get("unit", "")) == (meaning, unit)
 
 

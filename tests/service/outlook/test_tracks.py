@@ -5,14 +5,14 @@ from datetime import timedelta
 
 import pytest
 
-from service.outlook.charts import Track, tolerance_text, tracks_of
+from service.outlook.charts import ParameterCourse, tolerance_text, tracks_of
 from service.units.records import Service
 from tests.service.pages.records import NOON, bias_point
 
 MICRO = 9.80665e-6
 
 
-def only(groups: tuple[tuple[Track, ...], ...]) -> Track:
+def only(groups: tuple[tuple[ParameterCourse, ...], ...]) -> ParameterCourse:
     ((track,),) = groups
     return track
 

@@ -7,7 +7,7 @@ from fastapi import Request
 from estimator.errors import Problem
 from service.pages.session.pages import session_page
 from service.settings import Settings
-from service.uploads.pages import Outcome, upload_page
+from service.uploads.pages import FileOutcome, upload_page
 from service.web.render import TEMPLATES, embed, render
 from tests.service.pages.records import session_report
 
@@ -29,7 +29,7 @@ def test_what_a_file_says_is_text_never_markup() -> None:
 
 
 def test_problems_name_field_row_and_what_to_do() -> None:
-    outcome = Outcome("bad.json", None, (Problem("table.A3", "is NaN; measure again", 7),))
+    outcome = FileOutcome("bad.json", None, (Problem("table.A3", "is NaN; measure again", 7),))
     page = bytes(render(request_for("/upload"), "upload.html", upload_page([outcome], Settings())).body).decode()
     row = re.search(r"<tr><td><code>(.*?)</code></td><td[^>]*>(.*?)</td><td>(.*?)</td>", page)
     assert row is not None

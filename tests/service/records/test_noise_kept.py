@@ -9,7 +9,7 @@ import yaml
 from estimator.allan.results import TERMS
 from service.records.diagnose import diagnose
 from service.records.keep import keep_noise
-from service.sessions.calibrations_store import Noises
+from service.sessions.calibrations_store import SessionNoises
 from service.sessions.history_store import History, HistoryQuery
 from service.storage import Storage
 from service.units.store import Units
@@ -53,12 +53,12 @@ def test_a_term_that_the_rests_do_not_reach_has_no_number(storage: Storage) -> N
 def test_another_model_revision_has_the_same_noise(storage: Storage) -> None:
     id = kept(storage)
     with storage.database.writing() as store:
-        Noises(store).carry({id: 7})
-        Noises(store).carry({id: 7})
+        SessionNoises(store).carry({id: 7})
+        SessionNoises(store).carry({id: 7})
         again = History(store).points(Units(store).key("LOG-1"), HistoryQuery(parameter="white-noise"))
     assert len(again) == 3
     with storage.database.reading() as store:
-        found = Noises(store).get(id)
+        found = SessionNoises(store).get(id)
     assert found is not None
     assert (found.rests, [s.name for s in found.sensors]) == (12, ["A1", "A2", "A3"])
 
@@ -70,7 +70,7 @@ def test_it_is_made_beside_the_diagnosis_of_whatever_holds_rests(storage: Storag
     for id in ids:
         diagnose(storage, id, NOW)
     with storage.database.reading() as store:
-        assert [Noises(store).has(id) for id in ids] == [False, True]
+        assert [SessionNoises(store).has(id) for id in ids] == [False, True]
 
 
 @one_engine

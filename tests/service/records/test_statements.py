@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 
 from sqlalchemy import Engine, event
 
-from service.models.records import Evidence, ModelRevision, Scope
+from service.models.records import AcceptedFinding, ModelRevision, Scope
 from service.models.store import Models
 from service.records.recalibrate import recalibrate
 from service.sessions.calibrations_store import Calibrations
@@ -17,7 +17,7 @@ from tests.service.made_sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 UNIT = "BA-017"
-EVIDENCE = Evidence(1e-9, 9.0, (1e-6,), (1e-7,), ("1",), {}, (), "Found.", None)
+EVIDENCE = AcceptedFinding(1e-9, 9.0, (1e-6,), (1e-7,), ("1",), {}, (), "Found.", None)
 
 
 @contextmanager

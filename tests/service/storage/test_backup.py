@@ -26,7 +26,7 @@ from service.opening import open_database
 from service.people.changes import make_link, sign_in
 from service.records.keep import keep_noise
 from service.records.reception import Reception
-from service.sessions.calibrations_store import Noises
+from service.sessions.calibrations_store import SessionNoises
 from service.sessions.sent import SentFile
 from service.settings import Settings
 from service.storage import Files, Storage
@@ -95,7 +95,7 @@ def test_noise_at_rest_is_restored_into_either_engine(
     restore(backup_of(settings, tmp_path), new.database, new.files, NOW)
     assert rows(new.database)["session_noise"] == rows(settings.database)["session_noise"] != []
     with stores(new) as restored, restored.database.reading() as store:
-        found = Noises(store).get(id)
+        found = SessionNoises(store).get(id)
     assert found is not None
     assert (found.rests, [sensor.name for sensor in found.sensors]) == (8, ["A1", "A2", "A3"])
 

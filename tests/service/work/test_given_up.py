@@ -18,7 +18,7 @@ from service.kit.bell import Bell
 from service.kit.failure import AT_FAULT, unit_failed, with_last_try
 from service.kit.guard import Failure
 from service.kit.metrics import Metrics
-from service.models.records import Evidence, ModelRevision, Progress, Scope
+from service.models.records import AcceptedFinding, ModelRevision, Progress, Scope
 from service.models.store import Models, Recomputations
 from service.models.words import GIVEN_UP, left_in_words
 from service.queue.records import WorkKind
@@ -133,7 +133,7 @@ def test_sessions_keep_what_they_had_where_no_process_outlives_their_model(
 
 
 def accepted() -> ModelRevision:
-    evidence = Evidence(1e-4, 7.0, (1e-8,), (1e-9,), ("(m/s²)⁻²",), {}, (), "", None)
+    evidence = AcceptedFinding(1e-4, 7.0, (1e-8,), (1e-9,), ("(m/s²)⁻²",), {}, (), "", None)
     return ModelRevision(
         0, Scope.UNIT, UNIT, "cubic-nonlinearity", ("A2",), session_id(GROUP[0]), evidence, "K. Ito", "", NOW
     )

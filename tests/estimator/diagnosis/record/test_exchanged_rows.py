@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator import CalibrationSession
-from estimator.causes import Correction, cause
+from estimator.causes import RecordCorrection, cause
 from estimator.causes.record import exchange_rows
 from estimator.diagnosis.record.exchanged_rows import exchange_gains, exchanged_rows, weighted_square
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -15,7 +15,7 @@ from tests.estimator.causes.hiding import scene
 
 SESSION = scene(ACCELEROMETER, 0).measured(1)
 ROWS = (2, 11)
-KNOWN = [c for c in [cause("positions-swapped")] if isinstance(c, Correction)]
+KNOWN = [c for c in [cause("positions-swapped")] if isinstance(c, RecordCorrection)]
 
 
 def blind(session: CalibrationSession) -> CalibrationSession:

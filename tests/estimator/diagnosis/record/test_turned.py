@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from estimator.causes import CATALOGUE, Correction
+from estimator.causes import CATALOGUE, RecordCorrection
 from estimator.diagnosis.record.turned import expected_axes, turned_record
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene, with_readings
 
 WHERE = scene(ACCELEROMETER, 2)
-TURNED = [c for c in CATALOGUE if isinstance(c, Correction) and c.between]
+TURNED = [c for c in CATALOGUE if isinstance(c, RecordCorrection) and c.between]
 
 
 @pytest.mark.parametrize("error", TURNED, ids=lambda c: c.identifier)
-def test_a_turned_record_is_found_and_put_right(error: Correction) -> None:
+def test_a_turned_record_is_found_and_put_right(error: RecordCorrection) -> None:
     session = WHERE.measured(1)
     place, wrong = list(error.corrected(session))[-1]
     found = turned_record(baseline_of(wrong), expected_axes([], wrong), TURNED)

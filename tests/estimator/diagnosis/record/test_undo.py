@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from estimator import diagnose
-from estimator.causes import CATALOGUE, Correction
+from estimator.causes import CATALOGUE, RecordCorrection
 from estimator.causes.record import exchange_rows
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -12,7 +12,7 @@ from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene, with_readings
 
 SESSION = scene(ACCELEROMETER, 0).measured(1)
-SIGN = next(c for c in CATALOGUE if isinstance(c, Correction) and c.identifier == "sign-reversed")
+SIGN = next(c for c in CATALOGUE if isinstance(c, RecordCorrection) and c.identifier == "sign-reversed")
 REVERSED = list(SIGN.corrected(SESSION))[2][1]
 
 
