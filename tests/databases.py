@@ -48,7 +48,7 @@ def all_in_turn(metafunc: pytest.Metafunc) -> None:
 
 
 def _run_on(engines: tuple[str, ...], metafunc: pytest.Metafunc) -> None:
-    chosen = any(mark.args[:1] == ("databases",) for mark in metafunc.definition.iter_markers("parametrize"))
+    chosen = any("databases" in mark.args[0] for mark in metafunc.definition.iter_markers("parametrize"))
     if "databases" in metafunc.fixturenames and not chosen:
         metafunc.definition.add_marker(pytest.mark.parametrize("databases", engines, indirect=True))
 

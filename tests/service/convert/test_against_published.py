@@ -3,15 +3,31 @@
 import numpy as np
 import pytest
 
+from benchmarks.convert import FORMATS
 from benchmarks.recordings.held_out import held_out, rms
 from benchmarks.recordings.published import ferraris, mpu9150, xsens
-from benchmarks.recordings.sets import recordings
+from benchmarks.recordings.sets import logs, recordings
 from benchmarks.recordings.tables import known_triads, literature, ours, start_of
 from benchmarks.recordings.triad import triad_of
 from estimator.calibration import calibrate
 from tests.service.convert.made import needs_recordings
 
 pytestmark = needs_recordings
+
+
+@pytest.fixture(scope="module", autouse=True)
+def recordings_let_go():
+    """They fill a quarter of a GiB."""
+    yield
+    for read in (logs, recordings):
+        read.cache_clear()
+
+
+@pytest.mark.parametrize("name", [converter.name for converter in FORMATS])
+def test_all_recordings_convert_and_calibrate(name):
+    found = [calibrate(recording.session).fit for recording in recordings(name)]
+    assert found
+    assert all(fit.converged and fit.rank == fit.parameters for fit in found)
 
 
 def triads(recording):
