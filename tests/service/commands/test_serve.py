@@ -5,6 +5,7 @@ import signal
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -20,7 +21,7 @@ class Start:
 
     printed: str
     ready: int
-    units: int
+    fleet: dict[str, Any]
 
 
 def start(folder: Path) -> Start:
@@ -39,19 +40,19 @@ def start(folder: Path) -> Start:
         try:
             address = first.strip().removeprefix(READY)
             ready = httpx.get(f"{address}/readyz").status_code
-            units = httpx.get(f"{address}/api/v1/fleet").json()["units"]
+            fleet = httpx.get(f"{address}/api/v1/fleet").json()
         finally:
             process.send_signal(signal.SIGINT)
-        return Start(first + process.stdout.read(), ready, units)
+        return Start(first + process.stdout.read(), ready, fleet)
 
 
 def test_an_empty_service_starts_and_prints_a_link_only_until_somebody_has_an_account(run: Run, tmp_path: Path) -> None:
     first = start(tmp_path)
-    assert (first.ready, first.units) == (200, 0)
+    assert (first.ready, first.fleet["units"]) == (200, 0)
     assert re.search(r"make the first account: http://127\.0\.0\.1:\d+/sign-in/\S{43}", first.printed)
     assert run("user", "add", "k.ito", "--role", "admin", "--data-folder", tmp_path).code == 0
     again = start(tmp_path)
-    assert READY in again.printed
+    assert (again.ready, again.fleet["status"]) == (200, 401)
     assert "sign-in/" not in again.printed
 
 
