@@ -4,7 +4,7 @@ import gc
 import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from functools import cache, partialmethod
+from functools import cache, partial, partialmethod
 
 import httpx
 import pytest
@@ -12,14 +12,16 @@ from argon2 import PasswordHasher
 from argon2.profiles import CHEAPEST
 from hypothesis import HealthCheck
 from hypothesis import settings as hypothesis_settings
+from sqlalchemy import create_engine
 
 from service.app import create_app
 from service.kit.lock_order import WATCHED
 from service.people import secret as passwords
 from service.settings import Settings
-from service.storage import Storage
+from service.storage import Storage, engine
 from service.work.readers import GroupReader, Reader
-from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
+from tests.databases import Compiled, Databases, PostgresDatabases, postgres_databases, sqlite_databases
+from tests.databases import all_in_turn as pytest_generate_tests  # noqa: F401 - the hook
 from tests.memory import write_into_memory
 from tests.patience import LONG
 from tests.serving import http_client
@@ -67,6 +69,15 @@ def light_passwords() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def compiled_once() -> Iterator[None]:
+    """Every engine takes its statements from one cache."""
+    with pytest.MonkeyPatch.context() as patch:
+        opened = partial(create_engine, execution_options={"compiled_cache": Compiled()})
+        patch.setattr(engine, "create_engine", opened)
+        yield
+
+
 @pytest.fixture
 def patient_readers(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever asks for what the workers make is let wait until it is there; the service itself asks the clients of a
@@ -89,9 +100,9 @@ def postgresql() -> Iterator[PostgresDatabases]:
         yield databases
 
 
-@pytest.fixture(params=ENGINES)
+@pytest.fixture
 def databases(request: pytest.FixtureRequest) -> Databases:
-    """Each engine in turn."""
+    """The engine of this test."""
     chosen: Databases = request.getfixturevalue(request.param)
     return chosen
 
@@ -104,7 +115,7 @@ def stock_of(tmp_path_factory: pytest.TempPathFactory) -> StockOf:
 
 @pytest.fixture
 def settings_holding(databases: Databases, stock_of: StockOf) -> Iterator[SettingsHolding]:
-    """Settings of a service that holds uploads already, of each engine in turn."""
+    """Settings of a service that holds uploads already."""
     with ExitStack() as opened:
         yield lambda *uploads, diagnosed=False: opened.enter_context(
             stock_of(databases).holding(*uploads, diagnosed=diagnosed)
@@ -113,7 +124,7 @@ def settings_holding(databases: Databases, stock_of: StockOf) -> Iterator[Settin
 
 @pytest.fixture
 def holding(settings_holding: SettingsHolding) -> Iterator[Holding]:
-    """HTTP to a service that holds uploads already, of each engine in turn."""
+    """HTTP to a service that holds uploads already."""
     with ExitStack() as opened:
         yield lambda *uploads, diagnosed=False: opened.enter_context(
             http_client(create_app(settings_holding(*uploads, diagnosed=diagnosed)))
@@ -122,7 +133,7 @@ def holding(settings_holding: SettingsHolding) -> Iterator[Holding]:
 
 @pytest.fixture
 def settings_filled(databases: Databases, stock_of: StockOf) -> Iterator[SettingsFilled]:
-    """Settings of a service that a function has filled, once for all tests, of each engine in turn."""
+    """Settings of a service that a function has filled, once for all tests."""
     with ExitStack() as opened:
         yield lambda fill: opened.enter_context(stock_of(databases).filled(fill))
 
@@ -145,13 +156,13 @@ def _by_stores(fill: Callable[[Storage], object]) -> Fill:
 
 @pytest.fixture
 def settings(settings_holding: SettingsHolding) -> Settings:
-    """Settings of an empty service, of each engine in turn."""
+    """Settings of an empty service."""
     return settings_holding()
 
 
 @pytest.fixture
 def store_url(settings: Settings) -> str:
-    """A fresh database with its schema at head, of each engine in turn."""
+    """A fresh database with its schema at head."""
     return settings.database
 
 
@@ -164,6 +175,6 @@ def storage(settings: Settings) -> Iterator[Storage]:
 
 @pytest.fixture
 def client(settings: Settings) -> Iterator[httpx.Client]:
-    """HTTP to an empty service, of each engine in turn."""
+    """HTTP to an empty service."""
     with http_client(create_app(settings)) as http:
         yield http

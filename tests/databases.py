@@ -8,7 +8,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
+from zlib import crc32
 
 import psycopg
 import pytest
@@ -29,10 +31,42 @@ one_engine = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
 
 
 def all_on_one_engine(metafunc: pytest.Metafunc) -> None:
-    """For a file of such facts, under the name of the hook, `pytest_generate_tests`."""
-    chosen = any(mark.args[:1] == ("databases",) for mark in metafunc.definition.iter_markers("parametrize"))
+    """For a file of facts that no statement decides, under the name of the hook, `pytest_generate_tests`."""
+    _run_on(("sqlite",), metafunc)
+
+
+def all_on_both_engines(metafunc: pytest.Metafunc) -> None:
+    """For a file or folder of facts of the databases themselves, under the name of the hook."""
+    _run_on(ENGINES, metafunc)
+
+
+def all_in_turn(metafunc: pytest.Metafunc) -> None:
+    """For everything else: the name of its file decides on which engine a test runs; ``ENGINES=both``: on both."""
+    file, *_ = metafunc.definition.nodeid.partition("::")
+    turn = ENGINES[crc32(file.encode()) % len(ENGINES)]
+    _run_on(ENGINES if os.environ.get("ENGINES") == "both" else (turn,), metafunc)
+
+
+def _run_on(engines: tuple[str, ...], metafunc: pytest.Metafunc) -> None:
+    chosen = any("databases" in mark.args[0] for mark in metafunc.definition.iter_markers("parametrize"))
     if "databases" in metafunc.fixturenames and not chosen:
-        metafunc.definition.add_marker(one_engine)
+        metafunc.definition.add_marker(pytest.mark.parametrize("databases", engines, indirect=True))
+
+
+class Compiled(dict[Any, Any]):
+    """Statements compiled once for each kind of database. An engine keeps its own, and a test has an engine of its
+    own."""
+
+    def get(self, key: Any, default: Any = None) -> Any:
+        return super().get(_by_kind(key), default)
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        super().__setitem__(_by_kind(key), value)
+
+
+def _by_kind(key: Any) -> Any:
+    dialect, *statement = key
+    return dialect.name, *statement
 
 
 class Databases(ABC):

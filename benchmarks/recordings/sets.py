@@ -47,16 +47,17 @@ class Recording:
 
 
 @cache
-def logs(format_name: str) -> tuple[Recording, ...]:
-    """The sessions of all files of a format as recorded, oldest first; raw logs where the files hold those."""
-    converted = convert(format_name, sorted(folder().glob(FILES[format_name])))
+def logs(format_name: str, most: int | None = None) -> tuple[Recording, ...]:
+    """The sessions of all files of a format as recorded, oldest first; raw logs where the files hold those. ``most``:
+    of the first files only."""
+    converted = convert(format_name, sorted(folder().glob(FILES[format_name]))[:most])
     return tuple(Recording(name.removesuffix(".json"), read_session(document)) for name, document in converted)
 
 
 @cache
-def recordings(format_name: str) -> tuple[Recording, ...]:
+def recordings(format_name: str, most: int | None = None) -> tuple[Recording, ...]:
     """The averaged sessions of all files of a format, oldest first."""
     return tuple(
         replace(log, session=average(log.session, residual_per_freedom)) if log.session.is_raw else log
-        for log in logs(format_name)
+        for log in logs(format_name, most)
     )

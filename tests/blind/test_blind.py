@@ -1,7 +1,7 @@
 """Hidden effects must be found: the whole catalogue in short sessions, held to the targets of the study.
 
-A few dozen sessions cannot measure 97 %: a test fails when so many misses would be a one-in-a-thousand accident at
-the target. `make study` measures the rates.
+A dozen sessions cannot measure 97 %: a test fails when so many misses would be a one-in-a-hundred accident at the
+target. `make study` measures the rates.
 """
 
 from statistics import fmean
@@ -17,7 +17,7 @@ from tests.blind.score import FAR, Outcome
 
 SEED = 20
 LONGEST = 16
-ACCIDENT = 1e-3
+ACCIDENT = 1e-2
 
 
 def examined(kind: str, cases: list[tuple[int, str | None]]) -> list[Outcome]:
@@ -52,32 +52,32 @@ def test_amplitudes_lie_within_their_own_sigma(singles: list[Outcome]):
 
 
 def test_no_name_where_there_is_no_effect():
-    outcomes = examined("none", [(k, None) for k in range(24)])
+    outcomes = examined("none", [(k, None) for k in range(12)])
     assert enough([not o.findings for o in outcomes], 0.99), [o for o in outcomes if o.findings]
 
 
 def test_structure_outside_the_catalogue_is_unexplained():
-    outcomes = examined("outside", [(k, None) for k in range(16)])
+    outcomes = examined("outside", [(k, None) for k in range(8)])
     assert enough([o.unexplained for o in outcomes], 0.95), [o for o in outcomes if not o.unexplained]
 
 
 def test_a_cause_left_out_of_the_catalogue_is_not_given_another_name():
     """Where no other explanation comes within ten standard errors."""
-    outcomes = examined(LEFT_OUT, [(k, cause) for k, cause in enumerate(CATALOGUE) if k % 3 == 1])
+    outcomes = examined(LEFT_OUT, [(k, cause) for k, cause in enumerate(CATALOGUE) if k % 6 == 1])
     far = [o for o in outcomes if min(o.separations) >= FAR]
-    assert len(far) > 5
+    assert len(far) > 3
     assert enough([o.unexplained_listed for o in far], 0.95), [o for o in far if not o.unexplained_listed]
     assert enough([not o.findings for o in far], 0.90), [o for o in far if o.findings]
 
 
 @pytest.mark.parametrize("factor", [0.1, 1 / 3, 3.0])
 def test_wrongly_stated_noise_names_nothing_and_hides_nothing(factor: float):
-    answers = [perform(Wish(factor, "all", k % 2 == 1, (SEED, k), HIDDEN[5 * k % len(HIDDEN)])) for k in range(6)]
+    answers = [perform(Wish(factor, "all", k % 2 == 1, (SEED, k), HIDDEN[10 * k % len(HIDDEN)])) for k in range(3)]
     assert enough([not a.other_name for a in answers if not a.wish.hidden], 0.99)
     assert enough([a.offered for a in answers if a.wish.hidden], 0.95)
 
 
 def test_two_effects_are_both_named_or_listed():
-    outcomes = examined("two", [(k, None) for k in range(12)])
+    outcomes = examined("two", [(k, None) for k in range(6)])
     assert enough([all(o.named) for o in outcomes if o.separated], 0.90)
     assert enough([all(o.offered) for o in outcomes], 0.90), [o for o in outcomes if not all(o.offered)]

@@ -48,9 +48,9 @@ def test_what_the_catalogue_lacks_is_unexplained():
     assert outcome.findings == ()
 
 
-@pytest.mark.parametrize(("form", "seed"), [("a·T²", 1), ("a²·T", 0), ("|a|·T", 0), ("lag T·t", 1)])
+@pytest.mark.parametrize(("form", "seed"), [("a²·T", 0), ("lag T·t", 1)])
 def test_no_name_is_sure_where_the_effect_is_in_no_catalogue(form: str, seed: int):
-    """Input times square of temperature, temperature times square and size of input, lagged temperature times time."""
+    """Square of input times temperature, lagged temperature times time."""
     outcome, found = told(draw_group("unit", form, (27, seed), size=10))
     assert not outcome.sure, (outcome.findings, found["notes"])
     assert outcome.crowd <= 1, outcome.findings

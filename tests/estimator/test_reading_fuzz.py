@@ -66,32 +66,32 @@ def mutated(draw):
 
 
 @given(mutated())
-@settings(max_examples=400, deadline=None, derandomize=True)
+@settings(max_examples=150, deadline=None, derandomize=True)
 def test_mutated_documents(document):
     answer(document)
 
 
 @given(mutated())
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 def test_mutated_json(document):
     answer(json.dumps(document).encode())
 
 
 @given(JSON)
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 def test_any_json(document):
     answer(json.dumps(document).encode())
     answer(document)
 
 
 @given(st.binary(max_size=200), st.sampled_from([b"", b"{", b"#", b'{"format":', b"# {}\n", b"\xef\xbb\xbf"]))
-@settings(max_examples=400, deadline=None, derandomize=True)
+@settings(max_examples=150, deadline=None, derandomize=True)
 def test_any_bytes(content, start):
     answer(start + content)
 
 
 @given(st.data())
-@settings(max_examples=400, deadline=None, derandomize=True)
+@settings(max_examples=150, deadline=None, derandomize=True)
 def test_damaged_bytes(data):
     seed = data.draw(st.sampled_from(SEEDS))
     content = bytearray(data.draw(st.sampled_from([json.dumps(seed).encode(), csv_of(seed)])))

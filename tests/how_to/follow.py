@@ -18,6 +18,7 @@ PROJECT = Path(__file__).parents[2]
 COPIED = ("estimator", "service", "migrations", "benchmarks", "docs/diagnosis")
 STEP = re.compile(r"`([\w./-]+\.\w+)`[^`\n]*:\n\n```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+VERSIONS = PROJECT / "migrations" / "versions"
 BIN = Path(sys.executable).parent
 
 
@@ -27,7 +28,7 @@ class House:
 
     root: Path
     page: str
-    """The page's text."""
+    """Text of the page; of several, of the last."""
 
     @property
     def environment(self) -> dict[str, str]:
@@ -64,13 +65,18 @@ def plain(text: str) -> str:
     return text.replace("\N{NO-BREAK SPACE}", " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
 
 
-def followed(name: str, folder: Path) -> House:
-    """A copy of the source in which every step of a page was done."""
+def followed(folder: Path, *names: str) -> House:
+    """A copy of the source in which every step of some pages was done."""
     for part in COPIED:
         shutil.copytree(PROJECT / part, folder / part)
-    page = (PROJECT / "docs" / "how-to" / f"{name}.md").read_text(encoding="utf-8")
-    for path, language, block in STEP.findall(page):
-        write(folder / path, language, block)
+    for name in names:
+        page = (PROJECT / "docs" / "how-to" / f"{name}.md").read_text(encoding="utf-8")
+        for path, language, block in STEP.findall(page):
+            write(folder / path, language, block)
+    for new in (folder / "migrations" / "versions").glob("0100_*.py"):  # after the latest that there is
+        latest = max(file.name[:4] for file in VERSIONS.glob("0*.py"))
+        moved = re.sub('down_revision = "[0-9]+"', f'down_revision = "{latest}"', new.read_text("utf-8"))
+        new.write_text(moved, "utf-8")
     return House(folder, page)
 
 

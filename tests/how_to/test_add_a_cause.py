@@ -1,8 +1,10 @@
 """docs/how-to/add-a-cause.md, followed: one class and one line, and every room knows the new cause."""
 
-import httpx
+import json
+
 import pytest
 
+from tests.how_to.conftest import Served
 from tests.how_to.follow import House, followed, plain
 
 SENTENCE = "The zero of A2 is another one beyond a certain input"
@@ -11,7 +13,7 @@ SENTENCE = "The zero of A2 is another one beyond a certain input"
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> House:
     """The source with the page's cause."""
-    return followed("add-a-cause", tmp_path_factory.mktemp("cause"))
+    return followed(tmp_path_factory.mktemp("cause"), "add-a-cause")
 
 
 @pytest.fixture(scope="module")
@@ -40,11 +42,11 @@ def test_the_catalogue_page_shows_the_cause(house: House) -> None:
     assert "| `range-switch` | k where \\|a\\| > a0, a0 free | m/s² | – | The zero of the sensor is another" in page
 
 
-def test_the_page_of_an_uploaded_session_says_it_in_the_cause_s_words(house: House, said: list[str]) -> None:
-    content = (house.root / "once.json").read_bytes()
-    with house.serving() as address:
-        id = httpx.post(f"{address}/api/v1/sessions", content=content).json()["id"]
-        page = plain(httpx.get(f"{address}/sessions/{id}/diagnosis").text)
+@pytest.mark.usefixtures("said")
+def test_the_page_of_an_uploaded_session_says_it_in_the_cause_s_words(house: House, served: Served) -> None:
+    document = json.loads((house.root / "once.json").read_bytes()) | {"unit": "SWITCHED"}
+    id = served.http.post("/api/v1/sessions", content=json.dumps(document)).json()["id"]
+    page = plain(served.http.get(f"/sessions/{id}/diagnosis").text)
     assert SENTENCE in page
     assert "Fix the voltmeter" in page
     assert "102.1 ± 3.9 µg" in page

@@ -1,7 +1,6 @@
 """docs/how-to/add-a-programme.md, followed: a session of a new programme is read, calibrated, stored and judged."""
 
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
@@ -9,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.builders import GRAVITY
-from tests.how_to.follow import followed
+from tests.how_to.conftest import Served
 
 SCALE, BIAS = 0.12, 2e-3
 AXES = np.eye(3)
@@ -43,19 +42,17 @@ def measured(moved: float, month: int) -> dict[str, Any]:
     }
 
 
-@pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
+@pytest.fixture
+def service(served: Served) -> httpx.Client:
     """A service that knows the page's programme."""
-    house = followed("add-a-programme", tmp_path_factory.mktemp("programme"))
-    with house.serving() as address, httpx.Client(base_url=address) as client:
-        yield client
+    return served.http
 
 
 @pytest.fixture(scope="module")
-def answers(service: httpx.Client) -> list[dict[str, Any]]:
+def answers(served: Served) -> list[dict[str, Any]]:
     """Of three sessions: the reference, one that is as it was, one in which A1 has moved by 500 µg."""
     sessions = (measured(0.0, 1), measured(0.0, 2), measured(5e-3, 3))
-    return [service.post("/api/v1/sessions", content=json.dumps(session)).json() for session in sessions]
+    return [served.http.post("/api/v1/sessions", content=json.dumps(session)).json() for session in sessions]
 
 
 def test_the_truth_is_found_within_its_uncertainty(service: httpx.Client, answers: list[dict[str, Any]]) -> None:

@@ -3,9 +3,9 @@
 import gzip
 from pathlib import Path
 
-import httpx
 import pytest
 
+from tests.how_to.conftest import Served
 from tests.how_to.follow import House, followed
 from tests.service.made_sessions import session_bytes
 
@@ -13,15 +13,15 @@ from tests.service.made_sessions import session_bytes
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> House:
     """The source with the page's reader and converter."""
-    return followed("add-a-reader", tmp_path_factory.mktemp("reader"))
+    return followed(tmp_path_factory.mktemp("reader"), "add-a-reader")
 
 
-def test_a_packed_session_is_taken_and_damaged_ones_are_refused(house: House) -> None:
-    packed = gzip.compress(session_bytes())
-    with house.serving() as address, httpx.Client(base_url=f"{address}/api/v1") as client:
-        plain = client.post("/sessions", content=session_bytes())
-        taken = client.post("/sessions", content=packed)
-        torn = client.post("/sessions", content=packed[:-200])
+def test_a_packed_session_is_taken_and_damaged_ones_are_refused(served: Served) -> None:
+    content = session_bytes(unit="PACKED")
+    packed = gzip.compress(content)
+    plain, taken, torn = (
+        served.http.post("/api/v1/sessions", content=sent) for sent in (content, packed, packed[:-200])
+    )
     assert (plain.status_code, taken.status_code) == (201, 200), "the same readings are the same session"
     assert taken.json()["id"] == plain.json()["id"]
     assert (torn.status_code, torn.json()["problems"][0]["message"]) == (422, "is damaged; pack it again")

@@ -15,8 +15,9 @@ PLACES = {
 
 def caught(module: Module) -> bool:
     """Whether a mistake stands in an ``except`` or in a tuple for one."""
-    kinds = [node.type for node in ast.walk(module.tree) if isinstance(node, ast.ExceptHandler) and node.type]
-    tuples = [node for node in ast.walk(module.tree) if isinstance(node, ast.Tuple)]
+    nodes = [*ast.walk(module.tree)]
+    kinds = [node.type for node in nodes if isinstance(node, ast.ExceptHandler) and node.type]
+    tuples = [node for node in nodes if isinstance(node, ast.Tuple)]
     names = [name for node in (*kinds, *tuples) for name in ast.walk(node) if isinstance(name, ast.Name)]
     return any(name.id in MISTAKES for name in names)
 

@@ -14,10 +14,11 @@ PAUSES = {"tests/service/storage/test_turns.py"}
 """Where a pause of no length lets another thread go on."""
 
 
-def calls() -> Iterator[tuple[str, ast.Call]]:
-    """Every call in the tests, with its place."""
+def calls(word: str) -> Iterator[tuple[str, ast.Call]]:
+    """Every call in the tests' files that hold a word, with its place."""
     for path in sorted(TESTS.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        source = path.read_text("utf-8")
+        for node in ast.walk(ast.parse(source)) if word in source else ():
             if isinstance(node, ast.Call):
                 yield f"{path.relative_to(TESTS.parent)}:{node.lineno}", node
 
@@ -25,7 +26,7 @@ def calls() -> Iterator[tuple[str, ast.Call]]:
 def test_nothing_is_given_up_after_seconds_that_a_test_chose() -> None:
     short = [
         place
-        for place, call in calls()
+        for place, call in calls("timeout")
         for word in call.keywords
         if word.arg == "timeout" and isinstance(word.value, ast.Constant) and word.value.value is not None
     ]
@@ -33,7 +34,7 @@ def test_nothing_is_given_up_after_seconds_that_a_test_chose() -> None:
 
 
 def test_no_test_sleeps() -> None:
-    names = ((place, ast.unparse(call.func)) for place, call in calls())
+    names = ((place, ast.unparse(call.func)) for place, call in calls("sleep"))
     sleeping = [place for place, name in names if name in ("sleep", "time.sleep")]
     assert [place for place in sleeping if place.rpartition(":")[0] not in PAUSES] == []
 

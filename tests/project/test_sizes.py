@@ -1,6 +1,7 @@
 """Pieces stay small: no file over 400 lines, no function over 60."""
 
 import ast
+import re
 
 from tests.project.source import PACKAGES, modules
 
@@ -26,7 +27,7 @@ def test_no_function_is_too_long() -> None:
 
 def test_every_module_and_public_function_says_what_it_is() -> None:
     """Classes of the service too; a cause of the estimator says it in its own words, as attributes."""
-    bare = [module.name for module in ALL if ast.get_docstring(module.tree) is None and module.tree.body]
+    bare = [module.name for module in ALL if re.match(r'(?!r?"""|$)', module.path.read_text("utf-8"))]
     bare += [
         f"{module.name}.{node.name}"
         for module in modules(*PACKAGES)

@@ -14,7 +14,7 @@ from estimator.session import Array, Site
 from tests.estimator.alignment.cases import SITE, TYPICAL, Case, G, aligned, drawn
 
 LATITUDE = SITE.latitude or 0.0
-RUNS = 24
+RUNS = 14
 NOISY = Imperfections(accelerometer=5e-5 * G, gyro=0.02 * ARCSEC * 60, wobble=0.5 * ARCSEC, table=0.5 * ARCSEC)
 FOUR = TurntableProgramme(angles=(0, np.pi / 2, np.pi, 1.5 * np.pi), dwell=120.0, row=0.5)
 CASES = {

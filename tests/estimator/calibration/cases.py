@@ -48,7 +48,7 @@ class Case:
     schedule: CalibrationSession
     noise: Array
     """(m,) one sigma of a reading, reading units."""
-    sessions: int = 1000
+    sessions: int = 600
     quadratic: float = 1e-5
 
     @property

@@ -25,7 +25,7 @@ def sessions(case: Case, count: int, *, noise: float = 1.0, stated: bool = True)
 
 @pytest.mark.parametrize("case", [STAND, GYRO], ids=lambda c: c.name)
 def test_unstated_noise_gives_honest_intervals(case: Case) -> None:
-    results = calibrate_many(sessions(case, 1000, stated=False))
+    results = calibrate_many(sessions(case, 600, stated=False))
     scaled = np.stack([errors(r, case.truth) / np.sqrt(np.diagonal(r.covariance)) for r in results])
     assert 0.93 <= np.mean(np.abs(scaled) < 1.96) <= 0.97
 

@@ -24,4 +24,4 @@ def is_called_wrong(factor: float, seed: int) -> bool:
 
 @pytest.mark.parametrize("factor", [3.5, 5.0])
 def test_white_noise_of_unequal_sensors_is_no_structure(factor: float) -> None:
-    assert sum(is_called_wrong(factor, seed) for seed in range(20)) <= 1
+    assert not any(is_called_wrong(factor, seed) for seed in range(8))

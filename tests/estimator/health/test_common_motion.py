@@ -186,16 +186,16 @@ def test_parallel_axes_do_not_hold_a_turn() -> None:
 def test_the_turn_and_what_is_left_have_honest_covariances() -> None:
     """Mean normalised error squared, and the chance to call a turn that is not there."""
     rng = np.random.default_rng(6)
-    found = [split(6, rng, turn=np.zeros(3)) for _ in range(500)]
+    found = [split(6, rng, turn=np.zeros(3)) for _ in range(250)]
     assert {s.motion.state for f in found for s in f.values()} == {"separated"}
     turns = [nees(f["axes"].motion) for f in found]
-    assert abs(np.mean(turns) - 3) < 4 * np.sqrt(6 / 500)
+    assert abs(np.mean(turns) - 3) < 4 * np.sqrt(6 / 250)
     alarms = sum((f["axes"].motion.p_value or 0) < 0.01 for f in found)
-    assert alarms <= stats.binom.isf(1e-3, 500, 0.01)
+    assert alarms <= stats.binom.isf(1e-3, 250, 0.01)
     left = [d.vector @ np.linalg.solve(d.covariance, d.vector) for f in found for d in f["axes"].residuals.values()]
     assert np.mean(left) == pytest.approx(2, abs=0.12)
     outs = sum(bool(f["axes"].motion.left_out or f["scales"].motion.left_out) for f in found)
-    assert outs <= stats.binom.isf(1e-3, 500, 0.002)
+    assert outs <= stats.binom.isf(1e-3, 250, 0.002)
 
 
 def nees(motion: CommonMotion, truth: Array | float = 0.0) -> float:
@@ -223,13 +223,13 @@ def test_a_turn_however_large_leaves_nothing_of_any_sensor(m: int, degrees: floa
 
 def test_a_large_turn_has_an_honest_covariance_and_moves_no_sensor() -> None:
     rng, errors, outs = np.random.default_rng(21), [], 0
-    for k in range(300):
+    for k in range(150):
         turn = turned_by(5.0, k)
         found = split(6, rng, turn=turn)["axes"].motion
         errors.append(nees(found, turn))
         outs += bool(found.left_out)
-    assert abs(np.mean(errors) - 3) < 4 * np.sqrt(6 / 300)
-    assert outs <= stats.binom.isf(1e-3, 300, 0.001)
+    assert abs(np.mean(errors) - 3) < 4 * np.sqrt(6 / 150)
+    assert outs <= stats.binom.isf(1e-3, 150, 0.001)
 
 
 @pytest.mark.parametrize("arcsec", [20.0, 7200.0])

@@ -12,7 +12,7 @@ from estimator.health.shapes import Kind
 from estimator.session import Array
 from tests.estimator.health.histories import SIGMA, dates, measured, readings, walk
 
-RUNS = 300
+RUNS = 150
 
 
 def found(of: Readings, *, usual_walk: float = 0.0, dof: float = np.inf, temperature: Array | None = None) -> Detected:
@@ -136,11 +136,11 @@ def test_sessions_of_one_day_show_no_drift() -> None:
 def test_alarms_over_all_parameters_of_a_unit_are_as_rare_as_stated() -> None:
     rng = np.random.default_rng(12)
     alarms = 0
-    for _ in range(40):
+    for _ in range(24):
         t = dates(rng, 6)
         unit = [measured(rng, t, np.zeros((6, 1 + i % 2))) for i in range(8)]
         alarms += any(o.changes for o in prognosis(unit, [general_prior()] * 8, np.zeros(1)).outlooks)
-    assert alarms <= stats.binom.isf(1e-3, 40, 0.01)
+    assert alarms <= stats.binom.isf(1e-3, 24, 0.01)
 
 
 def test_an_outlook_does_not_depend_on_the_unit_of_measurement() -> None:

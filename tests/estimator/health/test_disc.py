@@ -32,11 +32,11 @@ def test_limits_hold_the_true_length_as_often_as_they_claim(sigma: tuple[float, 
     """On each side wrong in at most Φ(−2) = 2.3 %, in the least favourable direction and in the other."""
     rng = np.random.default_rng(6)
     for center in ((0.0, length), (length, 0.0)):
-        draws = np.array(center) + np.array(sigma) * rng.standard_normal((1000, 2))
+        draws = np.array(center) + np.array(sigma) * rng.standard_normal((500, 2))
         found = [judge_length(d, np.diag(np.square(sigma)), 5.0, 2.0) for d in draws]
         above = np.mean([length > f.value + f.expanded for f in found])
         below = np.mean([length < f.value - f.expanded for f in found])
-        assert max(above, below) < 0.0228 + 3 * np.sqrt(0.0228 / 1000)
+        assert max(above, below) < 0.0228 + 3 * np.sqrt(0.0228 / 500)
 
 
 def test_the_length_is_freed_of_the_upward_pull_of_noise() -> None:

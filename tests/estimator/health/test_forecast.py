@@ -114,7 +114,7 @@ def test_bounds_hold_a_later_session_as_often_as_they_claim_in_a_type_that_is_kn
     """A third of the parameters drift, a third walk; the year after the last session."""
     rng = np.random.default_rng(8)
     tracks, later = [], []
-    for i in range(240):
+    for i in range(120):
         t = np.append(dates(rng, 8, 2.5), 3.5)
         truth = (0.5 * t, walk(rng, t, 0.25), 0 * t)[i % 3]
         whole = measured(rng, t, truth, sigma=0.06)
@@ -126,7 +126,7 @@ def test_bounds_hold_a_later_session_as_often_as_they_claim_in_a_type_that_is_kn
         for track, (value, ahead) in zip(tracks, later, strict=True)
     ]
     held = np.sum((np.array(below) > 0.05) & (np.array(below) < 0.95))
-    assert stats.binom.ppf(1e-3, 240, 0.9) <= held
+    assert stats.binom.ppf(1e-3, 120, 0.9) <= held
 
 
 def test_a_stable_unit_of_a_type_that_is_known_may_wait_the_whole_year() -> None:

@@ -53,8 +53,8 @@ def shifted(stand: str, unit: str, time: float) -> Array:
 
 
 def test_a_stand_that_shifts_is_flagged_with_date_and_size() -> None:
-    found = [flagged(stand_states(fleet(np.random.default_rng(seed), shifted))) for seed in range(20)]
-    assert sum(set(f) == {"S1"} for f in found) >= 19
+    found = [flagged(stand_states(fleet(np.random.default_rng(seed), shifted))) for seed in range(12)]
+    assert sum(set(f) == {"S1"} for f in found) >= 11
     hits = [f["S1"] for f in found if "S1" in f]
     assert np.median([abs(s.since - 2.0) for s in hits]) < 0.15
     inside = [np.linalg.norm(np.array(s.value) - SHIFT) < 4 * np.sqrt(np.trace(np.array(s.covariance))) for s in hits]
@@ -62,27 +62,27 @@ def test_a_stand_that_shifts_is_flagged_with_date_and_size() -> None:
 
 
 def test_stands_that_stay_are_left_alone() -> None:
-    alarms = sum(bool(flagged(stand_states(fleet(np.random.default_rng(100 + s), still)))) for s in range(50))
-    assert alarms <= stats.binom.isf(1e-3, 50, 0.02)
+    alarms = sum(bool(flagged(stand_states(fleet(np.random.default_rng(100 + s), still)))) for s in range(30))
+    assert alarms <= stats.binom.isf(1e-3, 30, 0.02)
 
 
 def test_blocks_that_each_sit_otherwise_in_a_fixture_do_not_shift_the_stand() -> None:
-    assert not any(flagged(stand_states(fleet(np.random.default_rng(s), fitted))) for s in range(10))
+    assert not any(flagged(stand_states(fleet(np.random.default_rng(s), fitted))) for s in range(6))
 
 
 @pytest.mark.parametrize("units", [3, 8])
 @pytest.mark.parametrize("seating", [fitted, reseated])
 def test_however_blocks_are_seated_a_stand_that_stays_is_left_alone(seating: Seating, units: int) -> None:
     """With the scatter of the typical date taken for that of every date, 8 to 67 in a hundred fleets were flagged."""
-    alarms = sum(bool(flagged(stand_states(fleet(np.random.default_rng(300 + s), seating, units)))) for s in range(20))
-    assert alarms <= stats.binom.isf(1e-3, 20, 0.01)
+    alarms = sum(bool(flagged(stand_states(fleet(np.random.default_rng(300 + s), seating, units)))) for s in range(10))
+    assert alarms <= stats.binom.isf(1e-3, 10, 0.01)
 
 
 def test_a_unit_that_was_dropped_is_no_fault_of_any_stand() -> None:
     def dropped(stand: str, unit: str, time: float) -> Array:
         return 30 * SHIFT if unit == "U3" and time > 1.5 else np.zeros(3)
 
-    assert not any(flagged(stand_states(fleet(np.random.default_rng(s), dropped))) for s in range(10))
+    assert not any(flagged(stand_states(fleet(np.random.default_rng(s), dropped))) for s in range(6))
 
 
 def test_two_units_are_too_few_to_tell() -> None:

@@ -2,8 +2,6 @@
 
 import os
 import pty
-import subprocess
-import sys
 from pathlib import Path
 
 import httpx
@@ -13,8 +11,7 @@ from service.app import create_app
 from service.settings import Settings
 from tests.conftest import SettingsHolding
 from tests.databases import Databases, one_engine
-from tests.patience import LONG
-from tests.service.commands.conftest import COMMAND, Run
+from tests.service.commands.conftest import Run
 from tests.service.made_sessions import FAILED
 from tests.service.storage.whole import files, rows
 from tests.serving import http_client
@@ -95,12 +92,12 @@ def test_a_column_that_would_go_is_told_with_what_it_holds(run: Run, full: Setti
 
 @one_engine
 @pytest.mark.parametrize(("answer", "code"), [("y", 0), ("n", 1)])
-def test_at_a_terminal_the_answer_decides(full: Settings, answer: str, code: int) -> None:
+def test_at_a_terminal_the_answer_decides(
+    run: Run, full: Settings, monkeypatch: pytest.MonkeyPatch, answer: str, code: int
+) -> None:
     ours, theirs = pty.openpty()
-    command = [sys.executable, str(COMMAND), "db", "downgrade", "0003", "--no-backup", *map(str, where(full))]
-    with subprocess.Popen(command, stdin=theirs, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as asked:
-        os.write(ours, f"{answer}\n".encode())
-        assert asked.wait(timeout=LONG) == code
-    os.close(ours)
-    os.close(theirs)
+    with os.fdopen(ours, "w") as typed, os.fdopen(theirs) as terminal:
+        print(answer, file=typed, flush=True)
+        monkeypatch.setattr("sys.stdin", terminal)
+        assert run("db", "downgrade", "0003", "--no-backup", *where(full)).code == code
     assert not list(full.data_folder.glob("*.backup"))

@@ -2,13 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
 from itertools import pairwise
 
 import httpx
 import pytest
 
 from estimator.reading import read_session
+from service.commands.serve import _fill as finish
 from service.demo.cast import CAST, END
 from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
@@ -59,20 +59,13 @@ def empty(sqlite: Databases, stock_of: StockOf) -> Iterator[Storage]:
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Settings:
-    """Settings of a service whose demonstration was begun, broken off, and finished by `imu-health serve --demo`."""
+    """Settings of a service whose demonstration was begun, broken off, and finished as by `serve --demo`."""
     settings = Settings(data_folder=tmp_path_factory.mktemp("demonstration"))
     upgrade(settings.database)
     with stores(settings) as storage:
         begin(storage)
-    with serve_demo(settings):
-        return settings
-
-
-@contextmanager
-def serve_demo(settings: Settings) -> Iterator[str]:
-    """The address of `imu-health serve --demo`."""
-    with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", settings.data_folder) as address:
-        yield address
+    finish(settings)
+    return settings
 
 
 @pytest.fixture
@@ -155,7 +148,7 @@ def test_a_unit_has_one_flag_at_most_and_none_where_it_is_fit_without_a_reservat
 
 
 def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Settings) -> None:
-    with serve_demo(served) as address:
+    with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", served.data_folder) as address:
         assert address.startswith("http://127.0.0.1:")
         assert httpx.get(f"{address}/readyz").status_code == 200
         fleet = httpx.get(f"{address}/api/v1/fleet").json()

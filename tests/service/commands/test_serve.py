@@ -3,25 +3,57 @@
 import re
 import signal
 import subprocess
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
 
 from service.opening import open_database
 from tests.databases import Databases
-from tests.service.commands.conftest import COMMAND, ENTRYPOINT, Run, started
+from tests.service.commands.conftest import COMMAND, ENTRYPOINT, READY, Run
 
 
-def test_without_demo_the_database_stays_empty(tmp_path: Path) -> None:
-    command = (COMMAND, "serve", "--port", 0, "--data-folder", tmp_path)
-    with started(*command, IMU_HEALTH_DIAGNOSIS_WORKERS="1") as address:
-        assert httpx.get(f"{address}/api/v1/fleet").json()["units"] == 0
+@dataclass(frozen=True)
+class Start:
+    """What a service printed from its start to its end, and answered in between."""
+
+    printed: str
+    ready: int
+    fleet: dict[str, Any]
 
 
-def test_the_container_s_entrypoint_starts_the_service(tmp_path: Path) -> None:
-    with started("/bin/sh", ENTRYPOINT, IMU_HEALTH_PORT="0", IMU_HEALTH_DATA_FOLDER=str(tmp_path)) as address:
-        assert httpx.get(f"{address}/readyz").status_code == 200
+def start(folder: Path) -> Start:
+    """The service as the container's entrypoint starts it."""
+    environment = {
+        "PATH": f"{COMMAND.parent}:/usr/bin:/bin",
+        "IMU_HEALTH_PORT": "0",
+        "IMU_HEALTH_DATA_FOLDER": str(folder),
+        "IMU_HEALTH_DIAGNOSIS_WORKERS": "1",
+    }
+    with subprocess.Popen(
+        ["/bin/sh", ENTRYPOINT], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
+    ) as process:
+        assert process.stdout is not None
+        first = process.stdout.readline()
+        try:
+            address = first.strip().removeprefix(READY)
+            ready = httpx.get(f"{address}/readyz").status_code
+            fleet = httpx.get(f"{address}/api/v1/fleet").json()
+        finally:
+            process.send_signal(signal.SIGINT)
+        return Start(first + process.stdout.read(), ready, fleet)
+
+
+def test_an_empty_service_starts_and_prints_a_link_only_until_somebody_has_an_account(run: Run, tmp_path: Path) -> None:
+    first = start(tmp_path)
+    assert (first.ready, first.fleet["units"]) == (200, 0)
+    assert re.search(r"make the first account: http://127\.0\.0\.1:\d+/sign-in/\S{43}", first.printed)
+    assert run("user", "add", "k.ito", "--role", "admin", "--data-folder", tmp_path).code == 0
+    again = start(tmp_path)
+    assert (again.ready, again.fleet["status"]) == (200, 401)
+    assert "sign-in/" not in again.printed
 
 
 def test_the_container_s_entrypoint_runs_other_commands() -> None:
@@ -78,25 +110,3 @@ def test_a_setting_that_makes_no_sense_is_named(run: Run, monkeypatch: pytest.Mo
     ran = run("db", "upgrade")
     assert ran.code == 1
     assert "port" in ran.err
-
-
-def printed_at_a_start(folder: Path) -> str:
-    """Everything that a service prints from its start to its end."""
-    command = [COMMAND, "serve", "--port", "0", "--data-folder", folder]
-    environment = {"PATH": f"{COMMAND.parent}:/usr/bin:/bin", "IMU_HEALTH_DIAGNOSIS_WORKERS": "0"}
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
-    ) as process:
-        assert process.stdout is not None
-        first = process.stdout.readline()
-        process.send_signal(signal.SIGINT)
-        return first + process.stdout.read()
-
-
-def test_a_start_prints_a_link_only_until_somebody_has_an_account(run: Run, tmp_path: Path) -> None:
-    link = re.search(r"make the first account: http://127\.0\.0\.1:\d+/sign-in/\S{43}", printed_at_a_start(tmp_path))
-    assert link is not None
-    assert run("user", "add", "k.ito", "--role", "admin", "--data-folder", tmp_path).code == 0
-    printed = printed_at_a_start(tmp_path)
-    assert "imu-health is ready" in printed
-    assert "sign-in/" not in printed

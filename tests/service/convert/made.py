@@ -105,15 +105,3 @@ MADE = {
     "ctu-mat": ctu_mat,
     "ferraris-csv": ferraris_csv,
 }
-REAL = {
-    "imu-tk": "imu-tk-xsens-mti/*.mat",
-    "mpu9150-five": "mpu9150-five/*.log",
-    "kth-mimu": "kth-mimu-array/*.bin",
-    "ctu-mat": "ctu-orientations/measured_accelerations_50orientations.mat",
-    "ferraris-csv": "ferraris-six-position/annotated_session.csv",
-}
-
-
-def real(name):
-    """The files of a real recording."""
-    return sorted(RECORDINGS.glob(REAL[name]))

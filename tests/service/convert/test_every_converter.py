@@ -10,7 +10,7 @@ from benchmarks.convert import FORMATS, convert
 from estimator.calibration import calibrate
 from estimator.errors import SessionError
 from estimator.reading import read_session
-from tests.service.convert.made import MADE, needs_recordings, real
+from tests.service.convert.made import MADE
 
 NAMES = [converter.name for converter in FORMATS]
 
@@ -85,14 +85,3 @@ def test_a_damaged_file_is_converted_or_refused(name, cut, byte, recordings, tmp
 def test_an_unknown_format_lists_the_known_ones():
     with pytest.raises(SessionError, match="imu-tk, mpu9150-five, kth-mimu, ctu-mat, ferraris-csv"):
         convert("nmea", [])
-
-
-@needs_recordings
-@pytest.mark.parametrize("name", NAMES)
-def test_the_real_recordings_convert_and_calibrate(name):
-    sessions = convert(name, real(name))
-    assert sessions
-    for _, document in sessions:
-        result = calibrate(read_session(document))
-        assert result.fit.rank == result.fit.parameters
-        assert result.fit.converged

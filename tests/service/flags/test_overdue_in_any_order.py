@@ -23,7 +23,7 @@ SESSIONS = {
     "failed": session_bytes(seed=3, month=3, a3_moved=300.0),
 }
 """After the last one nothing is due: the unit is out of tolerance now."""
-ORDERS = (*permutations(SESSIONS), ("January", "withdrawn"))
+ORDERS = (*[*permutations(SESSIONS)][::2], ("January", "withdrawn"))
 
 
 def brought(client: httpx.Client, record: str) -> None:

@@ -15,6 +15,7 @@ from service.storage import Storage
 from service.storage.columns import PARTS
 from service.storage.schema import downgrade, upgrade
 from service.units.store import Units
+from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.dated import upload_and_date
 from tests.service.made_records import step, way
 from tests.service.made_sessions import session_bytes

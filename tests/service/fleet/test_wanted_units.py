@@ -10,6 +10,7 @@ from service.fleet.store import Fleet
 from service.records.unit_changes import set_lot
 from service.storage import Storage
 from tests.conftest import Filled
+from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import session_bytes
 

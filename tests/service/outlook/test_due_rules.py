@@ -46,7 +46,7 @@ def measure(storage: Storage, moved: dict[int, float], **changes: object) -> Non
     """Sessions by month of 2026, with how far A3's bias has moved, µg; 50 are allowed."""
     for month, micro_g in moved.items():
         content = session_bytes(seed=month, month=month, a3_moved=micro_g, **changes)
-        upload_and_date(storage, content, "a.json", NOW)
+        upload_and_date(storage, content, "a.json", NOW, outlook=month == max(moved))
 
 
 def undecided(storage: Storage) -> None:

@@ -17,6 +17,7 @@ from service.outlook.reading import outlook_of
 from service.outlook.records import UnitOutlook
 from service.records.diagnose import diagnose
 from service.storage import Storage
+from service.uploads.receive import upload
 from tests.databases import one_engine
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import MICRO_G, session_bytes
@@ -41,7 +42,7 @@ def eccentric(a3_moved: float) -> bytes:
 def measure(storage: Storage, a3_moved: float = 0.0) -> str:
     """The sessions up to the one on the stand at fault, whose identifier is returned; A3 jumps when it does."""
     for month in SOUND:
-        upload_and_date(storage, session_bytes(seed=month, month=month), "a.json", NOW)
+        upload(storage, session_bytes(seed=month, month=month), "a.json", NOW, outlook=False)
     return upload_and_date(storage, eccentric(a3_moved), "b.json", NOW).id
 
 

@@ -2,8 +2,6 @@
 
 from datetime import UTC, datetime, timedelta
 
-import pytest
-
 from service.papers.certified import certified_session, laboratory_of
 from service.papers.desk import statement_of
 from service.records.changes import record_service
@@ -35,7 +33,6 @@ def content_hash(storage: Storage, order: tuple[int, ...]) -> str:
 
 
 @one_engine
-@pytest.mark.parametrize("order", [(2, 1, 0, 3), (1, 3, 2, 0)])
-def test_it_is_the_same_in_every_order(filled: Filled, order: tuple[int, ...]) -> None:
-    hashes = {content_hash(filled(lambda _: None), one) for one in ((0, 1, 2, 3), order)}
-    assert len(hashes) == 1
+def test_it_is_the_same_in_every_order(filled: Filled) -> None:
+    orders = ((0, 1, 2, 3), (2, 1, 0, 3), (1, 3, 2, 0))
+    assert len({content_hash(filled(lambda _: None), order) for order in orders}) == 1

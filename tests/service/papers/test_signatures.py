@@ -15,7 +15,7 @@ from service.settings import Settings
 from service.storage import Storage
 from service.storage.audit import Audit
 from service.storage.engine import open_engine
-from tests.conftest import SettingsHolding
+from tests.conftest import SettingsFilled
 from tests.databases import ENGINES
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.made_sessions import FAILED, session_id
@@ -32,10 +32,18 @@ both = pytest.mark.parametrize("databases", ENGINES, indirect=True)
 """For what statements to a database decide."""
 
 
+def issued(settings: Settings) -> None:
+    """A session out of tolerance, and its certificate."""
+    with named(settings) as client:
+        for content in FAILED:
+            client.post("/api/v1/sessions", content=content).raise_for_status()
+        client.get(f"{OWN}/certificate").raise_for_status()
+
+
 @pytest.fixture
-def settings(settings_holding: SettingsHolding) -> Settings:
-    """Of a laboratory with a session out of tolerance."""
-    return settings_holding(*FAILED, diagnosed=True)
+def settings(settings_filled: SettingsFilled) -> Settings:
+    """Of a laboratory that issued a certificate."""
+    return settings_filled(issued)
 
 
 @pytest.fixture
@@ -52,9 +60,8 @@ def staff(storage: Storage) -> Staff:
 
 @pytest.fixture
 def http(settings: Settings, staff: Staff) -> Iterator[httpx.Client]:
-    """HTTP to it; the certificate was issued."""
+    """HTTP to it."""
     with named(settings) as client:
-        client.get(f"{OWN}/certificate", headers=staff.headers(Role.CREW)).raise_for_status()
         yield client
 
 
@@ -155,7 +162,6 @@ def test_a_password_cannot_be_guessed_by_signing(http: httpx.Client, staff: Staf
 
 def test_without_an_account_nobody_signs(settings: Settings) -> None:
     with named(settings) as http:
-        http.get(f"{OWN}/certificate").raise_for_status()
         body = {"number": f"{ID}-0-1", "meaning": "reviewed", "password": PASSWORD}
         answer = http.post(f"{OWN}/certificate/signatures", json=body)
     assert (answer.status_code, "Signing requires an account" in answer.text) == (409, True)

@@ -34,7 +34,7 @@ from tests.service.recordings import recording_bytes
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 ID = session_id(FAILED[-1])
 RAW = RawFile("session.json", FAILED[-1])
-MUTATIONS = 200
+MUTATIONS = 80
 NOTHING = Beside()
 
 
@@ -122,7 +122,7 @@ def test_a_difference_says_what_is_printed_and_what_is_computed(printed: bytes) 
 
 
 def once(step: Callable[..., Any]) -> Callable[..., Any]:
-    """Its first answer for every call: no change touches what it rests on, and two hundred would take long."""
+    """Its first answer for every call: no change touches what it rests on, and many would take long."""
     made = list[Any]()
 
     def answered(*given: Any, **named: Any) -> Any:

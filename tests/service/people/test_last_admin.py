@@ -17,6 +17,7 @@ from service.settings import Settings
 from service.storage import Storage
 from service.storage.audit import LOCK
 from tests.databases import Databases, PostgresDatabases
+from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.people.staff import NOW, Staff, staffed
 from tests.serving import http_client
 

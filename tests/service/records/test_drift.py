@@ -28,7 +28,8 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 def measure(storage: Storage, moved: dict[int, float], unit: str = "BA-017") -> None:
     """Sessions by month of 2026, with how far A3's bias has moved, µg; 50 are allowed."""
     for month, micro_g in moved.items():
-        upload_and_date(storage, session_bytes(seed=month, month=month, a3_moved=micro_g, unit=unit), "a.json", NOW)
+        content = session_bytes(seed=month, month=month, a3_moved=micro_g, unit=unit)
+        upload_and_date(storage, content, "a.json", NOW, outlook=month == max(moved))
 
 
 def outlook(storage: Storage, unit: str = "BA-017") -> UnitOutlook:

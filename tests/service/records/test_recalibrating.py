@@ -29,7 +29,7 @@ from tests.service.ingest.test_formats import parquet_bytes
 from tests.service.made_sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-UNITS = tuple(f"BA-{number:03}" for number in range(7))
+UNITS = tuple(f"BA-{number:03}" for number in range(4))
 TYPE = "redundant block"
 
 

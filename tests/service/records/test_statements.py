@@ -13,6 +13,7 @@ from service.sessions.calibrations_store import Calibrations
 from service.sessions.store import Sessions
 from service.storage import Files, Storage
 from service.uploads.receive import upload
+from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.made_sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)

@@ -14,6 +14,7 @@ from service.sessions.store import Sessions
 from service.storage import Storage
 from service.uploads.receive import upload
 from tests.conftest import Filled
+from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.made_records import step, way
 from tests.service.made_sessions import session_bytes
 

@@ -21,6 +21,7 @@ from service.storage import Storage
 from service.units.store import Units
 from service.uploads.receive import upload
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
+from tests.conftest import Filled
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.databases import one_engine
 from tests.service.made_records import step, way
@@ -73,12 +74,15 @@ def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storag
     assert "it was mounted differently, or the stand has turned" in page
 
 
-@pytest.fixture
-def shifted(storage: Storage) -> Storage:
-    """Four units on two stands, of which S2 has turned in June; three were measured on it last."""
+def measure_all(storage: Storage) -> None:
     for number in range(4):
         measure(storage, number, "S1" if number == 3 else "S2")
-    return storage
+
+
+@pytest.fixture
+def shifted(filled: Filled) -> Storage:
+    """Four units on two stands, of which S2 has turned in June; three were measured on it last."""
+    return filled(measure_all)
 
 
 def flagged(storage: Storage) -> list[Flag]:

@@ -15,6 +15,9 @@ CALL = re.compile(r"^(\w+)\((.*)\)\s+= (-?\d+)(.*)$")
 HANDLE = re.compile(r"^(\d+)<([^>]*)>")
 TEXT = re.compile(r'"((?:\\x[0-9a-f]{2})*)"')
 
+Left = tuple[tuple[str, bytes | None], ...]
+"""Files by name with their bytes, and folders."""
+
 
 @dataclass(frozen=True)
 class Call:
@@ -88,17 +91,24 @@ class Disk:
                 else:
                     del self.synced_names[name]
 
-    def write_to(self, folder: Path, *, names_kept: bool) -> None:
+    def left(self, *, names_kept: bool) -> Left:
         """What is there after the power was cut; with ``names_kept`` the names got to the disk, the bytes did not."""
         names = self.names if names_kept else self.synced_names
-        for name in sorted(names):
+        return tuple(
+            (name, self.synced_bytes.get(number, b"") if number in self.written else None)
+            for name, number in sorted(names.items())
+        )
+
+    def write(self, left: Left, folder: Path) -> None:
+        """Puts it into a folder."""
+        for name, content in left:
             place = folder / Path(name).relative_to(self.root)
             if not place.parent.is_dir():
                 continue
-            if names[name] in self.written:
-                place.write_bytes(self.synced_bytes.get(names[name], b""))
-            else:
+            if content is None:
                 place.mkdir()
+            else:
+                place.write_bytes(content)
 
 
 def calls(trace: str, within: str) -> Iterator[Call]:

@@ -61,9 +61,13 @@ def full(settings_filled: SettingsFilled) -> Settings:
     return settings_filled(fill)
 
 
-@pytest.fixture(params=ENGINES)
+across = pytest.mark.parametrize(("databases", "other"), [ENGINES, ENGINES[::-1]], indirect=True)
+"""From either engine into the other."""
+
+
+@pytest.fixture
 def other(request: pytest.FixtureRequest) -> Databases:
-    """Each engine in turn, to restore into."""
+    """Of the engine to restore into."""
     found: Databases = request.getfixturevalue(request.param)
     return found
 
@@ -79,6 +83,7 @@ def backup_of(settings: Settings, folder: Path) -> Path:
     return folder / "all.backup"
 
 
+@pytest.mark.parametrize("other", ENGINES, indirect=True)
 def test_a_backup_restores_everything_into_either_engine(full: Settings, other: Databases, tmp_path: Path) -> None:
     url = other.empty()
     restore(backup_of(full, tmp_path), url, tmp_path / "new" / "files", NOW)
@@ -86,6 +91,7 @@ def test_a_backup_restores_everything_into_either_engine(full: Settings, other: 
     assert files(tmp_path / "new") == files(full.files) != {}
 
 
+@across
 def test_noise_at_rest_is_restored_into_either_engine(
     storage: Storage, settings: Settings, other: Databases, tmp_path: Path
 ) -> None:
@@ -100,6 +106,7 @@ def test_noise_at_rest_is_restored_into_either_engine(
     assert (found.rests, [sensor.name for sensor in found.sensors]) == (8, ["A1", "A2", "A3"])
 
 
+@across
 def test_a_restored_service_goes_on(full: Settings, other: Databases, tmp_path: Path) -> None:
     new = Settings(database_url=other.empty(), data_folder=tmp_path / "new")
     restore(backup_of(full, tmp_path), new.database, new.files, NOW)
@@ -308,6 +315,7 @@ def test_a_new_schema_holds_no_rows_that_a_restore_would_meet(databases: Databas
     assert {name for name, found in rows(databases.migrated()).items() if found} == set()
 
 
+@across
 def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_path: Path) -> None:
     url = other.empty()
     restore(backup_of(full, tmp_path), url, tmp_path / "new", NOW)
@@ -318,6 +326,7 @@ def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_p
     database.close()
 
 
+@across
 def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
     settings: Settings, storage: Storage, other: Databases, tmp_path: Path
 ) -> None:

@@ -13,7 +13,7 @@ from tests.patience import until
 from tests.service.made_sessions import session_bytes
 from tests.serving import TLS, serving
 
-UNITS, CLIENTS, EACH = ("BA-101", "BA-202", "BA-303"), 8, 14
+UNITS, CLIENTS, EACH = ("BA-101", "BA-202", "BA-303"), 8, 9
 BY = {"by": "K. Ito", "why": "seen"}
 Change = tuple[str, str, object]
 

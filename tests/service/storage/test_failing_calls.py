@@ -19,6 +19,7 @@ from sqlalchemy.exc import OperationalError
 from service.errors import AwayError
 from service.settings import Settings
 from service.storage import Files, Storage
+from tests.databases import ENGINES
 from tests.service.made_sessions import session_bytes
 from tests.service.storage.intact import SENSORS, faults
 from tests.service.storage.sending import Way, as_bytes, landed
@@ -107,8 +108,13 @@ def listening(storage: Storage, what: str, to: Callable[..., Any]) -> Iterator[N
 
 
 @pytest.mark.parametrize(
-    ("failing", "send"),
-    [(failing_disk, as_bytes), (failing_disk, landed), (failing_statements, as_bytes), (lost_answers, as_bytes)],
+    ("databases", "failing", "send"),
+    [
+        ("sqlite", failing_disk, as_bytes),
+        ("sqlite", failing_disk, landed),
+        *((engine, failing, as_bytes) for engine in ENGINES for failing in (failing_statements, lost_answers)),
+    ],
+    indirect=["databases"],
 )
 def test_after_every_single_failure_an_upload_is_whole_or_not_there_and_is_stored_once_when_repeated(
     storage: Storage, settings: Settings, failing: Callable[..., Any], send: Way

@@ -17,7 +17,7 @@ from service.storage import Files, Storage
 from service.storage.schema import upgrade
 from service.storage.waiting import FOLDER as WAITING
 from tests.service.made_sessions import session_bytes
-from tests.service.storage.disk import TRACED, Call, Disk, calls, moments
+from tests.service.storage.disk import TRACED, Call, Disk, Left, calls, moments
 from tests.service.storage.intact import SENSORS, faults
 from tests.service.storage.sending import WAYS, go_on
 
@@ -31,11 +31,13 @@ from service.opening import open_database
 from service.settings import Settings
 from service.storage import Files, Storage
 from tests.service.storage.sending import WAYS, go_on
-settings = Settings(data_folder=Path(sys.argv[1]))
-storage = Storage(open_database(settings.database), Files(settings.files))
-WAYS[sys.argv[2]](storage, sys.stdin.buffer.read(), datetime.now(UTC))
-os.write(1, b"acknowledged")
-go_on(storage, datetime.now(UTC))
+content = sys.stdin.buffer.read()
+for name, way in WAYS.items():
+    settings = Settings(data_folder=Path(sys.argv[1]) / name)
+    storage = Storage(open_database(settings.database), Files(settings.files))
+    way(storage, content, datetime.now(UTC))
+    os.write(1, name.encode())
+    go_on(storage, datetime.now(UTC))
 os._exit(0)
 """
 
@@ -51,24 +53,32 @@ class Recorded:
     @property
     def answered(self) -> int:
         """After how many calls it is acknowledged."""
-        return next(n for n, call in enumerate(self.calls, 1) if call.data == b"acknowledged")
+        return next(n for n, call in enumerate(self.calls, 1) if call.data == self.way.encode())
 
 
-@pytest.fixture(scope="module", params=WAYS)
-def recorded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Recorded:
-    """The disk before an upload, and the calls of the upload."""
+@pytest.fixture(scope="module")
+def every(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Recorded]:
+    """By way the disk before an upload, and the calls of the upload: one process does all of them."""
     if shutil.which("strace") is None:
         pytest.skip("strace is not installed: the calls of an upload cannot be recorded")
     folder = tmp_path_factory.mktemp("power")
-    upgrade(Settings(data_folder=folder).database)
-    before, trace = Disk.of(folder), folder.with_name("trace")
+    for way in WAYS:
+        upgrade(Settings(data_folder=folder / way).database)
+    before, trace = {way: Disk.of(folder / way) for way in WAYS}, folder.with_name("trace")
     command = ["strace", "-f", "--seccomp-bpf", "-y", "-xx", "-s", "100000000", "-e", f"trace={TRACED}", "-o", trace]
-    own = [sys.executable, "-c", UPLOAD, folder, request.param]
+    own = [sys.executable, "-c", UPLOAD, folder]
     done = subprocess.run([*command, *own], input=SESSION, capture_output=True, check=False)
     if b"ptrace" in done.stderr.lower():
         pytest.skip("strace may not look at processes here")
-    assert done.stdout == b"acknowledged", done.stderr
-    return Recorded(request.param, before, list(calls(trace.read_text(), str(folder))))
+    assert done.stdout == "".join(WAYS).encode(), done.stderr
+    text = trace.read_text()
+    return {way: Recorded(way, before[way], list(calls(text, str(folder / way)))) for way in WAYS}
+
+
+@pytest.fixture(params=WAYS)
+def recorded(request: pytest.FixtureRequest, every: dict[str, Recorded]) -> Recorded:
+    """An upload in one of the ways."""
+    return every[request.param]
 
 
 def test_all_is_synced_before_the_answer_file_before_row(recorded: Recorded) -> None:
@@ -84,11 +94,14 @@ def test_all_is_synced_before_the_answer_file_before_row(recorded: Recorded) -> 
 def test_whenever_the_power_is_cut_nothing_acknowledged_is_lost(
     recorded: Recorded, tmp_path: Path, names_kept: bool
 ) -> None:
-    done, end = recorded.calls, recorded.answered
+    done, end, seen = recorded.calls, recorded.answered, set[tuple[bool, Left]]()
     for number, disk in moments(deepcopy(recorded.before), done):
-        place = tmp_path / str(number)
+        left, place = disk.left(names_kept=names_kept), tmp_path / str(number)
+        if (number >= end, left) in seen:
+            continue
+        seen.add((number >= end, left))
         place.mkdir()
-        disk.write_to(place, names_kept=names_kept)
+        disk.write(left, place)
         settings = Settings(data_folder=place)
         database = open_database(settings.database)
         storage = Storage(database, Files(settings.files))

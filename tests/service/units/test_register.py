@@ -22,6 +22,7 @@ from service.units.register_file import read_register
 from service.units.register_store import Register
 from service.uploads.receive import upload
 from tests.conftest import Filled, Holding
+from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import FAILED, session_bytes
 

@@ -15,6 +15,8 @@ from tests.service.made_sessions import session_bytes
 from tests.service.web.raw import answer, connected, head
 
 Process = subprocess.Popen[str]
+AGES = 5 * LONG
+"""Seconds that nobody waits here."""
 
 
 @contextmanager
@@ -47,9 +49,9 @@ def refused(address: str) -> httpx.Response:
     return found
 
 
-def test_the_upload_at_hand_is_stored_and_the_next_one_is_refused(tmp_path: Path) -> None:
+def test_the_upload_at_hand_is_stored_the_next_one_is_refused_and_the_end_comes_at_once(tmp_path: Path) -> None:
     content = session_bytes()
-    with service(tmp_path, seconds=LONG) as (process, address), connected(address) as connection:
+    with service(tmp_path, seconds=AGES, diagnosing=1) as (process, address), connected(address) as connection:
         connection.sendall(upload_head(content) + content[:1000])
         assert httpx.get(f"{address}/readyz").status_code == 200
         process.send_signal(signal.SIGTERM)
@@ -65,13 +67,6 @@ def test_the_end_comes_in_time_whatever_is_at_hand(tmp_path: Path) -> None:
     content = session_bytes()
     with service(tmp_path, seconds=0.2) as (process, address), connected(address) as connection:
         connection.sendall(upload_head(content) + content[:1000])
-        assert httpx.get(f"{address}/healthz").status_code == 200
-        process.send_signal(signal.SIGTERM)
-        process.wait(timeout=LONG)
-
-
-def test_without_anything_at_hand_the_end_comes_at_once(tmp_path: Path) -> None:
-    with service(tmp_path, seconds=3000, diagnosing=1) as (process, address):
         assert httpx.get(f"{address}/healthz").status_code == 200
         process.send_signal(signal.SIGTERM)
         process.wait(timeout=LONG)

@@ -26,6 +26,7 @@ from service.uploads.receive import upload
 from service.work.helper import Helper, KeepGoing
 from service.work.kinds import JOBS, LEASE, MOST_ATTEMPTS, Kind, work_piece
 from service.work.loop import Worker, work_next
+from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 from tests.service.made_sessions import session_bytes

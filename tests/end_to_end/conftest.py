@@ -1,0 +1,3 @@
+"""Dates are worked out with little effort here too."""
+
+from tests.service.conftest import light_forecasts as light_forecasts
