@@ -80,6 +80,27 @@ def choose_reference(id: SessionId, by: By, why: Why, server: Server = DEFAULT_S
         _show_session(client.post(f"/units/{unit}/reference", {"session": id, "by": by, "why": why}))
 
 
+def record_service(
+    unit: Unit,
+    kind: Annotated[str, typer.Argument(help="adjustment, repair, sensor-swap, reference or service.")],
+    by: By,
+    at: At = None,
+    sensor: Annotated[str, typer.Option(help="The sensor that it concerns.", show_default="the whole unit")] = "",
+    note: Annotated[str, typer.Option(help="What exactly.")] = "",
+    *,
+    preview: Annotated[bool, typer.Option("--preview", help="Show what it would change, and store nothing.")] = False,
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Record a service: a break, after which the unit's next session is its new reference."""
+    body = {"kind": kind, "by": by, "sensor": sensor, "note": note} | ({} if at is None else {"at": at.isoformat()})
+    path = in_address("/units/{unit}/services", {"unit": unit})
+    with connect(server, language=output_language()) as client:
+        if preview:
+            screen().print(FORESEEN.table(client.post(f"{path}/preview", body)["changes"]))
+        else:
+            _show_event(client.post(path, body))
+
+
 def attach_files(
     files: Files,
     to: Annotated[str, typer.Option("--to", metavar="UNIT|SESSION", help="Serial number, or id of a session.")],
@@ -220,17 +241,15 @@ VIEWS = Columns(
         "address": lambda view: escape(f"{view['server'].rstrip('/')}{view['url']}"),
     },
 )
-SERVICE = {
-    "unit": Unit,
-    "kind": Annotated[str, typer.Argument(help="adjustment, repair, sensor-swap, reference or service.")],
-    "by": By,
-    "at": (At, None),
-    "sensor": (
-        Annotated[str, typer.Option(help="The sensor that it concerns.", show_default="the whole unit")],
-        "",
-    ),
-    "note": (Annotated[str, typer.Option(help="What exactly.")], ""),
-}
+FORESEEN = Columns(
+    "changes",
+    "No verdict, date or flag would change.",
+    {
+        "what": lambda change: escape(change["what"]),
+        "now": lambda change: escape(change["before"]),
+        "with the service": lambda change: escape(change["after"]),
+    },
+)
 CUSTOMER = {
     "unit": Unit,
     "name": Annotated[str, typer.Argument(metavar="NAME", help="For whom it is calibrated.")],
@@ -268,7 +287,7 @@ COMMANDS: dict[str, Row] = {
     ),
     "session reference": choose_reference,
     "withdraw-service": Call("POST /services/{number}/withdraw", ON_SERVICE, _show_withdrawn_service),
-    "service": Call("POST /units/{unit}/services", SERVICE, _show_event),
+    "service": record_service,
     "note": write_note,
     "attach": attach_files,
     "flags": list_flags,
