@@ -20,7 +20,10 @@ from service.languages.values import value_in
 
 T = TypeVar("T")
 SENTENCES = frozenset(
-    ("why", "action", "reasons", "reservations", "summary", "proposal", "text", "what", "before", "after")
+    (
+        *("why", "action", "reason", "reasons", "reservations", "summary", "proposal", "text", "advice", "said"),
+        *("condition", "due_reason", "what", "before", "after"),
+    )
 )
 """Fields of records that are said to people."""
 FOLDER = Path(__file__).parent
