@@ -114,9 +114,9 @@ def _state(store: Store, serial: str) -> _State:
 
 
 def _next(unit: UnitSummary | None) -> str:
-    if unit is None or (unit.due is None and not unit.due_reason):
-        return "not known"
-    return unit.due_reason if unit.due is None else day_of(unit.due)
+    if unit is None or unit.due is None:
+        return (unit and unit.due_reason) or "not known"
+    return day_of(unit.due)
 
 
 def _changes(before: _State, after: _State) -> Iterator[ForeseenChange]:
@@ -134,9 +134,9 @@ def _changes(before: _State, after: _State) -> Iterator[ForeseenChange]:
     for key in sorted(after.flags.keys() - before.flags.keys()):
         yield ForeseenChange(Foreseen.FLAG, after.flags[key].summary, *RAISED)
     for key in sorted(before.flags.keys() & after.flags.keys()):
-        was, now = before.flags[key].summary, after.flags[key].summary
-        if was != now:
-            yield ForeseenChange(Foreseen.FLAG, was, "open", now)
+        old, new = before.flags[key].summary, after.flags[key].summary
+        if old != new:
+            yield ForeseenChange(Foreseen.FLAG, old, "open", new)
 
 
 def _verdict(session: StoredSession) -> str:
