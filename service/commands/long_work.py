@@ -96,7 +96,7 @@ def _work(job: Answer) -> str:
     kind = translated(job["kind"])
     if not job["scope"]:
         return translated("{kind} of the fleet", kind=kind)
-    return f"{kind}: {_subject(job)}"
+    return translated("{kind} of {subject}", kind=kind, subject=_subject(job))
 
 
 def _subject(of: Answer) -> str:
@@ -110,16 +110,13 @@ def _state(job: Answer) -> str:
 
 
 def _show_model(model: Answer) -> None:
-    action = _withdraws(model) if model["withdraws"] else translated("accepted")
-    heading = f"{action}: {model['accepted_by']}, {model['accepted_at'][:10]}"
-    line = f"{translated('Revision {id}', id=model['id'])}  {_cause(model)}  {_subject(model)}, {heading}"
+    heading = "withdraws revision {id} by {who}, {day}" if model["withdraws"] else "accepted by {who}, {day}"
+    done = translated(heading, id=model["withdraws"], who=model["accepted_by"], day=model["accepted_at"][:10])
+    parts = {"revision": model["id"], "cause": _cause(model), "subject": _subject(model), "done": done}
+    line = translated("Revision {revision}  {cause}  of {subject}, {done}", **parts)
     screen().print(escape(line), highlight=False)
     for recomputation in model["recomputations"]:
         screen().print(f"  [bold]{escape(recomputation['unit'])}[/]  {_outcome(recomputation)}", highlight=False)
-
-
-def _withdraws(revision: Answer) -> str:
-    return translated("withdraws {id}", id=revision["withdraws"])
 
 
 def _cause(revision: Answer) -> str:
@@ -157,7 +154,9 @@ MODELS = Columns(
         "revision": lambda one: str(one["id"]),
         "model of": lambda one: escape(_subject(one)),
         "cause": lambda one: escape(_cause(one)),
-        "accepted": lambda one: _withdraws(one) if one["withdraws"] else one["accepted_at"][:10],
+        "accepted": lambda one: (
+            translated("withdraws {id}", id=one["withdraws"]) if one["withdraws"] else one["accepted_at"][:10]
+        ),
     },
     is_paged=True,
 )

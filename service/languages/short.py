@@ -31,6 +31,7 @@ WORDS = tuple(
     model | libraries | settings | folder | disk | database | clock | workers | secrets | seal | sign-in | message
     There is none. | No flag is open. | No view is saved yet. | No verdict, date or flag would change.
     No such file or directory | Permission denied | Is a directory | Not a directory
+    withdraws revision {id} by {who}, {day} | accepted by {who}, {day}
     There is no job. | No cause is accepted. | No unit is known yet. | Nothing is due.
     """.strip().splitlines()
     for word in line.split("|")
