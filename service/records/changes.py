@@ -1,7 +1,4 @@
-"""Records are accepted, withdrawn, marked and chosen; services are recorded and withdrawn.
-
-was entered.
-"""
+"""Records are accepted, withdrawn, marked and chosen; services are recorded and withdrawn."""
 
 from datetime import datetime
 
