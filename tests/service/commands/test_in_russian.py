@@ -1,5 +1,6 @@
 """Commands with `--lang ru` say nothing in English, JSON apart."""
 
+import re
 from collections.abc import Iterator
 
 import pytest
@@ -19,6 +20,7 @@ COMMANDS = (
     ("history", "BA-017", "--format", "table"), (*SERVICE, "--preview"), SERVICE,
     ("usable", "ZZ-9"), ("jobs", "show", "99"), ("upload", "/none.json"),
 )  # fmt: skip
+CYRILLIC = re.compile("[а-яё]", re.IGNORECASE)
 NAMES = {"BA", "hex", "cone", "ZZ", "json", "none", "imu", "health"}
 """Of units, types and files."""
 
@@ -37,8 +39,7 @@ def test_it_says_nothing_in_english(run: Run, address: str, words: tuple[str, ..
 
 
 def test_json_stays_english(run: Run, address: str) -> None:
-    [unit] = run("--lang", "ru", "fleet", "--json", "--server", address).documents
-    assert unit["said"].startswith("Unfit")
+    assert not CYRILLIC.search(run("--lang", "ru", "fleet", "--json", "--server", address).out)
 
 
 def test_doctor_says_nothing_in_english(run: Run, tmp_path: object) -> None:
