@@ -8,6 +8,7 @@ import typer
 from rich.markup import escape
 
 from estimator.errors import Problem
+from estimator.wording import counted
 from service.client import connect
 from service.commands.api import By, WhyHandled
 from service.commands.calls import Answer, Call, Columns, Row, app_of, in_address
@@ -131,7 +132,8 @@ def _outcome(recomputation: Answer) -> str:
     moved = ((m["session"], *(translated(m[when].replace("-", " ")) for when in ("before", "after")))
              for m in outcome["verdicts"])  # fmt: skip
     changes = "; ".join(f"{id} {before} → {after}" for id, before, after in moved)
-    done = translated("{done} of {total}", done=outcome["recomputed"], total=outcome["sessions"])
+    done, sessions = outcome["recomputed"], counted(outcome["sessions"], "session")
+    done = translated("{done} of {sessions}", done=done, sessions=sessions)
     return f"{done}; {changes or translated('no verdict changes')}"
 
 
