@@ -27,6 +27,9 @@ MOST = 15
 """Of each kind; the page of its own has all."""
 
 
+TO_REVIEW, TO_APPROVE = "Certificate {number} is to be reviewed.", "Certificate {number} is to be approved."
+
+
 class WaitingKind(StrEnum):
     """What waits."""
 
@@ -90,12 +93,9 @@ def _questioned(store: Store) -> Iterator[Waiting]:
 
 def _certificates(store: Store) -> Iterator[Waiting]:
     for issue, unit, last in Certificates(store).unsigned(MOST):
-        said = "Certificate {number} is to be approved." if last is Meaning.REVIEWED else TO_REVIEW
+        said = TO_APPROVE if last is Meaning.REVIEWED else TO_REVIEW
         page = f"/sessions/{issue.session}/certificate"
         yield Waiting(WaitingKind.CERTIFICATE, unit, say(said, number=issue.number), issue.issued_at, page)
-
-
-TO_REVIEW = "Certificate {number} is to be reviewed."
 
 
 def _failed(store: Store, now: datetime) -> Iterator[Waiting]:
