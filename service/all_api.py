@@ -16,6 +16,7 @@ from service.outlook import api as feeds
 from service.pages import operations
 from service.pages.due import api as due
 from service.pages.fleet import api as fleet
+from service.pages.review import api as review
 from service.pages.session import api as sessions
 from service.pages.stand import api as stands
 from service.pages.type import api as unit_types
@@ -86,7 +87,7 @@ ROUTERS = (
     papers.printing_router, diagnoses.router, events.router, register.router, usable.router, papers.labels_router,
     units.router, unit_types.router, models.router, plans.router, stands.router, uploads.templates_router,
     uploads.layouts_router, uploads.router, flags.router, views.router, remarks.router, webhooks.router, feeds.router,
-    due.router, fleet.router, work.router, people.router,
+    due.router, review.router, fleet.router, work.router, people.router,
 )  # fmt: skip
 """Of every resource, in the order in which addresses are tried."""
 

@@ -9,7 +9,8 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
 from service import all_api, all_pages
-from service.flags.messages import deliver_until
+from service.flags.mail import MailServer
+from service.flags.messages import Ways, deliver_until
 from service.kit import limits
 from service.kit.bell import Bell
 from service.kit.metrics import Metrics
@@ -104,7 +105,7 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
 
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
     """What is done in the background: its name, what does it, and what that needs."""
-    storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
+    storage, clock, ways = application.storage, application.clock, _ways(application.settings)
     metrics, k = application.metrics, application.settings.coverage_factor
     for number in range(application.settings.diagnosis_workers):
         yield f"diagnoses {number}", work_in_background, (_worker(application),)
@@ -113,8 +114,12 @@ def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], 
         yield "missing diagnoses", ask_for_missing, (storage, clock, metrics, application.bell)
     yield "pending derivations", derive_pending, (storage, k, clock, metrics)
     yield "fleet", watch_fleet, (storage, clock, metrics)
-    if hosts:
-        yield "outbox", deliver_until, (storage, hosts, clock, metrics)
+    if ways.hosts or ways.mail.is_there:
+        yield "outbox", deliver_until, (storage, ways, clock, metrics)
+
+
+def _ways(own: Settings) -> Ways:
+    return Ways(own.webhook_hosts, MailServer(own.mail_host, own.mail_port, own.mail_from, own.mail_security))
 
 
 def _worker(own: Application) -> Worker:

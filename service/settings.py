@@ -148,6 +148,20 @@ class Settings(BaseSettings):
         description="Hosts that webhooks may call, separated by commas: example.org, or 10.0.0.5:8443 with a port.",
     )
 
+    mail_host: str = Field(
+        default="",
+        pattern=r"^[!-~]*$",
+        max_length=300,
+        description="Mail server (SMTP) that sends messages; empty: no e-mail.",
+    )
+    mail_port: int = Field(default=25, ge=1, le=65535, description="Its port: 25, 587 with starttls, 465 with tls.")
+    mail_from: str = Field(
+        default="", pattern=r"^([!-?A-~]+@[!-?A-~]+)?$", max_length=300, description="Sender of these messages."
+    )
+    mail_security: Literal["none", "starttls", "tls"] = Field(
+        default="starttls", description="How the connection to it is encrypted; its certificate is checked."
+    )
+
     laboratory_name: str = Field(default="", max_length=200, description="Who calibrates, as certificates name it.")
     laboratory_address: str = Field(default="", max_length=2000, description="Its address.")
     laboratory_country: str = Field(

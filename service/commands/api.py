@@ -6,11 +6,12 @@ import webbrowser
 from datetime import datetime
 from http import HTTPStatus
 from itertools import takewhile
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
 
+from estimator.on_demand import function_on_demand
 from service.client import Client, connect
 from service.commands.calls import Answer, Call, ListColumns, Row, app_of, in_address
 from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, ListOutput, Server, screen
@@ -18,6 +19,11 @@ from service.commands.speech import output_language, translated
 from service.errors import ServiceError
 from service.flags.records import FlagState
 from service.judging.use import Use, in_words
+
+if TYPE_CHECKING:
+    from service.groups.words import place_in_words
+else:
+    place_in_words = function_on_demand("service.groups.words", "place_in_words")
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
 """Red needs attention."""
@@ -78,6 +84,27 @@ def choose_reference(id: SessionId, by: By, why: Why, server: Server = DEFAULT_S
     with connect(server, language=output_language()) as client:
         unit = client.get(f"/sessions/{id}").json()["unit"]
         _show_session(client.post(f"/units/{unit}/reference", {"session": id, "by": by, "why": why}))
+
+
+def record_service(
+    unit: Unit,
+    kind: Annotated[str, typer.Argument(help="adjustment, repair, sensor-swap, reference or service.")],
+    by: By,
+    at: At = None,
+    sensor: Annotated[str, typer.Option(help="The sensor that it concerns.", show_default="the whole unit")] = "",
+    note: Annotated[str, typer.Option(help="What exactly.")] = "",
+    *,
+    preview: Annotated[bool, typer.Option("--preview", help="Show what it would change, and store nothing.")] = False,
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Record a service: a break, after which the unit's next session is its new reference."""
+    body = {"kind": kind, "by": by, "sensor": sensor, "note": note} | ({} if at is None else {"at": at.isoformat()})
+    path = in_address("/units/{unit}/services", {"unit": unit})
+    with connect(server, language=output_language()) as client:
+        if preview:
+            screen().print(FORESEEN.table(client.post(f"{path}/preview", body)["changes"]))
+        else:
+            _show_event(client.post(path, body))
 
 
 def attach_files(
@@ -156,37 +183,42 @@ def assign_flags(
 
 
 def _show_session(session: Answer) -> None:
-    reference = "  reference" if session["is_reference"] else ""
-    line = f"Session {session['id']}  [bold]{escape(session['unit'])}[/]  {session['state']}{reference}"
+    reference = f"  {translated('reference')}" if session["is_reference"] else ""
+    heading, state = translated("Session {id}", id=session["id"]), translated(session["state"])
+    line = f"{heading}  [bold]{escape(session['unit'])}[/]  {state}{reference}"
     screen().print(f"{line}  {escape(session['reason'])}")
 
 
 def _show_withdrawn_service(record: Answer) -> None:
-    screen().print(f"Service {record['id']}  [bold]{escape(record['unit'])}[/]  {record['kind']}  {record['state']}")
+    heading, kind = translated("Service {id}", id=record["id"]), translated(record["kind"].replace("-", " "))
+    screen().print(f"{heading}  [bold]{escape(record['unit'])}[/]  {kind}  {translated(record['state'])}")
 
 
 def _show_event(event: Answer) -> None:
-    what = event.get("kind", "note")
-    screen().print(f"[bold]{escape(event['unit'])}[/]  {event['at'][:10]}  {what} {event['id']} recorded")
+    what = translated(event.get("kind", "note").replace("-", " "))
+    said = translated("{what} {id} recorded", what=what, id=event["id"])
+    screen().print(f"[bold]{escape(event['unit'])}[/]  {event['at'][:10]}  {said}")
 
 
 def _show_flag(flag: Answer) -> None:
     unit, what = escape(flag["unit"]), escape(translated(flag["summary"]))
-    screen().print(f"Flag {flag['id']}  [bold]{unit}[/]  {_flag_state(flag)}  {what}")
+    heading = translated("Flag {id}", id=flag["id"])
+    screen().print(f"{heading}  [bold]{unit}[/]  {_flag_state(flag)}  {what}")
 
 
 def _flag_state(flag: Answer) -> str:
     state = FlagState(flag["state"])
-    return f"[{COLOURS[state]}]{state.value}[/]"
+    return f"[{COLOURS[state]}]{translated(state.value)}[/]"
 
 
 def _show_customer(customer: Answer) -> None:
-    where = escape(customer["address"] or "address not stated")
+    where = escape(customer["address"] or translated("address not stated"))
     screen().print(f"[bold]{escape(customer['unit'])}[/]  {escape(customer['name'])}, {where}")
 
 
 def _show_stand(stand: Answer) -> None:
-    screen().print(f"[bold]{escape(stand['stand'])}[/]  {escape(stand['number'])}, valid until {stand['valid_until']}")
+    until = translated("valid until {day}", day=stand["valid_until"])
+    screen().print(f"[bold]{escape(stand['stand'])}[/]  {escape(stand['number'])}, {until}")
 
 
 def _show_usable(answer: Answer) -> None:
@@ -207,7 +239,7 @@ FLAG_CELLS = {
     "state": _flag_state,
     "since": lambda flag: flag["raised_at"][:10],
     "who": lambda flag: escape(flag["assignee"]),
-    "where": lambda flag: escape(flag["place"]),
+    "where": lambda flag: escape(translated(place_in_words(flag["place"], flag["subject"] or flag["unit"]))),
     "what": lambda flag: escape(translated(f"{flag['summary']} {flag['proposal']}".strip())),
 }
 VIEWS = ListColumns(
@@ -220,17 +252,16 @@ VIEWS = ListColumns(
         "address": lambda view: escape(f"{view['server'].rstrip('/')}{view['url']}"),
     },
 )
-SERVICE = {
-    "unit": Unit,
-    "kind": Annotated[str, typer.Argument(help="adjustment, repair, sensor-swap, reference or service.")],
-    "by": By,
-    "at": (At, None),
-    "sensor": (
-        Annotated[str, typer.Option(help="The sensor that it concerns.", show_default="the whole unit")],
-        "",
-    ),
-    "note": (Annotated[str, typer.Option(help="What exactly.")], ""),
-}
+FORESEEN = ListColumns(
+    "changes",
+    "No verdict, date or flag would change.",
+    {
+        "what": lambda change: escape(change["what"]),
+        "now": lambda change: escape(change["before"]),
+        "with the service": lambda change: escape(change["after"]),
+    },
+    is_numbered=False,
+)
 CUSTOMER = {
     "unit": Unit,
     "name": Annotated[str, typer.Argument(metavar="NAME", help="For whom it is calibrated.")],
@@ -268,7 +299,7 @@ COMMANDS: dict[str, Row] = {
     ),
     "session reference": choose_reference,
     "withdraw-service": Call("POST /services/{number}/withdraw", ON_SERVICE, _show_withdrawn_service),
-    "service": Call("POST /units/{unit}/services", SERVICE, _show_event),
+    "service": record_service,
     "note": write_note,
     "attach": attach_files,
     "flags": list_flags,

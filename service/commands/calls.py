@@ -18,7 +18,7 @@ from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.catalogue import CATALOGUE
 from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, ListOutput, Server, print_json, table_of
-from service.commands.speech import FAILED, output_language
+from service.commands.speech import FAILED, output_language, translated
 from service.languages.language import Language
 
 Answer = Json
@@ -35,12 +35,14 @@ class ListColumns:
     cells: Mapping[str, Callable[[Answer], str]]
     """CellKind under each heading, as Rich markup."""
     is_paged: bool = False
+    is_numbered: bool = True
+    """Whether the first column holds numbers, or names that stand as such."""
 
     def table(self, rows: list[Answer]) -> Table | str:
         """The rows as a table."""
         if not rows:
-            return self.empty
-        table = table_of(*self.cells, right=tuple(self.cells)[:1])
+            return translated(self.empty)
+        table = table_of(*self.cells, right=tuple(self.cells)[: self.is_numbered])
         for row in rows:
             table.add_row(*(cell(row) for cell in self.cells.values()))
         return table

@@ -19,7 +19,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from estimator.errors import SessionError
-from service.commands.speech import UNUSABLE, output_language, problems_in_words, say
+from service.commands.speech import UNUSABLE, output_language, problems_in_words, say, translated
 from service.errors import RefusedError, TooLargeError
 from service.languages.language import Language
 
@@ -76,9 +76,10 @@ def deliver(content: bytes, out: Path | None) -> None:
 def say_unusable(file: Path, fault: SessionError | RefusedError | TooLargeError | OSError) -> None:
     """All problems of a file on one line: the file, then each field, row and what to do."""
     if isinstance(fault, OSError):
-        say(f"{file}: file: {fault.strerror or fault}; check the name and that it can be read")
+        why = fault.strerror or fault
+        say(f"{file}: " + translated("file: {why}; check the name and that it can be read", why=why))
     elif isinstance(fault, TooLargeError):
-        say(f"{file}: file: {fault.detail}")
+        say(f"{file}: {translated('file: {why}', why=fault.detail)}")
     else:
         say(f"{file}: {problems_in_words(fault.problems)}")
 
@@ -115,8 +116,9 @@ def for_each(
                 unusable.append(file)
             advance()
     if len(files) > 1 and not quiet:
+        failed = translated("{failed} of {files} files failed", failed=len(unusable), files=len(files))
         names = f": {', '.join(map(str, unusable))}" if unusable else ""
-        say("; ".join(filter(None, (f"{len(unusable)} of {len(files)} files failed{names}", summary()))) + ".")
+        say("; ".join(filter(None, (f"{failed}{names}", summary()))) + ".")
     if unusable:
         raise typer.Exit(UNUSABLE)
 
@@ -190,5 +192,5 @@ def table_of(*headings: str, right: Sequence[str] = ()) -> Table:
     """An empty table without lines; numbers are aligned to the right."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for heading in headings:
-        table.add_column(heading, justify="right" if heading in right else "left", overflow="fold")
+        table.add_column(translated(heading), justify="right" if heading in right else "left", overflow="fold")
     return table

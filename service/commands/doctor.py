@@ -18,9 +18,10 @@ from packaging.requirements import Requirement
 from pydantic import ValidationError
 from rich.markup import escape
 
+from estimator.message import joined, say
 from service.commands.console import print_json, screen
 from service.commands.options import DatabaseUrl, DataFolder
-from service.commands.speech import FAILED
+from service.commands.speech import FAILED, translated
 from service.errors import ServiceError
 from service.kit.limits import limits_of
 from service.opening import open_database
@@ -50,6 +51,7 @@ class CheckState(StrEnum):
     """Something does not work until it is corrected."""
 
 
+MARKS = {CheckState.OK: say("ok"), CheckState.WARN: say("warn"), CheckState.FAIL: say("fail")}
 COLOURS = {CheckState.OK: "green", CheckState.WARN: "yellow", CheckState.FAIL: "red"}
 
 
@@ -66,7 +68,7 @@ class DoctorCheck:
 
 def program() -> Iterator[DoctorCheck]:
     """Python, this program, and its libraries."""
-    yield DoctorCheck("python", CheckState.OK, f"{platform.python_version()} at {sys.executable}, imu-health {VERSION}")
+    yield DoctorCheck("python", CheckState.OK, f"{platform.python_version()}, {sys.executable}, imu-health {VERSION}")
     extras: dict[str, list[str]] = {}
     missing = []
     for requirement in map(Requirement, requires("imu-health") or ()):
@@ -79,14 +81,13 @@ def program() -> Iterator[DoctorCheck]:
                 extras.setdefault(extra[1], []).append(fault)
     if missing:
         yield DoctorCheck(
-            "libraries", CheckState.FAIL, "; ".join(missing), "Install again: pip install -r requirements.lock"
+            "libraries", CheckState.FAIL, joined("; ", missing), say("Install again: pip install -r requirements.lock")
         )
     else:
-        yield DoctorCheck("libraries", CheckState.OK, "all there, none too old")
+        yield DoctorCheck("libraries", CheckState.OK, say("all there, none too old"))
     for name, faults in extras.items():
-        yield DoctorCheck(
-            f"extra {name}", CheckState.OK, f"not installed ({'; '.join(faults)}); needed only for what it adds"
-        )
+        text = say("not installed ({faults}); needed only for what it adds", faults=joined("; ", faults))
+        yield DoctorCheck(say("extra {name}", name=name), CheckState.OK, text)
 
 
 def _fault_of_library(requirement: Requirement) -> str:
@@ -94,12 +95,11 @@ def _fault_of_library(requirement: Requirement) -> str:
     try:
         installed = version(requirement.name)
     except PackageNotFoundError:
-        return f"{requirement.name} is missing"
-    return (
-        ""
-        if requirement.specifier.contains(installed, prereleases=True)
-        else f"{requirement.name} is {installed}, not {requirement.specifier}"
-    )
+        return say("{name} is missing", name=requirement.name)
+    if requirement.specifier.contains(installed, prereleases=True):
+        return ""
+    wanted = requirement.specifier
+    return say("{name} is {installed}, not {wanted}", name=requirement.name, installed=installed, wanted=wanted)
 
 
 def variables(environment: Mapping[str, str]) -> Iterator[DoctorCheck]:
@@ -109,37 +109,38 @@ def variables(environment: Mapping[str, str]) -> Iterator[DoctorCheck]:
     unknown = sorted(name for name in environment if name.upper().startswith(PREFIX) and name.upper() not in known)
     for name in unknown:
         similar = difflib.get_close_matches(name.upper(), known, 1)
-        remedy = f"Did you mean {similar[0]}?" if similar else "Remove it, or look its name up on the page of settings."
-        yield DoctorCheck("settings", CheckState.WARN, f"{name} is no setting and has no effect", remedy)
+        remedy = say("Remove it, or look its name up on the page of settings.")
+        if similar:
+            remedy = say("Did you mean {similar}?", similar=similar[0])
+        yield DoctorCheck("settings", CheckState.WARN, say("{name} is no setting and has no effect", name=name), remedy)
     if not unknown:
-        yield DoctorCheck("settings", CheckState.OK, "every variable is known")
+        yield DoctorCheck("settings", CheckState.OK, say("every variable is known"))
 
 
 def contradictions(settings: Settings) -> Iterator[DoctorCheck]:
     """Contradictory settings."""
     if settings.sign_in == "off" and not settings.is_local:
-        yield DoctorCheck(
-            "sign-in",
-            CheckState.WARN,
-            f"nobody signs in, and {settings.host} may be reached from elsewhere",
-            "Set IMU_HEALTH_SIGN_IN=required.",
-        )
+        text = say("nobody signs in, and {host} may be reached from elsewhere", host=settings.host)
+        yield DoctorCheck("sign-in", CheckState.WARN, text, say("Set IMU_HEALTH_SIGN_IN=required."))
     if hosts_of(settings).any_address:
-        yield DoctorCheck("address", CheckState.WARN, "the service answers to addresses in digits only",
-                      "Name it with IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS.")  # fmt: skip
+        yield DoctorCheck("address", CheckState.WARN, say("the service answers to addresses in digits only"),
+                      say("Name it with IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS."))  # fmt: skip
     if settings.oidc_issuer and not settings.oidc_client_id:
         yield DoctorCheck("sign-in elsewhere", CheckState.FAIL,
-                    "an OpenID provider is named, but not how it knows this service",
-                      "Set IMU_HEALTH_OIDC_CLIENT_ID.")  # fmt: skip
+                    say("an OpenID provider is named, but not how it knows this service"),
+                      say("Set IMU_HEALTH_OIDC_CLIENT_ID."))  # fmt: skip
     for name in ("oidc_client_secret_file", "seal_key_file", "seal_password_file"):
         path: Path | None = getattr(settings, name)
         if path is not None and not os.access(path, os.R_OK):
             yield DoctorCheck(
-                "secrets", CheckState.FAIL, f"{path} cannot be read", f"Correct {PREFIX}{name.upper()}, or the file."
+                "secrets",
+                CheckState.FAIL,
+                say("{path} cannot be read", path=path),
+                say("Correct {name}, or the file.", name=f"{PREFIX}{name.upper()}"),
             )
     if settings.seal_password_file and not settings.seal_key_file:
-        yield DoctorCheck("seal", CheckState.WARN, "a password is given, but no key that it opens",
-                      "Set IMU_HEALTH_SEAL_KEY_FILE.")  # fmt: skip
+        yield DoctorCheck("seal", CheckState.WARN, say("a password is given, but no key that it opens"),
+                      say("Set IMU_HEALTH_SEAL_KEY_FILE."))  # fmt: skip
 
 
 def folders(settings: Settings) -> Iterator[DoctorCheck]:
@@ -149,15 +150,14 @@ def folders(settings: Settings) -> Iterator[DoctorCheck]:
     except ServiceError as fault:
         yield DoctorCheck("folder", CheckState.FAIL, str(fault))
         return
-    yield DoctorCheck("folder", CheckState.OK, f"{settings.files} can be written")
+    yield DoctorCheck("folder", CheckState.OK, say("{folder} can be written", folder=settings.files))
     space = space_at(settings.files, limits_of(settings).free)
-    free = f"{space.free / 2**30:.1f} GiB free"
+    free = say("{free} GiB free", free=f"{space.free / 2**30:.1f}")
     if space.too_little:
-        yield DoctorCheck("disk", CheckState.FAIL, space.too_little, "Make room, or move the data folder.")
+        yield DoctorCheck("disk", CheckState.FAIL, space.too_little, say("Make room, or move the data folder."))
     elif space.free < 4 * space.least:
-        yield DoctorCheck(
-            "disk", CheckState.WARN, f"{free}; uploads stop at {space.least / 2**20:.0f} MiB", "Make room soon."
-        )
+        text = say("{free}; uploads stop at {least} MiB", free=free, least=f"{space.least / 2**20:.0f}")
+        yield DoctorCheck("disk", CheckState.WARN, text, say("Make room soon."))
     else:
         yield DoctorCheck("disk", CheckState.OK, free)
 
@@ -166,39 +166,50 @@ def database(settings: Settings, now: datetime) -> Iterator[DoctorCheck]:
     """Whether the database answers, has the newest migration, and agrees about the time."""
     where = shown_url(settings.database)
     if settings.database.startswith(SQLITE) and not Path(settings.database.removeprefix(SQLITE)).exists():
-        yield DoctorCheck("database", CheckState.WARN, f"{where} is not there yet", "`imu-health serve` makes it.")
+        yield DoctorCheck(
+            "database",
+            CheckState.WARN,
+            say("{where} is not there yet", where=where),
+            say("`imu-health serve` makes it."),
+        )
         return
     opened = open_database(settings.database)
     try:
         opened.require_ready()
-        yield DoctorCheck("database", CheckState.OK, f"{where} answers and is at the newest migration")
+        yield DoctorCheck("database", CheckState.OK, say("{where} answers and is at the newest migration", where=where))
         yield from _clock(opened, now)
         yield from _waiting(opened, settings)
     except ServiceError as fault:
-        yield DoctorCheck("database", CheckState.FAIL, f"{where}: {fault}", _remedy(str(fault)))
+        yield DoctorCheck(
+            "database", CheckState.FAIL, say("{where}: {fault}", where=where, fault=str(fault)), _remedy(str(fault))
+        )
     finally:
         opened.close()
 
 
 def _remedy(fault: str) -> str:
-    return "" if "run" in fault else "Start it, or correct IMU_HEALTH_DATABASE_URL."
+    return "" if "run" in fault else say("Start it, or correct IMU_HEALTH_DATABASE_URL.")
 
 
 def _clock(opened: Database, now: datetime) -> Iterator[DoctorCheck]:
     """This machine's clock against the server's, and against stored times."""
-    remedy = "Set the clocks of both machines, best by NTP."
+    remedy = say("Set the clocks of both machines, best by NTP.")
     server = opened.server_time()
     with opened.reading() as store:
         lines = Audit(store).page(1)
     if server is not None and abs(server - now) > CLOCK_TOLERANCE:
-        yield DoctorCheck(
-            "clock", CheckState.FAIL, f"{abs(server - now).total_seconds():.0f} s apart from the database", remedy
-        )
+        apart = f"{abs(server - now).total_seconds():.0f}"
+        yield DoctorCheck("clock", CheckState.FAIL, say("{apart} s apart from the database", apart=apart), remedy)
     elif lines and lines[0].at - now > CLOCK_TOLERANCE:
-        text = f"the audit trail's last line is of {lines[0].at:%Y-%m-%d %H:%M:%S} UTC, later than this clock says"
+        text = say(
+            "the audit trail's last line is of {at} UTC, later than this clock says",
+            at=f"{lines[0].at:%Y-%m-%d %H:%M:%S}",
+        )
         yield DoctorCheck("clock", CheckState.FAIL, text, remedy)
     else:
-        yield DoctorCheck("clock", CheckState.OK, f"{now:%Y-%m-%d %H:%M:%S} UTC, as the database has it")
+        yield DoctorCheck(
+            "clock", CheckState.OK, say("{now} UTC, as the database has it", now=f"{now:%Y-%m-%d %H:%M:%S}")
+        )
 
 
 def _waiting(opened: Database, settings: Settings) -> Iterator[DoctorCheck]:
@@ -206,14 +217,17 @@ def _waiting(opened: Database, settings: Settings) -> Iterator[DoctorCheck]:
     with opened.reading() as store:
         pending = WorkQueue(store, WorkKind.DIAGNOSIS).count()
     workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
-    text = f"{workers} beside the requests, {pending} diagnoses waiting"
+    text = say("{n} beside the requests, {pending} diagnoses waiting", n=workers, pending=pending)
     if workers == 0:
         yield DoctorCheck(
-            "workers", CheckState.WARN, text, "Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."
+            "workers",
+            CheckState.WARN,
+            text,
+            say("Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."),
         )
     elif workers > cores:
-        yield DoctorCheck("workers", CheckState.WARN, f"{text}; the machine has {cores} cores",
-                      "Set IMU_HEALTH_DIAGNOSIS_WORKERS to fewer.")  # fmt: skip
+        too_many = say("{text}; the machine has {cores} cores", text=text, cores=cores)
+        yield DoctorCheck("workers", CheckState.WARN, too_many, say("Set IMU_HEALTH_DIAGNOSIS_WORKERS to fewer."))
     else:
         yield DoctorCheck("workers", CheckState.OK, text)
 
@@ -229,9 +243,10 @@ def doctor(
         if as_json:
             print_json(asdict(finding))
         else:
-            remedy = f"\n      {escape(finding.remedy)}" if finding.remedy else ""
-            mark = f"[{COLOURS[finding.state]}]{finding.state:4}[/]"
-            screen().print(f"{mark}  [bold]{escape(finding.what)}[/]: {escape(finding.text)}{remedy}", soft_wrap=True)
+            remedy = f"\n      {escape(translated(finding.remedy))}" if finding.remedy else ""
+            mark = f"[{COLOURS[finding.state]}]{translated(MARKS[finding.state]):4}[/]"
+            what, text = escape(translated(finding.what)), escape(translated(finding.text))
+            screen().print(f"{mark}  [bold]{what}[/]: {text}{remedy}", soft_wrap=True)
     if any(finding.state is CheckState.FAIL for finding in findings):
         raise typer.Exit(FAILED)
 
@@ -247,7 +262,12 @@ def _findings(**options: object) -> Iterator[DoctorCheck]:
     except ValidationError as fault:
         for error in fault.errors():
             name = "IMU_HEALTH_" + "_".join(map(str, error["loc"])).upper()
-            yield DoctorCheck("settings", CheckState.FAIL, f"{name}: {error['msg']}", "Correct it or unset it.")
+            yield DoctorCheck(
+                "settings",
+                CheckState.FAIL,
+                say("{name}: {fault}", name=name, fault=error["msg"]),
+                say("Correct it or unset it."),
+            )
         return
     yield from contradictions(settings)
     yield from folders(settings)

@@ -49,12 +49,14 @@ def fleet(
     """Show every unit with its condition, the worst first; some of them by stand, type, due date or flag."""
     due = None if due_before is None else f"{due_before.isoformat()}Z"
     filters = {"stand": stand, "unit_type": unit_type, "due_before": due, "flagged": flagged or None}
-    with connect(server, language=output_language()) as client:
+    listing = ListOutput(form, as_json)
+    with connect(server, language=listing.language) as client:
         condition = client.get("/fleet").json()
         units = [unit.document for unit in client.units(**filters)]
     is_complete = len(units) == condition["units"]
-    heading = _summary(condition) if is_complete else f"{len(units)} of {counted(condition['units'], 'unit')}\n"
-    ListOutput(form, as_json).show(units, lambda: Group(heading, _fleet_table(units)))
+    part = translated("{shown} of {units}", shown=len(units), units=counted(condition["units"], "unit"))
+    heading = _summary(condition) if is_complete else f"{part}\n"
+    listing.show(units, lambda: Group(heading, _fleet_table(units)))
 
 
 def _summary(condition: Answer) -> str:
@@ -64,14 +66,14 @@ def _summary(condition: Answer) -> str:
     counts[Verdict.UNDECIDABLE] = counts.get(Verdict.UNDECIDABLE, 0) - references
     parts = [_counted(verdict, counts[verdict], condition) for verdict in reversed(Verdict) if counts.get(verdict)]
     parts += [f"{references} {coloured(Verdict.UNDECIDABLE, is_reference=True)}"] if references else []
-    simulated = f", {condition['simulated']} of them simulated" if condition["simulated"] else ""
-    return f"{counted(condition['units'], 'unit')}{simulated}: {', '.join(parts)}\n"
+    simulated = translated(", {n} of them simulated", n=condition["simulated"]) if condition["simulated"] else ""
+    return f"{translated(counted(condition['units'], 'unit'))}{simulated}: {', '.join(parts)}\n"
 
 
 def _counted(verdict: Verdict, count: int, condition: Answer) -> str:
     """``5 Fit (2 with reservation)``"""
     reserved = condition["reserved"][verdict]
-    return f"{count} {coloured(verdict)}{f' ({reserved} {WITH_RESERVATION})' if reserved else ''}"
+    return f"{count} {coloured(verdict)}{f' ({reserved} {translated(WITH_RESERVATION)})' if reserved else ''}"
 
 
 def _fleet_table(units: list[Answer]) -> Table:
@@ -79,13 +81,13 @@ def _fleet_table(units: list[Answer]) -> Table:
     table = table_of(*headings, right=("margin", "sessions"))
     for unit in units:
         table.add_row(
-            escape(unit["serial"]) + (" [dim](simulated)[/]" if unit["simulated"] else ""),
+            escape(unit["serial"]) + (f" [dim]({translated('simulated')})[/]" if unit["simulated"] else ""),
             escape(unit["unit_type"]),
             coloured(unit["verdict"], unit["is_reference"], unit["said"]) if unit["verdict"] else "",
-            number(unit["margin"], 2),
+            translated(number(unit["margin"], 2)),
             (unit["last_at"] or "")[:10],
             str(unit["sessions"]),
-            escape(translated(unit["reason"])),
+            escape(unit["reason"]),
         )
     return table
 
@@ -124,7 +126,7 @@ def _history_table(points: list[Point]) -> Table:
     for point in points:
         condition = "" if point.parameter in TERMS else coloured(point.verdict, point.is_reference)
         day, sensor = f"{point.at:%Y-%m-%d}", escape(point.sensor)
-        table.add_row(day, sensor, point.parameter, *_numbers(point), condition)
+        table.add_row(day, sensor, translated(point.parameter), *map(translated, _numbers(point)), condition)
     return table
 
 

@@ -13,7 +13,7 @@ from service.client import connect
 from service.commands.api import By, WhyHandled
 from service.commands.calls import Answer, Call, ListColumns, Row, app_of, in_address
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
-from service.commands.speech import FAILED, output_language, problems_in_words, say
+from service.commands.speech import FAILED, output_language, problems_in_words, say, translated
 from service.commands.upload import followed
 from service.errors import RefusedError, ServiceError
 from service.groups.records import Level
@@ -71,39 +71,50 @@ def accept_cause(
 
 
 def _show_job(job: Answer) -> None:
-    screen().print(f"Job {job['id']}  {_state(job)}  {escape(_work(job))}  {_done(job)}")
+    heading = translated("Job {id}", id=job["id"])
+    screen().print(f"{heading}  {_state(job)}  {escape(_work(job))}  {_done(job)}")
     if job["held_up"]:
-        say(f"Held up, and tried again by itself: {job['held_up']}")
+        say(translated("Held up, and tried again by itself: {why}", why=job["held_up"]))
     for failure in job["failures"]:
         say(f"{failure['subject']}: {failure['reason']}" if failure["subject"] else failure["reason"])
     if job["problems"]:
         problems = (Problem(failure["field"], failure["message"], failure["row"]) for failure in job["problems"])
         say(f"{job['subject']}: {problems_in_words(problems)}")
     if job["session"]:
-        say(f"Session {job['session']}")
+        say(translated("Session {id}", id=job["session"]))
 
 
 def _done(job: Answer) -> str:
     if job["kind"] == JobKind.UPLOAD:
-        return f"{job['done'] / KILOBYTE:.1f} of {job['total'] / KILOBYTE:.1f} MB"
-    return f"{job['done']} of {job['total']}"
+        done, total = f"{job['done'] / KILOBYTE:.1f}", f"{job['total'] / KILOBYTE:.1f}"
+        return translated("{done} of {total} MB", done=done, total=total)
+    return translated("{done} of {total}", done=job["done"], total=job["total"])
 
 
 def _work(job: Answer) -> str:
     if job["kind"] == JobKind.UPLOAD:
-        return f"upload of {job['subject']}"
-    return f"{job['kind']} of {job['scope']} {job['subject']}" if job["scope"] else f"{job['kind']} of the fleet"
+        return translated("upload of {file}", file=job["subject"])
+    kind = translated(job["kind"])
+    if not job["scope"]:
+        return translated("{kind} of the fleet", kind=kind)
+    return translated("{kind} of {subject}", kind=kind, subject=_subject(job))
+
+
+def _subject(of: Answer) -> str:
+    """``unit BA-017``"""
+    return f"{translated(of['scope'].replace('-', ' '))} {of['subject']}"
 
 
 def _state(job: Answer) -> str:
     state = JobState(job["state"])
-    return f"[{COLOURS.get(state, 'blue')}]{state.value}[/]"
+    return f"[{COLOURS.get(state, 'blue')}]{translated(state.value)}[/]"
 
 
 def _show_model(model: Answer) -> None:
-    action = "withdraws revision " + str(model["withdraws"]) if model["withdraws"] else "accepted"
-    heading = f"{action} by {model['accepted_by']}, {model['accepted_at'][:10]}"
-    line = f"Revision {model['id']}  {_cause(model)}  of {model['scope']} {model['subject']}, {heading}"
+    heading = "withdraws revision {id} by {who}, {day}" if model["withdraws"] else "accepted by {who}, {day}"
+    done = translated(heading, id=model["withdraws"], who=model["accepted_by"], day=model["accepted_at"][:10])
+    parts = {"revision": model["id"], "cause": _cause(model), "subject": _subject(model), "done": done}
+    line = translated("Revision {revision}  {cause}  of {subject}, {done}", **parts)
     screen().print(escape(line), highlight=False)
     for recomputation in model["recomputations"]:
         screen().print(f"  [bold]{escape(recomputation['unit'])}[/]  {_outcome(recomputation)}", highlight=False)
@@ -117,9 +128,13 @@ def _cause(revision: Answer) -> str:
 def _outcome(recomputation: Answer) -> str:
     outcome = recomputation["outcome"]
     if outcome is None:
-        return str(recomputation["state"])
-    changes = "; ".join(f"{m['session']} {m['before']} → {m['after']}" for m in outcome["verdicts"])
-    return f"{outcome['recomputed']} of {counted(outcome['sessions'], 'session')}; {changes or 'no verdict changes'}"
+        return translated(recomputation["state"])
+    moved = ((m["session"], *(translated(m[when].replace("-", " ")) for when in ("before", "after")))
+             for m in outcome["verdicts"])  # fmt: skip
+    changes = "; ".join(f"{id} {before} → {after}" for id, before, after in moved)
+    done, sessions = outcome["recomputed"], counted(outcome["sessions"], "session")
+    done = translated("{done} of {sessions}", done=done, sessions=sessions)
+    return f"{done}; {changes or translated('no verdict changes')}"
 
 
 JOBS = ListColumns(
@@ -139,9 +154,11 @@ MODELS = ListColumns(
     "No cause is accepted.",
     {
         "revision": lambda one: str(one["id"]),
-        "model of": lambda one: escape(f"{one['scope']} {one['subject']}"),
+        "model of": lambda one: escape(_subject(one)),
         "cause": lambda one: escape(_cause(one)),
-        "accepted": lambda one: f"withdraws {one['withdraws']}" if one["withdraws"] else one["accepted_at"][:10],
+        "accepted": lambda one: (
+            translated("withdraws {id}", id=one["withdraws"]) if one["withdraws"] else one["accepted_at"][:10]
+        ),
     },
     is_paged=True,
 )

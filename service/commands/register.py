@@ -32,7 +32,7 @@ def import_register(
     with usable(file), connect(server, language=output_language()) as client:
         sent = {"files": {"file": (file.name, file.read_bytes())}, "data": {"by": by}}
         done = client.answer("POST", "/register", **sent).json()
-    screen().print(f"{done['new']} new, {done['changed']} changed, {done['unchanged']} unchanged")
+    screen().print(translated("{new} new, {changed} changed, {unchanged} unchanged", **done))
 
 
 def export_register(server: Server = DEFAULT_SERVER, out: Out = None) -> None:
@@ -43,13 +43,15 @@ def export_register(server: Server = DEFAULT_SERVER, out: Out = None) -> None:
 
 def _show_entry(entry: Answer) -> None:
     known = {name: escape(entry[name]) for name in ("location", "custodian", "owner", "note") if entry[name]}
-    facts = ", ".join(f"{name} {text}" for name, text in known.items())
-    retired = f"  [bold red]retired {entry['retired_at'][:10]}[/]" if entry["retired_at"] else ""
+    facts = ", ".join(f"{translated(name)} {text}" for name, text in known.items())
+    retired = f"  [bold red]{translated('retired')} {entry['retired_at'][:10]}[/]" if entry["retired_at"] else ""
     screen().print(f"[bold]{escape(entry['unit'])}[/]  {escape(entry['unit_type'])}{retired}  {facts}")
     for line in entry.get("history", ()):
         moved = f"{line['location'] or '–'}, {line['custodian'] or '–'}"
         remark = escape(translated(line["remark"]))
-        screen().print(f"  {line['at'][:10]}  {line['step']}  {escape(moved)}  {escape(line['who'])}  {remark}")
+        screen().print(
+            f"  {line['at'][:10]}  {translated(line['step'])}  {escape(moved)}  {escape(line['who'])}  {remark}"
+        )
 
 
 REGISTER = ListColumns(
@@ -68,13 +70,13 @@ DUE = ListColumns(
     "units",
     "Nothing is due.",
     {
-        "due": lambda line: (line["due"] or "no date")[:10],
+        "due": lambda line: line["due"][:10] if line["due"] else translated("no date"),
         "days": lambda line: "" if line["days"] is None else str(line["days"]),
         "unit": lambda line: escape(line["unit"]),
         "location": lambda line: escape(line["location"]),
         "custodian": lambda line: escape(line["custodian"]),
-        "condition": lambda line: escape(translated(line["condition"])),
-        "use": lambda line: escape(translated(line["said"])),
+        "condition": lambda line: escape(line["condition"]),
+        "use": lambda line: escape(line["said"]),
     },
 )
 WANTED = {

@@ -1,7 +1,4 @@
-"""Messages and exit codes of commands, and their language.
-
-Help, headings and a command's own messages stay English. JSON never depends on the language.
-"""
+"""Messages and exit codes of commands, and their language. Help stays English; JSON never depends on the language."""
 
 import os
 from collections.abc import Iterable
@@ -11,6 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from estimator.errors import Problem
+from estimator.message import say as message
 from estimator.on_demand import function_on_demand
 from service.languages.language import Language, of_environment
 
@@ -23,11 +21,6 @@ UNUSABLE = 2
 def many(number: int, thing: str) -> str:
     """``1 row``, ``12,000 rows``."""
     return f"{number:,} {thing}{'' if number == 1 else 's'}"
-
-
-def say(line: str) -> None:
-    """One line on standard error."""
-    typer.echo(" ".join(line.split()), err=True)
 
 
 if TYPE_CHECKING:
@@ -49,10 +42,15 @@ def output_language() -> str:
     return of_environment(os.environ).value
 
 
-def translated(text: str) -> str:
-    """An English sentence in the language of the user."""
-    language = of_environment(os.environ)
+def translated(template: str, /, **parts: object) -> str:
+    """An English sentence with its parts in the language of the user."""
+    language, text = of_environment(os.environ), message(template, **parts) if parts else template
     return text if language is Language.ENGLISH else catalogue_of(language).say(text)
+
+
+def say(line: str) -> None:
+    """One line on standard error."""
+    typer.echo(" ".join(translated(line).split()), err=True)
 
 
 def problems_in_words(problems: Iterable[Problem]) -> str:

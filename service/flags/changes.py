@@ -1,5 +1,6 @@
 """Flags are assigned, acknowledged and resolved; each keeps who did it, when and why."""
 
+import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,6 +10,7 @@ import httpx
 from estimator.errors import Problem
 from estimator.message import joined, say
 from service.errors import ConflictError, RefusedError
+from service.flags.mail import SCHEME
 from service.flags.records import NOBODY, Assignee, Flag, FlagState, NoticeKind, Webhook
 from service.flags.store import Flags, Notices
 from service.flags.webhooks_store import Webhooks
@@ -158,28 +160,36 @@ def _keep(store: Store, said: FlagHandling) -> Flag:
     return flag
 
 
+MAIL_ADDRESS = re.compile(r"mailto:[A-Za-z0-9.!#$%&'*+/=?^_`{|}~-]{1,64}@[A-Za-z0-9.-]{1,253}")
+"""One receiver, without the fields of a mailto address."""
+NO_SERVER = "is an e-mail address, but no mail server is set: the operator sets IMU_HEALTH_MAIL_HOST and _FROM"
 SCHEMES = ("http", "https")
 """That a message can be sent by."""
 
 
 def register_webhook(
-    storage: Storage, hosts: tuple[str, ...], url: str, secret: str, *, who: str, now: datetime
+    storage: Storage, hosts: tuple[str, ...], url: str, secret: str, *, who: str, now: datetime, has_mail: bool = False
 ) -> Webhook:
-    """Registers an address; RefusedError unless its host may be called."""
-    fault = fault_of(url, hosts)
-    if fault:
-        raise RefusedError("The webhook cannot be registered.", (Problem("url", fault),))
+    """Registers an address; RefusedError unless its host may be called, or e-mail be sent."""
+    fault = fault_of(url, hosts, has_mail=has_mail)
+    if fault or not (secret or url.startswith(SCHEME)):
+        problem = Problem("url", fault) if fault else Problem("secret", "is missing; messages to a host are signed")
+        raise RefusedError("The webhook cannot be registered.", (problem,))
     with storage.database.writing() as store:
         webhook = Webhooks(store).add(url, secret, who, now)
         Audit(store).write(now, who, "add webhook", str(webhook.id), {"url": url})
         return webhook
 
 
-def fault_of(url: str, hosts: tuple[str, ...]) -> str:
+def fault_of(url: str, hosts: tuple[str, ...], *, has_mail: bool = False) -> str:
     """Why an address may not be called; empty where it may.
 
     It is read by the library that will call it, so that no spelling of a host means one thing here and another there.
     """
+    if url.startswith(SCHEME):
+        if not MAIL_ADDRESS.fullmatch(url):
+            return "is no e-mail address; write it like mailto:crew@example.org"
+        return "" if has_mail else NO_SERVER
     try:
         parsed = httpx.URL(url)
     except (httpx.InvalidURL, ValueError):

@@ -18,6 +18,7 @@ from threading import Event
 import httpx
 
 from service.flags.changes import fault_of
+from service.flags.mail import NO_MAIL, SCHEME, MailServer, send
 from service.flags.records import DeliveryState, Outgoing
 from service.flags.webhooks_store import Webhooks
 from service.kit.guard import Guard
@@ -45,11 +46,9 @@ SIGNATURE, KEY = "X-Imu-Health-Signature", "Idempotency-Key"
 """Header of the HMAC; header of the message's key (IETF draft idempotency-key-header)."""
 
 
-def deliver_until(
-    storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], metrics: Metrics, stop: Event
-) -> None:
+def deliver_until(storage: Storage, ways: "Ways", clock: Callable[[], datetime], metrics: Metrics, stop: Event) -> None:
     """Empties the outbox until ``stop`` is set, with longer pauses while that fails."""
-    asyncio.run(_deliver_until(Outbox(storage, hosts, clock), Guard(metrics), stop))
+    asyncio.run(_deliver_until(Outbox(storage, ways, clock), Guard(metrics), stop))
 
 
 async def _deliver_until(outbox: "Outbox", guard: Guard, stop: Event) -> None:
@@ -63,11 +62,11 @@ async def _deliver_until(outbox: "Outbox", guard: Guard, stop: Event) -> None:
             pause = LOOK_EVERY if guard.failed == failed else min(2 * pause, LONGEST_WAIT)
 
 
-def deliver_due(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], metrics: Metrics) -> int:
+def deliver_due(storage: Storage, ways: "Ways", clock: Callable[[], datetime], metrics: Metrics) -> int:
     """Attempts what is due, waits for every receiver, and returns how much that was."""
 
     async def once() -> int:
-        async with turns_of(Outbox(storage, hosts, clock), Guard(metrics)) as turns:
+        async with turns_of(Outbox(storage, ways, clock), Guard(metrics)) as turns:
             count = await turns.begin()
             await turns.done()
             return count
@@ -76,11 +75,20 @@ def deliver_due(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], da
 
 
 @dataclass(frozen=True)
+class Ways:
+    """Where messages may go."""
+
+    hosts: tuple[str, ...] = ()
+    """Of webhooks."""
+    mail: MailServer = NO_MAIL
+
+
+@dataclass(frozen=True)
 class Outbox:
     """What is to be sent, and where it may go."""
 
     storage: Storage
-    hosts: tuple[str, ...]
+    ways: Ways
     clock: Callable[[], datetime]
 
     def claim(self, busy: Collection[int]) -> tuple[Outgoing, ...]:
@@ -131,7 +139,7 @@ class DeliveryTurns:
         """The messages of one receiver, one after another, oldest first."""
         for outgoing in own:
             with self._guard.alone("outbox", outgoing.webhook.url):
-                accepted, outcome = await _attempt(outgoing, self._outbox.hosts, self._http)
+                accepted, outcome = await _attempt(outgoing, self._outbox.ways, self._http)
                 await asyncio.to_thread(self._outbox.put, outgoing, outcome, accepted=accepted)
 
 
@@ -146,11 +154,13 @@ async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[DeliveryTurns]
             await turns.cancel()
 
 
-async def _attempt(outgoing: Outgoing, hosts: tuple[str, ...], http: httpx.AsyncClient) -> tuple[bool, str]:
+async def _attempt(outgoing: Outgoing, ways: Ways, http: httpx.AsyncClient) -> tuple[bool, str]:
     """Whether the receiver accepted, and what it said; its answer's body is never read."""
-    fault = fault_of(outgoing.webhook.url, hosts)
+    fault = fault_of(outgoing.webhook.url, ways.hosts, has_mail=ways.mail.is_there)
     if fault:
         return False, f"the address {fault}"
+    if outgoing.webhook.url.startswith(SCHEME):
+        return await asyncio.to_thread(send, ways.mail, outgoing.webhook.url.removeprefix(SCHEME), outgoing.notice)
     body = payload(outgoing)
     headers = {
         "Content-Type": "application/json",

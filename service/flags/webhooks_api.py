@@ -31,9 +31,14 @@ class NewWebhook(BaseModel):
 
     url: Url = Field(
         description="Where messages are sent; its host must be among those that the operator allows.",
-        json_schema_extra={"pattern": r"^https?://([A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?(/[!-~]*)?$"},
+        json_schema_extra={
+            "pattern": r"^(https?://([A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?(/[!-~]*)?|mailto:[!-~]+@[A-Za-z0-9.-]+)$"
+        },
     )
-    secret: Secret = Field(description="What messages are signed with, 16 characters or more; never shown again.")
+    secret: Secret | None = Field(
+        default=None,
+        description="What messages to a host are signed with, 16 characters or more; never shown again.",
+    )
     by: Name = Field(description="Who registers it.")
 
 
@@ -60,9 +65,10 @@ def list_webhooks(store: Reading) -> WebhookList:
 
 @router.post("", status_code=201, responses=errors(400, 422))
 def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf) -> Webhook:
-    """Tell an address of flags and verdicts from now on. Its host must be among those that the operator allows."""
-    webhook = register(storage, settings.webhook_hosts, new.url, new.secret, who=person.signs(new.by), now=now)
-    return webhook
+    """Tell an address of flags and verdicts from now on. Its host must be among those that the operator allows;
+    `mailto:crew@example.org` is sent e-mail, where the operator named a mail server."""
+    who, has_mail = person.signs(new.by), bool(settings.mail_host and settings.mail_from)
+    return register(storage, settings.webhook_hosts, new.url, new.secret or "", who=who, now=now, has_mail=has_mail)
 
 
 @router.get("/{id}/deliveries", responses=errors(404, 422))

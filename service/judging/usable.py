@@ -61,7 +61,7 @@ def usable(facts: UseFacts, now: datetime) -> Usable:
         action=next((one.action for one in (against or reserved) if one.action), ""),
         reasons=tuple(one.text for one in against),
         reservations=tuple(one.text for one in reserved),
-        until=unit.due,
+        until=None if unit.retired_at is not None else unit.due,
         verdict=unit.verdict if is_judged else None,
         session=unit.last_session if is_judged else None,
         correction=facts.correction,
@@ -169,6 +169,8 @@ def _flagged(facts: UseFacts, _: datetime) -> Iterator[Objection]:
 def _undue(facts: UseFacts, now: datetime) -> Iterator[Objection]:
     """Without a date that is still to come."""
     unit = facts.unit
+    if unit.retired_at is not None:
+        return
     if unit.due is not None:
         if unit.due < now:
             yield Objection(say(words.OVERDUE, due=day_of(unit.due), reason=unit.due_reason), words.CALIBRATE)

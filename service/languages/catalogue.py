@@ -19,7 +19,12 @@ from service.languages.locale import LOCALE
 from service.languages.values import value_in
 
 T = TypeVar("T")
-SENTENCES = frozenset(("why", "action", "reasons", "reservations", "summary", "proposal", "text"))
+SENTENCES = frozenset(
+    (
+        *("why", "action", "reason", "reasons", "reservations", "summary", "proposal", "text", "advice", "said"),
+        *("condition", "due_reason", "what", "before", "after"),
+    )
+)
 """Fields of records that are said to people."""
 FOLDER = Path(__file__).parent
 NAMED = frozenset(("unit", "serial", "subject", "stand", "operator", "login", "account", "customer", "filename", "who"))

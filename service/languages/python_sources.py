@@ -25,7 +25,7 @@ QUERY = re.compile(r"^SELECT ")
 """Not in words."""
 SENTENCE = re.compile(r"(\S+ ){4}.*[.:]$|(\S+ ){8}")
 """Words all the same: ``with the coverage factor k = 2.``"""
-TEMPLATES = {"say": 1, "say_count": 2}
+TEMPLATES = {"say": 1, "say_count": 2, "translated": 1}
 """Functions of `estimator.message` that take templates, with the number of templates."""
 HELPERS = {
     "counted": ("{n} @", "{n} @s"),
@@ -42,6 +42,12 @@ def messages(source: str, name: str, *, headings: bool, described: bool = False)
             yield replace(_of_call(node), place=name)
         elif isinstance(node, ast.Constant) and _is_message(str(node.value), headings=headings):
             yield MessageEntry(str(node.value), place=name)
+
+
+def said(source: str, name: str) -> Iterator[MessageEntry]:
+    """The messages of a command: the templates of calls, since its help stays English."""
+    calls = (node for node in _texts_in(ast.parse(source), described=False) if isinstance(node, ast.Call))
+    return (replace(_of_call(call), place=name) for call in calls if _name(call.func) in TEMPLATES)
 
 
 def finished(source: str) -> Iterator[str]:

@@ -24,6 +24,8 @@ HEADING_MODULES = re.compile(
 """Where single capitalised words are shown to people too."""
 SETTINGS = "service/settings.py"
 """Its page shows the descriptions of the settings."""
+COMMANDS = ("service/client/connection.py", "service/commands/*.py")
+"""Only what they say in calls is for people: their help stays English."""
 PACKAGES = ("service", "estimator")
 IGNORED = (
     "service/app.py",
@@ -32,6 +34,7 @@ IGNORED = (
     "service/commands",
     "service/demo",
     "service/outlook/api.py",
+    "service/flags/mail.py",
     "service/flags/messages.py",
     "service/ingest/convert",
     "service/ingest/fork_server.py",
@@ -102,6 +105,8 @@ def _all() -> Iterator[MessageEntry]:
         yield from (MessageEntry(text, place=path.name) for text in literals(template))
     for path in sorted((ROOT / PAPERS).glob("*.typ")):
         yield from typst_sources.messages(path.read_text("utf-8"), path.name)
+    for path in sorted(path for pattern in COMMANDS for path in ROOT.glob(pattern)):
+        yield from python_sources.said(path.read_text("utf-8"), path.relative_to(ROOT).as_posix())
     for path in modules():
         name = path.relative_to(ROOT).as_posix()
         source = path.read_text("utf-8")

@@ -143,6 +143,7 @@ def show_session(
         follow=None if made or failed else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
         model=model_as_of(Models(store).of_session(id), report.session.revision),
         computed=Calibrations(store).revisions(id),
+        retired=retired_in_words(Register(store).get(report.session.unit)),
         said=remarks(
             report.session.unit,
             id,

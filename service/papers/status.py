@@ -106,6 +106,8 @@ def _facts(unit: UnitSummary, use: Usable, session: StoredSession | None) -> lis
     custody = (("Owner", unit.owner), ("Location", unit.location), ("Custodian", unit.custodian))
     found = [Fact("Type", unit.unit_type, is_written=True)]
     found += [Fact(name, value, is_written=True) for name, value in custody if value]
+    if unit.retired_at is not None:
+        found.append(Fact("Retired since", day_of(unit.retired_at)))
     if session is not None:
         found.append(Fact("Latest session", day_of(session.started_at)))
         found.append(Fact("Method", session.programme.replace("-", " ")))

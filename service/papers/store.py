@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from datetime import UTC, date, datetime, time, timedelta
 
-from sqlalchemy import Select, func, or_, select
+from sqlalchemy import Select, exists, func, or_, select
+from sqlalchemy.orm import aliased
 
 from estimator.message import say
 from service.errors import ConflictError, NotFoundError
@@ -11,6 +12,7 @@ from service.papers.records import CertificateFile, Issue, Meaning, RestingCerti
 from service.papers.tables import CertificateFileRow, CertificateRow, SignatureRow
 from service.people.tables import AccountRow
 from service.sessions.records import ID_DIGITS, UNWEIGHED
+from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
 from service.storage.queries import Queries
@@ -44,6 +46,23 @@ class Certificates(Queries):
             .order_by(SessionRow.started_at, CertificateRow.id)
         )
         return tuple(RestingCertificate(*row[:-1], bool(row[-1])) for row in self._session.execute(query))
+
+    def unsigned(self, most: int) -> tuple[tuple[Issue, str, Meaning | None], ...]:
+        """Newest issues of sessions that count and were measured, not approved yet, with their unit and last signature;
+        where nobody ever signed, none."""
+        own, later = CertificateRow, aliased(CertificateRow)
+        signed = select(SignatureRow.meaning).where(SignatureRow.certificate_id == own.id)
+        reviewed, approved = (signed.where(SignatureRow.meaning == meaning).exists() for meaning in Meaning)
+        replaced = exists().where(later.session_id == own.session_id, later.id > own.id)
+        query = (
+            select(own, UnitRow.serial, reviewed)
+            .join(SessionRow, SessionRow.id == own.session_id)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .where(~approved, ~replaced, IS_ACCEPTED, UnitRow.simulated.is_(False), select(SignatureRow.id).exists())
+            .order_by(own.id.desc())
+        )
+        rows = self._session.execute(query.limit(most))
+        return tuple((_issue(row), serial, Meaning.REVIEWED if seen else None) for row, serial, seen in rows)
 
     def add(self, issue: Issue) -> None:
         """Stores an issue; its number is unique."""

@@ -45,6 +45,7 @@ GET /plan
 GET /ready
 GET /missing
 GET /jobs
+GET /review
 GET /jobs/{{id}}
 GET /jobs/{{id}}/outcome
 POST /jobs/report
@@ -106,6 +107,7 @@ GET {API}/flags
 GET {API}/feeds/due.ics
 GET {API}/fleet
 GET {API}/fleet/report
+GET {API}/review
 GET {API}/jobs
 GET {API}/jobs/failed
 GET {API}/jobs/{{id}}
@@ -129,6 +131,7 @@ GET /sessions/{{id}}/outcome
 POST /upload
 POST /upload/layout
 POST /units/{{serial:path}}/services
+POST /services/{{id}}/withdraw
 POST /units/{{serial:path}}/notes
 POST /units/{{serial:path}}/customer
 POST /units/{{serial:path}}/moves
@@ -151,6 +154,8 @@ PUT {SESSION}/stage
 GET {SESSION}/certificate
 GET {API}/certificates
 POST {UNIT}/services
+POST {UNIT}/services/preview
+POST {API}/services/{{id}}/withdraw
 POST {UNIT}/notes
 PUT {UNIT}/lot
 PUT {UNIT}/customer
@@ -181,7 +186,6 @@ POST /sessions/{{id}}/accept
 POST /sessions/{{id}}/correct
 POST /sessions/{{id}}/stand
 POST /sessions/{{id}}/reference
-POST /services/{{id}}/withdraw
 POST /register/import
 POST /units/{{serial:path}}/retire
 POST /units/{{serial:path}}/return
@@ -204,7 +208,6 @@ POST {API}/jobs/failed/retry
 POST {UNIT}/diagnosis/accept
 POST {API}/unit-types/{{name:path}}/diagnosis/accept
 POST {API}/stands/{{name:path}}/diagnosis/accept
-POST {API}/services/{{id}}/withdraw
 POST {API}/models/{{id}}/withdraw
 POST {API}/flags/{{id}}/acknowledge
 POST {API}/flags/{{id}}/resolve

@@ -1,7 +1,4 @@
-"""Records are accepted, withdrawn, marked and chosen; services are recorded and withdrawn.
-
-was entered.
-"""
+"""Records are accepted, withdrawn, marked and chosen; services are recorded and withdrawn."""
 
 from datetime import datetime
 
@@ -212,9 +209,7 @@ def record_service(
     way = Deriving(storage.files, coverage_factor, now)
     with storage.database.writing() as store:
         unit = Units(store).hold(serial)
-        problems = _problems(store, serial, new, now)
-        if problems:
-            raise RefusedError("The service cannot be recorded.", problems)
+        require_possible(store, serial, new, now)
         number, created = Services(store).add(unit, new, now)
         known = Services(store).get(number)
         if not created and known.state is RecordState.ACCEPTED:
@@ -232,7 +227,8 @@ def record_service(
     return recorded, derived
 
 
-def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:
+def require_possible(store: Store, serial: str, new: NewService, now: datetime) -> None:
+    """RefusedError for a service in the future or of an unknown sensor."""
     found = []
     if new.at > now + CLOCK_LEEWAY:
         found.append(Problem("at", say("is in the future ({at}); record what has been done", at=f"{new.at:%Y-%m-%d}")))
@@ -244,7 +240,8 @@ def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tupl
                 say("is not a sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
             )
         )
-    return tuple(found)
+    if found:
+        raise RefusedError("The service cannot be recorded.", tuple(found))
 
 
 def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -> tuple[Service, Derived]:

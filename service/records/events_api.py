@@ -2,6 +2,7 @@
 
 from fastapi import APIRouter
 
+from service.languages.catalogue import said_in
 from service.pages.unit.report import unit_report
 from service.papers.found_and_left import found_and_left
 from service.people.admission import PersonOf
@@ -9,12 +10,14 @@ from service.people.dependencies import StorageOf
 from service.records.changes import record_service
 from service.records.dependencies import ReceptionOf
 from service.records.event_schemas import FoundAndLeftLine, FoundAndLeftSchema, NewNote, NewServiceSchema, NoteList
+from service.records.preview import preview_service
 from service.records.unit_changes import add_note
 from service.sessions.schemas import DecisionSchema, said_session
-from service.units.records import NewService, Note, Service
+from service.units.records import NewService, Note, Service, ServicePreview
 from service.units.remarks_store import Notes
 from service.units.store import Units
-from service.web.dependencies import Now, Reading, SettingsOf
+from service.uploads.receive import deriving
+from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
 from service.web.fields import Serial
 from service.web.problem_document import errors
 
@@ -29,6 +32,15 @@ def add_service(serial: Serial, new: NewServiceSchema, reception: ReceptionOf, n
     service, _ = record_service(reception.storage, serial, done, now, coverage_factor=k)
     reception.ring()
     return service
+
+
+@router.post("/{serial:path}/services/preview", responses=errors(400, 404, 422))
+def preview(
+    serial: Serial, new: NewServiceSchema, reception: ReceptionOf, now: Now, person: PersonOf, language: LanguageOf
+) -> ServicePreview:
+    """What a service would change: verdicts, the next calibration and flags. Nothing is stored."""
+    done = NewService(new.kind, new.at or now, new.note, person.signs(new.by), new.sensor)
+    return said_in(preview_service(reception.storage, deriving(reception, now), serial, done), language)
 
 
 @router.get("/{serial:path}/notes", responses=errors(404, 422))

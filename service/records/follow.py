@@ -15,6 +15,8 @@ from service.judging.reference import known_unit
 from service.judging.store import Derivations
 from service.kit.guard import ending_here, kept
 from service.outlook.changes import END_OF_TIME, gathered, known_of, worked_out
+from service.outlook.records import UnitOutlook
+from service.outlook.rules.forecast import Past
 from service.outlook.rules.histories import type_evidence
 from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
@@ -154,12 +156,18 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
             if not WorkQueue(store, WorkKind.OUTLOOK).holds(serial, asked.ticket):
                 continue
             WorkQueue(store, WorkKind.OUTLOOK).drop(serial)
-            Outlooks(store).put(unit, outlook)
-            ask_for_summaries(store, serial, now)
-            summary = Fleet(store).unit(serial)
-            session = None if summary is None else summary.last_session
-            occasion, made = Occasion(unit, session, now), Outlooks(store).of_unit(serial)
-            settle_sessions(store, occasion)
-            no_longer_overdue(store, occasion, made, sources.past.latest)
-            flag_drift(store, occasion, made)
+            put_outlook(store, sources.past, outlook, now)
             return
+
+
+def put_outlook(store: Store, past: Past, outlook: UnitOutlook, now: datetime) -> None:
+    """Keeps a unit's outlook, and settles the flags that rest on it."""
+    unit = Units(store).key(past.serial)
+    Outlooks(store).put(unit, outlook)
+    ask_for_summaries(store, past.serial, now)
+    summary = Fleet(store).unit(past.serial)
+    session = None if summary is None else summary.last_session
+    occasion, made = Occasion(unit, session, now), Outlooks(store).of_unit(past.serial)
+    settle_sessions(store, occasion)
+    no_longer_overdue(store, occasion, made, past.latest)
+    flag_drift(store, occasion, made)

@@ -1,15 +1,17 @@
 """The forms of records and services."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Literal
 from urllib.parse import quote
 
-from fastapi import APIRouter, Form
-from fastapi.responses import RedirectResponse
+from fastapi import APIRouter, Form, Request
+from fastapi.responses import RedirectResponse, Response
 from pydantic import AfterValidator
 
 from service.kit.moments import in_utc
+from service.pages.unit.events import service_in_words
 from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, Number, StorageOf, Why
 from service.records.changes import (
     accept_session,
@@ -21,16 +23,18 @@ from service.records.changes import (
     withdraw_session,
 )
 from service.records.dependencies import ReceptionOf
+from service.records.preview import preview_service
 from service.records.supersede import supersede_session
 from service.records.unit_changes import add_note, withdraw_note
 from service.sessions.records import MARKS
 from service.sessions.sent import Replaced
 from service.sessions.states import Step
-from service.units.records import NewService
+from service.units.records import NewService, ServicePreview
 from service.uploads.correct import correct_session
 from service.uploads.receive import deriving
 from service.web.dependencies import Now
 from service.web.fields import NO_NUL
+from service.web.render import render
 
 router = APIRouter(include_in_schema=False)
 
@@ -104,8 +108,19 @@ At = Annotated[Annotated[datetime, AfterValidator(in_utc)] | None, Form()]
 Kind = Annotated[Literal["adjustment", "repair", "sensor-swap", "reference", "service"], Form()]
 
 
+@dataclass(frozen=True)
+class ForeseenPage:
+    """A service that is still to be recorded."""
+
+    service: NewService
+    what: str
+    """In words: `Repair of A3`."""
+    preview: ServicePreview
+
+
 @router.post("/units/{serial:path}/services")
 def add_service(
+    request: Request,
     serial: Key,
     kind: Kind,
     by: By,
@@ -115,9 +130,14 @@ def add_service(
     at: At = None,
     sensor: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
-) -> RedirectResponse:
-    """Records what was done to the unit."""
+    sure: Annotated[bool, Form()] = False,
+) -> Response:
+    """Records what was done to the unit; of a service before stored sessions it first shows what that changes."""
     new, k = NewService(kind, at or now, note, by, sensor), reception.coverage_factor
+    if not sure and at is not None:
+        foreseen = preview_service(reception.storage, deriving(reception, now), serial, new)
+        if foreseen.is_late:
+            return render(request, "service_preview.html", ForeseenPage(new, service_in_words(new), foreseen))
     record_service(reception.storage, serial, new, now, coverage_factor=k)
     reception.ring()
     return _unit(serial, "events")

@@ -58,6 +58,13 @@ class Database:
             Audit(store).seal()
             session.commit()
 
+    @contextmanager
+    def trying(self) -> Iterator[Store]:
+        """A write transaction that is undone when the block ends: what a change would lead to."""
+        turn = nullcontext() if self._turns is None else self._turns.taken()
+        with database_faults(), writing(), turn, Session(self._writing_engine) as session:
+            yield Store(session, self._account)
+
     def require_ready(self) -> None:
         """AwayError unless the database answers and has the schema of this version."""
         with database_faults(), self.engine.connect() as connection:

@@ -47,6 +47,47 @@ class NewService:
     """The sensor concerned; empty for the whole unit."""
 
 
+class Foreseen(StrEnum):
+    """What a service would change."""
+
+    VERDICT = "verdict"
+    """Of a session."""
+    DUE = "next-calibration"
+    FLAG = "flag"
+
+
+@answer
+@dataclass(frozen=True)
+class ForeseenChange:
+    """One thing that a service would change."""
+
+    kind: Foreseen
+    """`verdict`, `next-calibration` or `flag`."""
+    what: str
+    """In words: the session, the date or the flag."""
+    before: str
+    """As it is now, in words."""
+    after: str
+    """As it would be."""
+    session: str | None = None
+    """Id of the session, of a verdict."""
+
+
+@answer
+@dataclass(frozen=True)
+class ServicePreview:
+    """What a service would change; nothing is stored."""
+
+    unit: str
+    """Serial number of the unit."""
+    at: datetime
+    """When the service was done, UTC."""
+    is_late: bool
+    """Whether accepted sessions measured since are stored already."""
+    changes: tuple[ForeseenChange, ...]
+    """Verdicts in order of time, the next calibration, flags; empty where nothing changes."""
+
+
 @answer
 @dataclass(frozen=True)
 class Withdrawal:

@@ -40,8 +40,8 @@ class ListView(BaseModel):
     PATH: ClassVar[str]
     ORDERS: ClassVar[Mapping[str, str]]
     """What the list can be ordered by, in words; by the first where nothing else is asked."""
-    PAGE_SIZE: ClassVar[int] = 50
-    """Entries on a page: two screens."""
+    PAGE_SIZE: ClassVar[int] = 20
+    """Entries on a page: three screens at most."""
 
     sort: Annotated[Asked, Field(validate_default=True)] = ""
     """One of the orders, with ``-`` before it where backwards."""

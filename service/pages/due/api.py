@@ -13,6 +13,7 @@ from pydantic import BaseModel, Field
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.judging.usable_reading import usable_of
+from service.languages.catalogue import said_in
 from service.languages.language import Language, asked
 from service.pages.due.board import DueCount, DueLine, due_counts, due_lines
 from service.pages.due.view import MONTH, OVERDUE, UNKNOWN, DueView
@@ -80,6 +81,8 @@ def read_due(
         return as_file(_workbook(found.units, now, asked(request.scope)), XLSX, "due.xlsx")
     if form == "csv":
         return as_table(table_of([_row(line) for line in found.units], COLUMNS), form, "due")
+    language = asked(request.scope)
+    found = DueList(counts=found.counts, units=tuple(said_in(line, language) for line in found.units))
     return Response(found.model_dump_json(), media_type="application/json", headers=BY_HEADER)
 
 

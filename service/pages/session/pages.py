@@ -114,6 +114,8 @@ class SessionView:
     """What people say of it; None where the page is made without a service."""
     follow: int | None
     """Seconds after which the page looks again whether it is diagnosed; None where it is."""
+    retired: str = ""
+    """That its unit is retired, and since when; empty where it is in use."""
     causes: tuple[str, ...] = ()
     """In the model that its calibration in force was made under."""
     earlier: tuple[int, ...] = ()
@@ -131,6 +133,7 @@ def session_page(
     model: Sequence[ModelRevision] = (),
     computed: Sequence[int] = (),
     said: Remarks | None = None,
+    retired: str = "",
 ) -> SessionView:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
@@ -166,6 +169,7 @@ def session_page(
         traceability=traceability,
         said=said,
         follow=follow,
+        retired=retired,
         causes=tuple(cause_on(one.cause, one.sensors) for one in model),
         earlier=tuple(revision for revision in computed if revision != report.session.revision),
     )

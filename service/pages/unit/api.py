@@ -10,6 +10,7 @@ from service.flags.api import FlagPage, WantedState, flag_page
 from service.flags.store import FlagQuery
 from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
+from service.languages.catalogue import said_in
 from service.languages.language import asked
 from service.outlook.reading import outlook_of
 from service.outlook.records import OutlookAnswer, RiskPoint
@@ -32,7 +33,7 @@ from service.sessions.history_store import History
 from service.sessions.records import HistoryPoint
 from service.units.records import Customer
 from service.units.store import Units
-from service.web.dependencies import Now, Reading, SettingsOf
+from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
 from service.web.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
 from service.web.files import BY_HEADER, TABLES, TIME, as_table, table_of, wanted_form
 from service.web.problem_document import errors
@@ -70,6 +71,7 @@ WORST_FIRST = Order.CONDITION
 def list_units(
     store: Reading,
     window: WindowOf,
+    language: LanguageOf,
     verdict: WantedVerdict = None,
     text: WantedText = None,
     reserved: Annotated[bool | None, Query(description="Only those whose verdict has a reservation, or none.")] = None,
@@ -95,7 +97,7 @@ def list_units(
         order=order, backwards=backwards, after=after,
     )  # fmt: skip
     found = Fleet(store).units(wanted)
-    return UnitPage(units=list(map(said_unit, found)), **window.place(len(found)))
+    return UnitPage(units=[said_in(said_unit(unit), language) for unit in found], **window.place(len(found)))
 
 
 @router.get(

@@ -11,7 +11,7 @@ from service.sessions.decision import Decision
 from service.sessions.records import StoredSession
 from service.sessions.states import StateChange
 from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of, state_in_words
-from service.units.records import CustodyStep, Note, Service
+from service.units.records import CustodyStep, NewService, Note, Service
 
 KINDS = {
     "adjustment": "Adjustment",
@@ -81,11 +81,7 @@ def events_of(
     listed = [
         UnitEvent(
             s.at,
-            say(
-                "{kind}{sensor}",
-                kind=KINDS.get(s.kind, s.kind),
-                sensor=say(" of {sensor}", sensor=s.sensor) if s.sensor else "",
-            ),
+            service_in_words(s),
             s.note,
             s.who,
             None,
@@ -96,6 +92,12 @@ def events_of(
     ]
     listed += [UnitEvent(note.at, "Note", note.text, note.who, note) for note in notes]
     return tuple(sorted(listed, key=lambda event: event.at, reverse=True))
+
+
+def service_in_words(service: Service | NewService) -> str:
+    """``Repair of A3``."""
+    sensor = say(" of {sensor}", sensor=service.sensor) if service.sensor else ""
+    return say("{kind}{sensor}", kind=KINDS.get(service.kind, service.kind), sensor=sensor)
 
 
 def stage_table(pair: FoundAndLeft | None) -> StageTable | None:

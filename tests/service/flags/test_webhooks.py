@@ -14,7 +14,7 @@ import pytest
 
 from service.app import create_app
 from service.flags.changes import fault_of, register_webhook, remove_webhook
-from service.flags.messages import CLAIM, MOST_ATTEMPTS, deliver_due
+from service.flags.messages import CLAIM, MOST_ATTEMPTS, Ways, deliver_due
 from service.flags.records import DeliveryState
 from service.flags.webhooks_store import Webhooks
 from service.kit.metrics import Metrics
@@ -142,7 +142,7 @@ def test_an_allowed_host_may_be_called_at_its_port_only() -> None:
 def delivered(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime]) -> int:
     """In a thread of its own: the loop of a browser may run in this one."""
     with ThreadPoolExecutor(1) as thread:
-        return thread.submit(deliver_due, storage, hosts, clock, Metrics()).result()
+        return thread.submit(deliver_due, storage, Ways(hosts), clock, Metrics()).result()
 
 
 class Outbox:

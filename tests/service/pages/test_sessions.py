@@ -63,13 +63,17 @@ def test_a_reference_is_not_undecided() -> None:
     assert [(q.verdict, q.is_reference) for q in queries] == [(Verdict.UNDECIDABLE, True), (Verdict.UNDECIDABLE, False)]
 
 
+MORE = SessionsView.PAGE_SIZE + 1
+"""Sessions than fit on a page."""
+
+
 @pytest.mark.parametrize(
     ("view", "count", "ways"),
     [
         (SessionsView(), 3, ("", "")),
-        (SessionsView(), SessionsView.PAGE_SIZE + 1, ("", "/sessions?after=s49")),
+        (SessionsView(), MORE, ("", f"/sessions?after=s{MORE - 2}")),
         (SessionsView(after="x"), 3, ("/sessions?before=s0", "")),
-        (SessionsView(before="x"), SessionsView.PAGE_SIZE + 1, ("/sessions?before=s1", "/sessions?after=s50")),
+        (SessionsView(before="x"), MORE, ("/sessions?before=s1", f"/sessions?after=s{MORE - 1}")),
         (SessionsView(before="x"), 3, ("", "/sessions?after=s2")),
         (SessionsView(after="x"), 0, ("", "")),
     ],

@@ -259,3 +259,15 @@ def test_a_name_is_printed_as_text(http: httpx.Client, staff: Staff, storage: St
     assert '#panic("x") <b>Eve</b> (eve)' in text_of(paper(http, staff))
     assert "<b>Eve</b>" not in http.get(f"/sessions/{ID}/certificate").text
     assert LABORATORY["laboratory_name"] in text_of(paper(http, staff))
+
+
+def test_what_is_to_be_signed_waits_for_engineers(http: httpx.Client, staff: Staff) -> None:
+    def waiting() -> list[str]:
+        answer = http.get("/api/v1/review", headers=staff.headers(Role.ENGINEER)).json()["waiting"]
+        return [one["text"] for one in answer if one["kind"] == "certificate"]
+
+    assert waiting() == []
+    assert signed(http, staff, Role.ENGINEER, "reviewed").status_code == 201
+    assert waiting() == [f"Certificate {ID}-0-1 is to be approved."]
+    assert signed(http, staff, Role.ADMIN, "approved").status_code == 201
+    assert waiting() == []

@@ -25,6 +25,7 @@ from tests.conftest import Filled, Holding
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import FAILED, session_bytes
+from tests.service.papers.documents import text_of
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 BY = Entering("K. Ito", NOW)
@@ -227,7 +228,12 @@ def test_the_register_by_page(http: httpx.Client) -> None:
     assert "BA-900" in http.get("/?retired=only").text
     sent = {"files": ("a.json", session_bytes(seed=5, unit="BA-900"))}
     assert "BA-900 is retired since" in http.post("/upload", files=sent).text
+    [session] = http.get("/api/v1/sessions?unit=BA-900").json()["sessions"]
+    assert "BA-900 is retired since" in http.get(f"/sessions/{session['id']}").text
+    assert "retired since" in text_of(http.get("/api/v1/units/BA-900/label.pdf").content)
+    assert "Retired since" in text_of(http.get("/api/v1/units/BA-900/status.pdf").content)
     assert "Retired since" not in posted(http, "return", {"why": "found", "by": "K. Ito"})
+    assert "is retired" not in http.get(f"/sessions/{session['id']}").text
     table = {"file": ("r.csv", "serial,unit_type\nX-1,RA-9\n")}
     assert "New units: 1" in http.post("/register/import", files=table, data={"by": "K. Ito"}).text
     wrong = {"file": ("r.csv", "serial,unit_type\nX-2,\n")}

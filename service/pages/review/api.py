@@ -1,0 +1,25 @@
+"""What waits for a person, over HTTP."""
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from service.languages.catalogue import said_in
+from service.pages.review.queue import Waiting, waiting_for
+from service.people.admission import PersonOf
+from service.web.dependencies import LanguageOf, Now, Reading
+from service.web.problem_document import errors
+
+router = APIRouter(prefix="/review", tags=["fleet"])
+
+
+class ReviewQueue(BaseModel):
+    """What waits for whoever asks."""
+
+    waiting: tuple[Waiting, ...] = Field(description="By kind, 15 of each at most; empty where nothing waits.")
+
+
+@router.get("", responses=errors())
+def read_review(store: Reading, person: PersonOf, now: Now, language: LanguageOf) -> ReviewQueue:
+    """What the caller can do something about: own flags; for crews overdue units; for engineers questioned sessions,
+    certificates to sign, flags without an assignee and failed work."""
+    return ReviewQueue(waiting=tuple(said_in(one, language) for one in waiting_for(store, person, now)))
