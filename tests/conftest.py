@@ -13,6 +13,7 @@ from argon2.profiles import CHEAPEST
 from hypothesis import HealthCheck
 from hypothesis import settings as hypothesis_settings
 from sqlalchemy import create_engine
+from sqlalchemy.orm import Mapper
 
 from service.app import create_app
 from service.kit.lock_order import WATCHED
@@ -71,10 +72,11 @@ def light_passwords() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_once() -> Iterator[None]:
-    """Every engine takes its statements from one cache."""
+    """Every engine takes its statements from one cache, and so do the mappers that write rows."""
+    compiled = Compiled()
     with pytest.MonkeyPatch.context() as patch:
-        opened = partial(create_engine, execution_options={"compiled_cache": Compiled()})
-        patch.setattr(engine, "create_engine", opened)
+        patch.setattr(engine, "create_engine", partial(create_engine, execution_options={"compiled_cache": compiled}))
+        patch.setattr(Mapper, "_compiled_cache", compiled)
         yield
 
 

@@ -9,7 +9,7 @@ from benchmarks.stands.fleets import ARCSEC, Fleet, motions_of
 from estimator.health.stand_events import EventTest
 from estimator.health.stands import StandState, stand_states
 
-FLEETS = 6
+FLEETS = 10
 
 
 def told(fleet: Fleet, seed: int, fleets: int = FLEETS) -> list[tuple[StandState, ...]]:

@@ -14,7 +14,7 @@ from service.uploads.receive import upload
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import ECCENTRIC, accepted, diagnosis_of, held
-from tests.service.made_sessions import session_bytes, session_id
+from tests.service.made_sessions import FAILED, session_bytes, session_id
 from tests.service.papers.documents import pages_of, text_of
 from tests.service.recordings import recording_bytes
 
@@ -36,20 +36,12 @@ def certificate(client: httpx.Client, id: str) -> bytes:
     return answer.content
 
 
-FAILING = session_bytes(seed=2, month=5, a3_moved=200.0)
-"""A3's bias moved far beyond its tolerance."""
-ID = session_id(FAILING)
+ID = session_id(FAILED[-1])
 
 
-@pytest.fixture
-def failed(holding: Holding) -> httpx.Client:
-    """A service that holds a reference and the failing session."""
-    return holding(session_bytes(), FAILING, diagnosed=True)
-
-
-def test_it_states_input_verdict_rule_and_model(failed: httpx.Client) -> None:
-    text = text_of(certificate(failed, ID))
-    digest = hashlib.sha256(FAILING).hexdigest()
+def test_it_states_input_verdict_rule_and_model(flagged: httpx.Client) -> None:
+    text = text_of(certificate(flagged, ID))
+    digest = hashlib.sha256(FAILED[-1]).hexdigest()
     for stated in (
         "Unfit",
         digest,
@@ -63,9 +55,9 @@ def test_it_states_input_verdict_rule_and_model(failed: httpx.Client) -> None:
         assert stated in text
 
 
-def test_it_states_every_decision(failed: httpx.Client) -> None:
-    text = text_of(certificate(failed, ID))
-    decisions = failed.get(f"/api/v1/sessions/{ID}").json()["decisions"]
+def test_it_states_every_decision(flagged: httpx.Client) -> None:
+    text = text_of(certificate(flagged, ID))
+    decisions = flagged.get(f"/api/v1/sessions/{ID}").json()["decisions"]
     assert len(decisions) == 24
     states = [condition_of(d["verdict"]).word for d in decisions]
     # The decision rule explains each state once.
@@ -74,8 +66,8 @@ def test_it_states_every_decision(failed: httpx.Client) -> None:
     assert f"+{a3['deviation'] / 9.80665e-6:.1f}" in text
 
 
-def test_pages_are_numbered_and_name_the_unit(failed: httpx.Client) -> None:
-    pages = pages_of(certificate(failed, ID))
+def test_pages_are_numbered_and_name_the_unit(flagged: httpx.Client) -> None:
+    pages = pages_of(certificate(flagged, ID))
     assert len(pages) > 1
     for number, text in enumerate(pages, 1):
         assert f"Page {number} of {len(pages)}" in text
@@ -83,10 +75,10 @@ def test_pages_are_numbered_and_name_the_unit(failed: httpx.Client) -> None:
         assert "SIMULATED" not in text
 
 
-def test_the_same_record_gives_the_same_bytes_whatever_comes_later(failed: httpx.Client) -> None:
-    before = certificate(failed, ID)
-    sent(failed, session_bytes(seed=3, month=6, a3_moved=400.0))
-    assert certificate(failed, ID) == before
+def test_the_same_record_gives_the_same_bytes_whatever_comes_later(flagged: httpx.Client) -> None:
+    before = certificate(flagged, ID)
+    sent(flagged, session_bytes(seed=3, month=6, a3_moved=400.0))
+    assert certificate(flagged, ID) == before
 
 
 def test_the_reference_says_that_it_is_one(client: httpx.Client) -> None:
