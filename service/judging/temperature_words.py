@@ -1,7 +1,11 @@
 """What temperature does to a verdict, in words."""
 
+import numpy as np
+
 from estimator.health.temperature_law import TemperatureCorrection
 from estimator.message import joined, say
+from estimator.session import Array
+from service.judging.covered import CoveredTemperatures
 from service.kit.measures import HARD, PARAMETER_NAMES, THIN, decimals, deviation_measure, in_measure, measured, number
 from service.sessions.decision import Decision
 
@@ -77,6 +81,26 @@ def _between(lowest: float, highest: float) -> str:
     """``19–22 °C``."""
     low, high = number(lowest, 0), number(highest, 0)
     return in_degrees(lowest) if low == high else f"{low}–{in_degrees(highest)}"
+
+
+CONSTANT = 0.05
+"""°C: a smaller range is said as one number."""
+
+
+def span_in_words(celsius: Array | None) -> str:
+    """``19.8 to 22.3 °C``, of a session's readings."""
+    return "not recorded" if celsius is None else _span(float(np.min(celsius)), float(np.max(celsius)))
+
+
+def covered_in_words(covered: CoveredTemperatures | None) -> str:
+    """The same of what a unit's calibrations cover."""
+    return "not known" if covered is None else _span(covered.lowest, covered.highest)
+
+
+def _span(low: float, high: float) -> str:
+    if high - low <= CONSTANT:
+        return f"{number(low, 1)}{THIN}°C"
+    return say("{low} to {high}{thin_space}°C", low=number(low, 1), high=number(high, 1), thin_space=THIN)
 
 
 def at_about(celsius: float) -> str:

@@ -1,12 +1,16 @@
 """A verdict across more °C than a unit's sessions cover says so wherever it stands."""
 
 import json
+from datetime import UTC, datetime
 
 import pytest
 
+from service.papers.verifying.records import Outcome, RawFile
+from service.papers.verifying.verify import Beside, verify
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.made_sessions import MICRO_G, session_bytes, session_id
+from tests.service.papers.documents import text_of
 from tests.service.recordings import recording_document
 
 SAYS = "it was measured at 35 °C, 11 °C above its reference and earlier sessions (20–24 °C)"
@@ -71,10 +75,31 @@ def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holdin
     )
     (law,) = client.get(f"/api/v1/sessions/{warm['id']}/correction").json()["temperature_laws"]
     assert (law["sensor"], law["parameter"], law["worth"]) == ("A3", "bias", own["worth"])
-    certificate = client.get(f"/api/v1/sessions/{warm['id']}/certificate?format=dcc").text
-    assert "deviation at 33.0 °C, before the law of 7 sessions over temperature" in certificate
+    certificate = client.get(f"/api/v1/sessions/{warm['id']}/certificate?format=dcc")
+    assert "deviation at 33.0 °C, before the law of 7 sessions over temperature" in certificate.text
+    again = verify(certificate.content, RawFile("warm.json", WARM), Beside(), datetime.now(UTC))
+    assert again.outcome is Outcome.AGREES, again
     (moved,) = [d for d in drifted["decisions"] if d["verdict"] == "fail"]
     assert moved["deviation"] == pytest.approx(150 * MICRO_G, abs=20 * MICRO_G)
+
+
+COVERED = {"lowest": 12.0, "highest": 34.0, "reference": 20.0}
+"""By the sessions that the law was learned from: those far from the reference failed before it was known."""
+
+
+def test_the_temperatures_that_a_calibration_covers_stand_wherever_it_is_shown(holding: Holding) -> None:
+    client = holding(*LEARNED, WARM)
+    unit, first, warm = "/api/v1/units/BA-017", session_id(LEARNED[0]), session_id(WARM)
+    answers = (client.get(path).json() for path in (unit, f"/api/v1/sessions/{warm}"))
+    assert [answer["temperatures_covered"] for answer in answers] == [COVERED, COVERED]
+    assert client.get(f"/api/v1/sessions/{warm}/correction").json()["temperatures_covered"] == COVERED
+    alone = client.get(f"/api/v1/sessions/{first}").json()["temperatures_covered"]
+    assert alone == {"lowest": 20.0, "highest": 20.0, "reference": 20.0}
+    for path in ("/units/BA-017", f"/sessions/{warm}"):
+        assert "<dt>Temperatures covered</dt><dd>12.0 to 34.0 °C</dd>" in plain(client.get(path).text)
+    assert "12.0 to 34.0 °C" in plain(client.get(f"/api/v1/sessions/{warm}/certificate?format=dcc").text)
+    paper = text_of(client.get(f"/api/v1/sessions/{warm}/certificate").content)
+    assert "Temperatures covered 12.0 to 34.0 °C" in plain(paper)
 
 
 def test_a_session_taken_back_is_no_longer_learned_from(holding: Holding) -> None:
