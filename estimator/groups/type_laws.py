@@ -74,14 +74,14 @@ def _histories(unit: UnitHistory, kind: str, parameter: str, tolerance: float) -
 def _fitted(histories: Sequence[History], about: float) -> tuple[Array, Array, Array]:
     """(K,) chances of scatters, and (n, 2) coefficients of every history, T per °C and °C², with their variances."""
     fits = [fit_at_every_scatter(one.readings, columns_about(one.celsius, about)) for one in histories]
-    logs = np.stack([one.log_likelihood for one in fits])
+    logs = np.stack([own for *_, own in fits])
     nothing = np.full(len(SCATTERS), 1 / len(SCATTERS))
     prior = nothing
     for _ in range(ROUNDS):
         prior = (chances(logs, prior).sum(axis=0) + nothing) / (len(fits) + 1)
     share = chances(logs, prior)
-    each = np.stack([one.size[:, -2:] for one in fits])
-    own = np.stack([np.diagonal(one.covariance, axis1=-2, axis2=-1)[:, -2:] for one in fits])
+    each = np.stack([size[:, -2:] for size, *_ in fits])
+    own = np.stack([np.diagonal(covariance, axis1=-2, axis2=-1)[:, -2:] for _, covariance, _ in fits])
     size = np.einsum("nk,nkq->nq", share, each)
     return prior, size, np.einsum("nk,nkq->nq", share, own + (each - size[:, None]) ** 2)
 

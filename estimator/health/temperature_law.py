@@ -127,34 +127,30 @@ def temperature_steps(
     """
     of_type = {(law.kind, law.parameter): law for law in laws}
     cases = [
-        _Case(sensor, parameter, allowed, of_type.get((sensor.kind, parameter)))
+        (sensor, parameter, allowed)
         for sensor in reference.sensors
         for parameter in FOLLOW
         if (allowed := tolerances.get((sensor.kind, parameter))) is not None
     ]
     level = single_level(LEVEL, max(len(cases), 1))
-    found = {(case.origin.name, case.parameter): _step(learned, case, between, level) for case in cases}
+    found = {
+        (s.name, parameter): _step(learned, (s, parameter, t), between, (level, of_type.get((s.kind, parameter))))
+        for s, parameter, t in cases
+    }
     return {place: step for place, step in found.items() if step is not None}
 
 
-@dataclass(frozen=True, eq=False)
-class _Case:
-    """A parameter of a sensor whose law is looked for."""
-
-    origin: SensorCalibration
-    """Of the reference."""
-    parameter: str
-    allowed: float
-    """T, relative for scale, else SI."""
-    law: TypeLaw | None
-    """Of the type; None where nothing is known of it."""
-
-
-def _step(learned: Sequence[Seen], case: _Case, between: tuple[float, float], level: float) -> TemperatureStep | None:
-    """By the type's law where that leaves the parameter decidable, or where the sessions show a law themselves."""
-    law = case.law
-    unit = case.allowed if law is None else law.tolerance
-    history = history_of(learned, case.origin, case.parameter, unit)
+def _step(
+    learned: Sequence[Seen],
+    of: tuple[SensorCalibration, str, float],
+    between: tuple[float, float],
+    by: tuple[float, TypeLaw | None],
+) -> TemperatureStep | None:
+    """By the type's law where that leaves the parameter decidable, or where the sessions show a law themselves; ``of``
+    a sensor of the reference, a parameter and T, ``by`` the chance of a law where there is none, and the type's."""
+    (origin, parameter, allowed), (level, law) = of, by
+    unit = allowed if law is None else law.tolerance
+    history = history_of(learned, origin, parameter, unit)
     if history is None or len(history.celsius) < ENOUGH_WITH_TYPE:
         return None
     shows = _shows(history, level)
@@ -162,7 +158,7 @@ def _step(learned: Sequence[Seen], case: _Case, between: tuple[float, float], le
         return _as_step(_own_worth(history, between), unit, between, history.celsius) if shows else None
     found = worth_by(history.readings, history.celsius, law, between)
     step = replace(_as_step(found, unit, between, history.celsius), units=law.units)
-    return step if shows or coverage_factor(COVERAGE, step.dof) * step.sigma <= case.allowed else None
+    return step if shows or coverage_factor(COVERAGE, step.dof) * step.sigma <= allowed else None
 
 
 def _shows(history: History, level: float) -> bool:

@@ -22,8 +22,13 @@ SCATTERS = np.concatenate([[0.0], np.geomspace(0.01, 3.0, 24)])
 """(K,) τ, T: from what is not seen to what spoils every session."""
 ENOUGH_WITH_TYPE = 4
 """Sessions at least where the type tells the rest: level, a change through time, and two numbers beside."""
+DEPENDENT = 1e-10
+"""Eigenvalue of scaled columns below which one of them is a mix of the others."""
 KNOWN = 1e-6
 """Relative variance of a variance below which it is known."""
+
+
+Scattered = tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,7 @@ class TypeLaw:
     kind: str
     """Of sensor."""
     parameter: str
+    """`scale` or `bias`."""
     tolerance: float
     """T of what follows: relative for scale, else SI."""
     about: float
@@ -40,25 +46,18 @@ class TypeLaw:
     mean: tuple[float, float]
     """μ, T per °C and T per °C²."""
     sigma: tuple[float, float]
-    """s, the same units, of one more sensor of the type."""
+    """s, the same units: one sigma of one more sensor of the type."""
     scatter: tuple[float, ...]
-    """Chance of every τ of `SCATTERS`."""
+    """Chance of every τ of `SCATTERS`: of none, and of 24 from 0.01 T to 3 T in equal ratios."""
     sensors: int
     """That it was learned from."""
     units: int
     """The same."""
 
-
-@dataclass(frozen=True, eq=False)
-class Scattered:
-    """A fit of p columns at every τ."""
-
-    size: Array
-    """(K, p) T per unit of each column."""
-    covariance: Array
-    """(K, p, p)"""
-    log_likelihood: Array
-    """(K,) restricted, up to a constant."""
+    @property
+    def usual_scatter(self) -> float:
+        """T, that half of the sensors scatter by at most."""
+        return float(SCATTERS[np.searchsorted(np.cumsum(self.scatter), 0.5)])
 
 
 def columns_about(celsius: Array, about: float) -> Array:
@@ -68,7 +67,8 @@ def columns_about(celsius: Array, about: float) -> Array:
 
 
 def fit_at_every_scatter(readings: Readings, columns: Array, law: TypeLaw | None = None) -> Scattered:
-    """Of the readings' base and columns (n, 2), last; flat where no law says what these are.
+    """Sizes (K, p) of the readings' base and of columns (n, 2), last, T per unit of each, their covariances (K, p, p)
+    and restricted log likelihoods (K,), at every τ; flat where no law says what these are.
 
     Parameters
     ----------
@@ -83,18 +83,23 @@ def fit_at_every_scatter(readings: Readings, columns: Array, law: TypeLaw | None
     weighted = design / variance[..., None]
     information = np.swapaxes(weighted, -1, -2) @ design + np.diag(added)
     score = np.swapaxes(weighted, -1, -2) @ y + np.concatenate([np.zeros(free), known * mean])
-    covariance = np.linalg.pinv(information, hermitian=True)
+    covariance, determinant = _inverted(information)
     size = (covariance @ score[..., None])[..., 0]
     left = (y**2 / variance).sum(axis=1) + mean @ (known * mean) - (score * size).sum(axis=1)
-    cost = np.log(variance).sum(axis=1) + _log_determinant(information) + left
-    return Scattered(size, covariance, -cost / 2)
+    cost = np.log(variance).sum(axis=1) + determinant + left
+    return size, covariance, -cost / 2
 
 
-def _log_determinant(information: Array) -> Array:
-    """(K,) of matrices (K, p, p), of what is seen of them: a column that stands twice is one."""
-    kept = np.linalg.eigvalsh(information)
-    seen = kept > 1e-12 * kept[:, -1:]
-    return np.asarray(np.log(np.where(seen, kept, 1.0)).sum(axis=1))
+def _inverted(information: Array) -> tuple[Array, Array]:
+    """(K, p, p) inverses of matrices and (K,) logs of their determinants, each of what is seen: a column that stands
+    twice is one. Columns are scaled to 1 first, since their units are far apart."""
+    root = np.sqrt(np.einsum("kpp->kp", information))
+    scale = root[:, :, None] * root[:, None, :]
+    kept, axes = np.linalg.eigh(information / scale)
+    kept = np.where(kept > DEPENDENT, kept, np.inf)
+    inverse = (axes / kept[:, None, :]) @ np.swapaxes(axes, -1, -2) / scale
+    seen = np.where(np.isfinite(kept), kept, 1.0)
+    return inverse, np.asarray(np.log(seen).sum(axis=1) + 2 * np.log(root).sum(axis=1))
 
 
 def chances(log_likelihood: Array, prior: Array) -> Array:
@@ -110,13 +115,13 @@ def worth_by(
 
     A session and its reference each lie off the law by τ.
     """
-    fitted = fit_at_every_scatter(readings, columns_about(celsius, law.about), law)
+    size, covariance, logs = fit_at_every_scatter(readings, columns_about(celsius, law.about), law)
     start, stop = columns_about(np.array(between), law.about)
-    along = np.concatenate([np.zeros(fitted.size.shape[1] - 2), stop - start])
-    share = chances(fitted.log_likelihood, np.array(law.scatter))
-    each = fitted.size @ along
+    along = np.concatenate([np.zeros(size.shape[1] - 2), stop - start])
+    share = chances(logs, np.array(law.scatter))
+    each = size @ along
     worth = float(share @ each)
-    own = np.einsum("p,kpq,q->k", along, fitted.covariance, along) + 2 * SCATTERS**2 + (each - worth) ** 2
+    own = np.einsum("p,kpq,q->k", along, covariance, along) + 2 * SCATTERS**2 + (each - worth) ** 2
     variance = float(share @ own)
     apart = float(share @ (own - variance) ** 2)
     if apart <= KNOWN * variance**2:

@@ -12,7 +12,7 @@ from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
 from service.groups.sections import MOST_FOUND, found_line, group_section
 from service.ingest import is_own_layout
-from service.judging.covered_reading import covered_at
+from service.judging.reference import covered_at
 from service.judging.usable_reading import usable_of
 from service.kit.arriving_files import where
 from service.kit.limits import in_force

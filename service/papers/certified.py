@@ -12,8 +12,7 @@ from service.diagnosis.records import StoredDiagnosis
 from service.errors import ConflictError
 from service.ingest import read_upload
 from service.judging.covered import CoveredTemperatures
-from service.judging.covered_reading import covered_at
-from service.judging.reference import reference_of
+from service.judging.reference import covered_at, reference_of
 from service.judging.words import verdict_in_words
 from service.models.records import Model, ModelRevision
 from service.models.rules import in_force, model_of

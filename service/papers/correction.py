@@ -16,7 +16,7 @@ from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array
 from service.errors import NotFoundError
 from service.ingest import read_upload
 from service.judging.covered import CoveredTemperatures
-from service.judging.covered_reading import covered_at
+from service.judging.reference import covered_at
 from service.kit.measures import COVERAGE
 from service.models.records import ModelRevision
 from service.models.store import Models, evidence_to_dict
@@ -232,4 +232,5 @@ def _law(sensor: str, parameter: str, step: TemperatureStep) -> Json:
         "sessions": step.sessions,
         "lowest_c": step.lowest,
         "highest_c": step.highest,
+        "units": step.units,
     }

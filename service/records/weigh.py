@@ -10,9 +10,8 @@ from service.diagnosis.records import Diagnosed
 from service.diagnosis.store import Diagnoses
 from service.ingest import read_upload
 from service.judging.cause_sizes import Yardstick
-from service.judging.covered_reading import MOST_EARLIER
 from service.judging.records import Counted
-from service.judging.reference import reference_of
+from service.judging.reference import MOST_EARLIER, reference_of
 from service.judging.reservations import (
     UNCHECKED,
     Basis,

@@ -65,6 +65,7 @@ class TemperatureCorrectionSchema(BaseModel):
     sessions: int = Field(description="How many sessions the law was learned from.")
     lowest: float | None = Field(None, description="Of the coldest of them, °C; null where it was not kept.")
     highest: float | None = Field(None, description="Of the warmest, °C.")
+    units: int = Field(0, description="How many units of its type it was learned from too.")
 
 
 class DecisionSchema(BaseModel):

@@ -9,8 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from estimator.message import say
 from service.errors import NotFoundError
 from service.ingest.layout.envelope import is_wrapped, unwrapped
-from service.judging.covered_reading import covered_at
 from service.judging.records import said
+from service.judging.reference import covered_at
 from service.papers.certified import traceability_of
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf

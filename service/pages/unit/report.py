@@ -9,7 +9,7 @@ from service.errors import NotFoundError
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
 from service.judging.covered import CoveredTemperatures
-from service.judging.covered_reading import covered_at
+from service.judging.reference import covered_at
 from service.outlook.records import UnitOutlook
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.states import RecordState, StateChange

@@ -1,14 +1,13 @@
 """What the numbers of a certificate can be computed again from, beside the session's file."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from estimator.codec import Document
-from estimator.health.temperature_law import TemperatureCorrection
+from estimator.health.temperature_law import TemperatureStep
 from service.judging.covered import CoveredTemperatures
 from service.models.records import Model
 from service.papers.certified import CertifiedSession, ReferenceSession
-from service.sessions.decision import Decision, nominal_factor_of
+from service.sessions.decision import nominal_factor_of, steps_in
 from service.stands.records import StandCertificate
 from service.storage.json_text import STORED, json_text
 
@@ -27,7 +26,7 @@ class RecomputationInputs(Document, format="imu-recomputation/1"):
     """Kind of sensor, parameter, tolerance: relative for scale, else SI."""
     reference: ReferenceSession | None
     stand_certificate: StandCertificate | None
-    laws: tuple[tuple[str, str, TemperatureCorrection], ...] = ()
+    laws: tuple[tuple[str, str, TemperatureStep], ...] = ()
     """Sensor, parameter, and what was taken off for temperature before it was judged."""
     temperatures: CoveredTemperatures | None = None
     """That the calibration covers, with the unit's earlier sessions."""
@@ -44,13 +43,7 @@ def inputs_json(found: CertifiedSession) -> str:
         tolerances=tuple(dict.fromkeys((d.kind, d.parameter, d.tolerance) for d in decisions)),
         reference=found.reference,
         stand_certificate=found.traceability.certificate,
-        laws=tuple(_laws(decisions)),
+        laws=tuple((*place, step) for place, step in steps_in(decisions).items()),
         temperatures=found.temperatures,
     )
     return json_text(STORED.written(inputs))
-
-
-def _laws(decisions: tuple[Decision, ...]) -> Iterator[tuple[str, str, TemperatureCorrection]]:
-    for one in decisions:
-        if one.temperature_correction is not None:
-            yield one.sensor, one.parameter, one.temperature_correction

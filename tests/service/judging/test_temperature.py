@@ -3,6 +3,7 @@
 import json
 from datetime import UTC, datetime
 
+import httpx
 import pytest
 
 from service.papers.verifying.records import Outcome, RawFile
@@ -56,6 +57,21 @@ LEARNED = tuple(at(t, month, moved=PER_DEGREE * (t - 20)) for month, t in enumer
 WARM, DRIFTED = at(33.0, 8, moved=PER_DEGREE * 13), at(33.0, 9, moved=PER_DEGREE * 13 + 150)
 
 
+COVERED = {"lowest": 12.0, "highest": 34.0, "reference": 20.0}
+"""By the sessions that the law was learned from: those far from the reference failed before it was known."""
+
+
+def is_covered_everywhere(client: httpx.Client, id: str) -> bool:
+    """Whether all that shows the session says so."""
+    unit, session = "/api/v1/units/BA-017", f"/api/v1/sessions/{id}"
+    answers = (client.get(path).json() for path in (unit, session, f"{session}/correction"))
+    pages = (client.get(path).text for path in ("/units/BA-017", f"/sessions/{id}"))
+    papers = client.get(f"{session}/certificate?format=dcc").text, text_of(client.get(f"{session}/certificate").content)
+    said = [answer["temperatures_covered"] == COVERED for answer in answers]
+    said += ["<dt>Temperatures covered</dt><dd>12.0 to 34.0 °C</dd>" in plain(page) for page in pages]
+    return all([*said, *("12.0 to 34.0 °C" in plain(paper) for paper in papers)])
+
+
 def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holding: Holding) -> None:
     """In any order of arrival; what moved beside the law fails."""
     client = holding(WARM, *LEARNED[3:], DRIFTED, *LEARNED[:3])
@@ -79,27 +95,11 @@ def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holdin
     assert "deviation at 33.0 °C, before the law of 7 sessions over temperature" in certificate.text
     again = verify(certificate.content, RawFile("warm.json", WARM), Beside(), datetime.now(UTC))
     assert again.outcome is Outcome.AGREES, again
+    assert is_covered_everywhere(client, warm["id"])
+    alone = client.get(f"/api/v1/sessions/{session_id(LEARNED[0])}").json()["temperatures_covered"]
+    assert alone == {"lowest": 20.0, "highest": 20.0, "reference": 20.0}
     (moved,) = [d for d in drifted["decisions"] if d["verdict"] == "fail"]
     assert moved["deviation"] == pytest.approx(150 * MICRO_G, abs=20 * MICRO_G)
-
-
-COVERED = {"lowest": 12.0, "highest": 34.0, "reference": 20.0}
-"""By the sessions that the law was learned from: those far from the reference failed before it was known."""
-
-
-def test_the_temperatures_that_a_calibration_covers_stand_wherever_it_is_shown(holding: Holding) -> None:
-    client = holding(*LEARNED, WARM)
-    unit, first, warm = "/api/v1/units/BA-017", session_id(LEARNED[0]), session_id(WARM)
-    answers = (client.get(path).json() for path in (unit, f"/api/v1/sessions/{warm}"))
-    assert [answer["temperatures_covered"] for answer in answers] == [COVERED, COVERED]
-    assert client.get(f"/api/v1/sessions/{warm}/correction").json()["temperatures_covered"] == COVERED
-    alone = client.get(f"/api/v1/sessions/{first}").json()["temperatures_covered"]
-    assert alone == {"lowest": 20.0, "highest": 20.0, "reference": 20.0}
-    for path in ("/units/BA-017", f"/sessions/{warm}"):
-        assert "<dt>Temperatures covered</dt><dd>12.0 to 34.0 °C</dd>" in plain(client.get(path).text)
-    assert "12.0 to 34.0 °C" in plain(client.get(f"/api/v1/sessions/{warm}/certificate?format=dcc").text)
-    paper = text_of(client.get(f"/api/v1/sessions/{warm}/certificate").content)
-    assert "Temperatures covered 12.0 to 34.0 °C" in plain(paper)
 
 
 def test_a_session_taken_back_is_no_longer_learned_from(holding: Holding) -> None:
