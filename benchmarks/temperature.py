@@ -34,8 +34,8 @@ from estimator.session import ACCELEROMETER, Array
 from tests.blind.cases import draw_case
 from tests.blind.warmth import at_temperature, draw_unit_at_room
 
-STRAIGHT, CURVE = "bias-temperature", "bias-temperature-curve"
-OF_TEMPERATURE = frozenset({STRAIGHT, "scale-temperature", "unexplained"})
+LINES, CURVES = ("bias-temperature", "scale-temperature"), ("bias-temperature-curve", "scale-temperature-curve")
+OF_TEMPERATURE = frozenset({*LINES, "unexplained"})
 SWING = 10.0
 """°C to either side of the room through the year."""
 SESSIONS = 12
@@ -199,7 +199,7 @@ def performed(run: Callable[..., Iterator[object]], units: int, seed: int) -> An
     return Answers(
         lived=each(lived, 1, (NONE, LINE, PARABOLA)),
         carried=each(carried, 2, (LINE, PARABOLA)),
-        named=each(named, 3, (CURVE, STRAIGHT)),
+        named=each(named, 3, (*CURVES, *LINES)),
         sound=list(run(is_named, seeds(4, 0, 3 * units))),
     )
 
@@ -227,10 +227,10 @@ def rows(answers: Answers) -> Iterator[tuple[str, str, object]]:
     units = answers.lived[NONE]
     yield "seasons, nothing follows them: units flagged", "≤ 1 %", rate([one.flagged for one in units])
     yield "the same: laws claimed, of parameters", "≤ 1 %", rate([mark for one in units for mark in one.claimed])
-    for cause in (CURVE, STRAIGHT):
+    for cause in (*CURVES, *LINES):
         apart = [one for one in answers.named[cause] if one.apart]
         yield f"`{cause}`, {APART:g} from every rival: named first", "≥ 95 %", rate([one.first for one in apart])
-        words = f"`{cause}`, all of strength 8: named or listed{BENDLESS * (cause == CURVE)}"
+        words = f"`{cause}`, all of strength 8: named or listed{BENDLESS * (cause in CURVES)}"
         yield words, "≥ 99 %", rate([one.told for one in answers.named[cause]])
     yield "sound sessions: a name", "≤ 1 %", rate(answers.sound)
 

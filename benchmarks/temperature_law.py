@@ -23,8 +23,10 @@ from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import calibrate, read_session
 from estimator.applied_vector import STANDARD_GRAVITY
+from estimator.groups.type_laws import UnitHistory, type_laws
 from estimator.health import ParameterJudgement, judge
 from estimator.health.temperature_law import Seen, Steps, temperature_steps
+from estimator.health.type_law import TypeLaw
 from estimator.results import ARCSEC, Calibration
 from estimator.session import ACCELEROMETER, Array
 from tests.blind.warmth import at_temperature, draw_law, draw_unit_at_room, stepped
@@ -33,8 +35,10 @@ from tests.blind.world import Session
 PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "temperature.md"
 HEADING = "## A session judged at its reference's temperature"
 NONE, LINE, PARABOLA, LOOSE = "none", "line", "parabola", "line with a small bend and lag"
-CASES = ((LINE, 8), (PARABOLA, 8), (LOOSE, 8), (LOOSE, 16), (NONE, 8))
+CASES = ((LINE, 8), (PARABOLA, 8), (LOOSE, 8), (LOOSE, 16), (NONE, 8), (LINE, 4), (PARABOLA, 4), (LOOSE, 4))
 """Law, and sessions before, the reference among them."""
+TYPE_UNITS, TYPE_SESSIONS = 20, 12
+"""Other units of the type, and the sessions of each, that the laws of a type are learned from."""
 TOLERANCES = {
     (ACCELEROMETER, "bias"): 50e-6 * STANDARD_GRAVITY,
     (ACCELEROMETER, "scale"): 100e-6,
@@ -54,25 +58,33 @@ UNFIT = ("fail", "conditional-fail")
 
 
 @dataclass(frozen=True)
-class Judged:
-    """One unit at `WARM`."""
+class Answer:
+    """What is said of one unit at `WARM` by laws learned from some sessions."""
 
-    as_measured: bool
-    """Whether it was called unfit without the law."""
     by_law: bool
-    """The same at the reference's temperature."""
+    """Whether it was called unfit at the reference's temperature."""
     undecided: bool
     """Whether it was neither fit nor unfit then."""
-    taken: int
-    """Parameters that something was taken off of."""
     covered: tuple[bool, ...]
-    """Of each of them, whether U covers what is left: nothing moved."""
+    """Of each parameter that something was taken off of, whether U covers what is left: nothing moved."""
     shares: tuple[float, ...]
     """Of each of them, U in tolerances."""
     found: bool
     """Whether a sensor whose bias has moved by 150 µg is called unfit by the law, for its bias."""
     excused: bool
     """Whether it passes, having moved when the room became warmer for good."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One unit at `WARM`."""
+
+    as_measured: bool
+    """Whether it was called unfit without a law."""
+    own: Answer
+    """By its own sessions."""
+    typed: Answer
+    """With the laws of its type."""
 
 
 def law_of(kind: str, rng: np.random.Generator) -> Array:
@@ -99,44 +111,89 @@ class Unit:
         return Seen(EVERY * number / 365.25, celsius, calibrate(read_session(document)))
 
 
-def judged(kind: str, learned: int, seed: tuple[int, ...]) -> Judged:
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """One unit with its sessions before, and the same unit when it has changed."""
+
+    unit: Unit
+    seen: tuple[Seen, ...]
+    last: Seen
+    moved: Seen
+    """The last one of a unit of which one bias moved before it."""
+    name: str
+    """Of that sensor."""
+    stayed: tuple[Seen, ...]
+    """Of a unit whose bias moved when the room became warmer for good; empty where that is not asked."""
+
+
+def learned_laws(kind: str, seed: int) -> tuple[TypeLaw, ...]:
+    """Of a type whose units follow one kind of law."""
+    return type_laws([_other(kind, (seed, 99, i)) for i in range(TYPE_UNITS)], TOLERANCES)
+
+
+def _other(kind: str, seed: tuple[int, ...]) -> UnitHistory:
+    rng = np.random.default_rng(seed)
+    unit = _draw(kind, rng)
+    seen = _before(unit, TYPE_SESSIONS, rng)
+    return UnitHistory(seen[0].calibration, seen)
+
+
+def _draw(kind: str, rng: np.random.Generator) -> Unit:
+    world, law = draw_unit_at_room(rng), law_of(kind, rng)
+    return Unit(world, law, LAG if kind == LOOSE else 0.0)
+
+
+def _before(unit: Unit, learned: int, rng: np.random.Generator) -> tuple[Seen, ...]:
+    warm = (ROOM, *rng.uniform(COLDEST, WARMEST, learned - 1))
+    return tuple(unit.at(float(t), i, rng) for i, t in enumerate(warm))
+
+
+def judged(kind: str, learned: int, laws: Sequence[TypeLaw], seed: tuple[int, ...]) -> Judged:
     """A unit of one kind of law, after so many sessions."""
     rng = np.random.default_rng(seed)
-    world, law = draw_unit_at_room(rng), law_of(kind, rng)
-    unit = Unit(world, law, LAG if kind == LOOSE else 0.0)
-    warm = (ROOM, *rng.uniform(COLDEST, WARMEST, learned - 1))
-    seen = [unit.at(float(t), i, rng) for i, t in enumerate(warm)]
-    last = unit.at(WARM, learned, rng).calibration
-    changed, name = stepped(world, rng)
-    moved = Unit(changed, law, unit.lag).at(WARM, learned, rng)
-    steps, reference = _steps(seen), seen[0].calibration
-    sound = judge(last, reference, TOLERANCES, steps=steps)
+    unit = _draw(kind, rng)
+    seen, last = _before(unit, learned, rng), unit.at(WARM, learned, rng)
+    changed, name = stepped(unit.world, rng)
+    moved = Unit(changed, unit.law, unit.lag).at(WARM, learned, rng)
+    stayed = _stayed(unit.world, changed, learned // 2, rng) if kind == NONE else ()
+    scene = Scene(unit, seen, last, moved, name, stayed)
+    as_measured = _is_unfit(judge(last.calibration, seen[0].calibration, TOLERANCES))
+    return Judged(as_measured, _answer(scene, ()), _answer(scene, laws))
+
+
+def _answer(scene: Scene, laws: Sequence[TypeLaw]) -> Answer:
+    steps, reference = _steps(scene.seen, laws), scene.seen[0].calibration
+    sound = judge(scene.last.calibration, reference, TOLERANCES, steps=steps)
     taken = [(j, own) for j in sound if (own := j.temperature_correction) is not None]
-    return Judged(
-        as_measured=_is_unfit(judge(last, reference, TOLERANCES)),
+    moved = judge(scene.moved.calibration, reference, TOLERANCES, steps=steps)
+    return Answer(
         by_law=_is_unfit(sound),
         undecided=not _is_unfit(sound) and any(j.verdict == "undecidable" for j in sound),
-        taken=len(taken),
         covered=tuple(abs(own.corrected) <= own.expanded for _, own in taken),
         shares=tuple(own.expanded / j.tolerance for j, own in taken),
-        found=_moved(judge(moved.calibration, reference, TOLERANCES, steps=steps), name) in UNFIT,
-        excused=kind == NONE and _is_excused(world, changed, (name, learned // 2), rng),
+        found=_moved(moved, scene.name) in UNFIT,
+        excused=bool(scene.stayed) and _is_excused(scene, laws),
     )
 
 
-def _is_excused(world: Session, changed: Session, of: tuple[str, int], rng: np.random.Generator) -> bool:
-    """Whether a sensor that moved when the room became warmer for good passes in the last session there; ``of``: its
-    name, and how many sessions came before that."""
-    nothing, (name, half) = np.zeros((2, world.unit.size, 2)), of
+def _is_excused(scene: Scene, laws: Sequence[TypeLaw]) -> bool:
+    """Whether a sensor that moved when the room became warmer for good passes in the last session there."""
+    *seen, last = scene.stayed
+    found = judge(last.calibration, seen[0].calibration, TOLERANCES, steps=_steps(seen, laws))
+    return _moved(found, scene.name) not in UNFIT
+
+
+def _stayed(world: Session, changed: Session, half: int, rng: np.random.Generator) -> tuple[Seen, ...]:
+    """So many sessions at 20 °C, and one more at 35 °C of the unit changed."""
+    nothing = np.zeros((2, world.unit.size, 2))
     before = [Unit(world, nothing, 0.0).at(ROOM + rng.normal(0, 1), i, rng) for i in range(half)]
     after = [Unit(changed, nothing, 0.0).at(WARM + rng.normal(0, 1), half + i, rng) for i in range(half + 1)]
-    seen, last = [*before, *after[:-1]], after[-1]
-    return _moved(judge(last.calibration, seen[0].calibration, TOLERANCES, steps=_steps(seen)), name) not in UNFIT
+    return (*before, *after)
 
 
-def _steps(seen: Sequence[Seen]) -> Steps:
+def _steps(seen: Sequence[Seen], laws: Sequence[TypeLaw]) -> Steps:
     first: Calibration = seen[0].calibration
-    return temperature_steps(seen, first, (seen[0].celsius, WARM), TOLERANCES)
+    return temperature_steps(seen, first, (seen[0].celsius, WARM), TOLERANCES, laws)
 
 
 def _is_unfit(found: Sequence[ParameterJudgement]) -> bool:
@@ -154,23 +211,24 @@ Answers = dict[tuple[str, int], list[Judged]]
 def rows(answers: Answers) -> Iterator[tuple[str, ...]]:
     """Of the table."""
     for (kind, learned), units in answers.items():
-        shares = [share for one in units for share in one.shares]
-        yield (
-            kind,
-            str(learned),
-            str(rate([one.as_measured for one in units])),
-            str(rate([one.by_law for one in units])),
-            str(rate([one.undecided for one in units])),
-            str(rate([one.found for one in units])),
-            str(rate([mark for one in units for mark in one.covered])),
-            f"{np.median(shares):.2f} T" if shares else "–",
-            str(rate([one.excused for one in units])) if kind == NONE else "–",
-        )
+        as_measured = str(rate([one.as_measured for one in units]))
+        for whose, said in (("–", [one.own for one in units]), (str(TYPE_UNITS), [one.typed for one in units])):
+            yield kind, str(learned), whose, as_measured, *_row(kind, said)
+
+
+def _row(kind: str, said: Sequence[Answer]) -> Iterator[str]:
+    shares = [share for one in said for share in one.shares]
+    yield str(rate([one.by_law for one in said]))
+    yield str(rate([one.undecided for one in said]))
+    yield str(rate([one.found for one in said]))
+    yield str(rate([mark for one in said for mark in one.covered])) if shares else "–"
+    yield f"{np.median(shares):.2f} T" if shares else "–"
+    yield str(rate([one.excused for one in said])) if kind == NONE else "–"
 
 
 COLUMNS = (
-    "law", "sessions before", "unfit as measured", "unfit by the law", "undecided by it", "150 µg moved, found by it",
-    "U covers", "median U", "moved with the room, excused",
+    "law", "sessions before", "units of the type", "unfit as measured", "unfit by the law", "undecided by it",
+    "150 µg moved, found by it", "U covers", "median U", "moved with the room, excused",
 )  # fmt: skip
 
 
@@ -180,8 +238,10 @@ def section(answers: Answers, command: str) -> str:
         f"{HEADING}\n\nMade by `{command}`. The reference is measured at {ROOM:.0f} °C, the other sessions before "
         f"between {COLDEST:.0f} and {WARMEST:.0f} °C, the judged one at {WARM:.0f} °C; nothing but temperature has "
         "changed. Without a law, or with fewer than six sessions before, a unit is judged as measured, with its "
-        f"reservation. *{LOOSE.capitalize()}*: a fifth of a parabola's bend, sensors {LAG:g} °C (one sigma) off the "
-        "stated temperature. U is that of the corrected change. *Moved with the room*: a bias moves by 150 µg when the "
+        f"reservation. *Units of the type*: with the laws of a type, learned from {TYPE_UNITS} other units with "
+        f"{TYPE_SESSIONS} sessions each, which do with four sessions before. "
+        f"*{LOOSE.capitalize()}*: a fifth of a parabola's bend, sensors {LAG:g} °C (one sigma) off the stated "
+        "temperature. U is that of the corrected change. *Moved with the room*: a bias moves by 150 µg when the "
         "room becomes 15 °C warmer for good.\n\n"
         f"{table(COLUMNS, rows(answers))}\n"
     )
@@ -201,8 +261,12 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
+        kinds = tuple(dict.fromkeys(kind for kind, _ in CASES))
+        laws = dict(zip(kinds, pool.map(partial(learned_laws, seed=options.seed), kinds), strict=True))
         answers = {
-            case: list(pool.map(partial(judged, *case), [(options.seed, i, k) for k in range(options.units)]))
+            case: list(
+                pool.map(partial(judged, *case, laws[case[0]]), [(options.seed, i, k) for k in range(options.units)])
+            )
             for i, case in enumerate(CASES)
         }
     text = section(answers, f"python -m benchmarks.temperature_law --units {options.units} --seed {options.seed}")

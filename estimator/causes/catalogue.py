@@ -30,6 +30,7 @@ CATALOGUE: tuple[Cause, ...] = (
     environment.TemperatureRate(),
     lag.ThermalLag(),
     environment.BiasTemperatureCurve(),
+    environment.ScaleTemperatureCurve(),
     vibration.VibrationRectification(),
     sensor.BiasPerPosition(),
     sensor.ReadingOutlier(),

@@ -87,6 +87,22 @@ class ScaleTemperature(SensorCause):
         return column(warmth(setting) * setting.a[:, i])
 
 
+class ScaleTemperatureCurve(BiasTemperatureCurve):
+    """Likewise."""
+
+    identifier = "scale-temperature-curve"
+    equation = "(k1·(T − T̄) + k2·(T − T̄)²)·a"
+    units = ("1/K", "1/K²")
+    contains = frozenset({"scale-temperature"})
+    alike = False
+    sentence = "The scale factor of {sensors} depends on temperature along a curve."
+    advice = "Model the scale factor as a parabola over temperature, or hold the temperature during the session."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 2) (T − T̄)·a, °C·m/s², and (T − T̄)²·a, °C²·m/s²."""
+        return super().term(setting, i, nonlinear) * setting.a[:, i, None]
+
+
 class TemperatureRate(SensorCause):
     identifier = "temperature-rate"
     scope = "environment"

@@ -24,8 +24,9 @@ from estimator.coverage import combined, coverage_factor
 from estimator.health.detection import LEVEL, most_likely
 from estimator.health.deviation import deviation
 from estimator.health.fits import LEAST, Readings
+from estimator.health.type_law import ENOUGH_WITH_TYPE, TypeLaw, worth_by
 from estimator.health.warmth import ENOUGH_TO_BEND, WARMED, chance_of, shown_columns
-from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.results import COVERAGE, Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 from estimator.significance import single_level
 
@@ -56,9 +57,15 @@ class TemperatureStep:
     """°C of the reference."""
     sessions: int
     """That the law was learned from."""
+    lowest: float | None = None
+    """°C of the coldest of them; None of a law from before this was kept."""
+    highest: float | None = None
+    """°C of the warmest."""
+    units: int = 0
+    """Of its type, that it was learned from too."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TemperatureCorrection(TemperatureStep):
     """A change from the reference without what temperature is worth in it."""
 
@@ -85,15 +92,29 @@ class Seen:
     calibration: Calibration
 
 
-def can_tell(learned: Sequence[float], reference: float, now: float) -> bool:
-    """Whether sessions at so many °C may tell what a session at another temperature than its reference owes to it."""
-    if abs(now - reference) < NEAR or len(learned) < ENOUGH_TO_BEND:
+@dataclass(frozen=True, eq=False)
+class History:
+    """One parameter of one sensor over sessions at n temperatures."""
+
+    readings: Readings
+    """With the likeliest change through time acting, of any size."""
+    celsius: Array
+    """(n,) of the sessions."""
+
+
+def can_tell(learned: Sequence[float], reference: float, now: float, enough: int = ENOUGH_TO_BEND) -> bool:
+    """Whether so many sessions, at °C, may tell what one at another temperature than its reference owes to it."""
+    if abs(now - reference) < NEAR or len(learned) < enough:
         return False
     return bool(np.std(learned) >= WARMED and min(abs(now - one) for one in learned) <= REACH)
 
 
 def temperature_steps(
-    learned: Sequence[Seen], reference: Calibration, between: tuple[float, float], tolerances: Mapping[Place, float]
+    learned: Sequence[Seen],
+    reference: Calibration,
+    between: tuple[float, float],
+    tolerances: Mapping[Place, float],
+    laws: Sequence[TypeLaw] = (),
 ) -> dict[Place, TemperatureStep]:
     """What temperature is worth in every parameter whose law is found, by sensor and parameter.
 
@@ -102,7 +123,9 @@ def temperature_steps(
     learned : the sessions before, the reference among them, in order of time.
     between : °C of the reference and of the session.
     tolerances : T by kind of sensor and parameter, relative for scale, else SI.
+    laws : of the unit's type. By them, too, something is taken off where it leaves the parameter decidable.
     """
+    of_type = {(law.kind, law.parameter): law for law in laws}
     cases = [
         (sensor, parameter, allowed)
         for sensor in reference.sensors
@@ -110,16 +133,61 @@ def temperature_steps(
         if (allowed := tolerances.get((sensor.kind, parameter))) is not None
     ]
     level = single_level(LEVEL, max(len(cases), 1))
-    found = {(s.name, parameter): _step(learned, (s, parameter, t), between, level) for s, parameter, t in cases}
+    found = {
+        (s.name, parameter): _step(learned, (s, parameter, t), between, (level, of_type.get((s.kind, parameter))))
+        for s, parameter, t in cases
+    }
     return {place: step for place, step in found.items() if step is not None}
 
 
 def _step(
-    learned: Sequence[Seen], of: tuple[SensorCalibration, str, float], between: tuple[float, float], level: float
+    learned: Sequence[Seen],
+    of: tuple[SensorCalibration, str, float],
+    between: tuple[float, float],
+    by: tuple[float, TypeLaw | None],
 ) -> TemperatureStep | None:
-    origin, parameter, allowed = of
+    """By the type's law where that leaves the parameter decidable, or where the sessions show a law themselves; ``of``
+    a sensor of the reference, a parameter and T, ``by`` the chance of a law where there is none, and the type's."""
+    (origin, parameter, allowed), (level, law) = of, by
+    unit = allowed if law is None else law.tolerance
+    history = history_of(learned, origin, parameter, unit)
+    if history is None or len(history.celsius) < ENOUGH_WITH_TYPE:
+        return None
+    shows = _shows(history, level)
+    if law is None:
+        return _as_step(_own_worth(history, between), unit, between, history.celsius) if shows else None
+    found = worth_by(history.readings, history.celsius, law, between)
+    step = replace(_as_step(found, unit, between, history.celsius), units=law.units)
+    return step if shows or coverage_factor(COVERAGE, step.dof) * step.sigma <= allowed else None
+
+
+def _shows(history: History, level: float) -> bool:
+    """Whether the sessions follow the temperature as chance rarely does."""
+    celsius = history.celsius
+    is_spread = len(celsius) >= ENOUGH_TO_BEND and celsius.std() >= WARMED
+    return bool(is_spread and chance_of(history.readings, celsius) < level)
+
+
+def _own_worth(history: History, between: tuple[float, float]) -> tuple[float, float, float | None]:
+    celsius = history.celsius
+    columns, step = shown_columns(celsius), np.array(between) - celsius.mean()
+    return _worth(history.readings, columns, np.array([step[1] - step[0], step[1] ** 2 - step[0] ** 2]))
+
+
+def _as_step(
+    found: tuple[float, float, float | None], allowed: float, between: tuple[float, float], celsius: Array
+) -> TemperatureStep:
+    """``found``: worth and its variance in tolerances, and degrees of freedom."""
+    worth, variance, dof = found
+    span = float(celsius.min()), float(celsius.max())
+    u = float(np.sqrt(variance))
+    return TemperatureStep(worth * allowed, u * allowed, dof, between[1], between[0], len(celsius), *span)
+
+
+def history_of(learned: Sequence[Seen], origin: SensorCalibration, parameter: str, allowed: float) -> History | None:
+    """A parameter of a sensor over sessions, in tolerances; None where none of them tells it."""
     rows = [row for one in learned if (row := _row(one, origin, parameter)) is not None]
-    if len(rows) < ENOUGH_TO_BEND:
+    if not rows:
         return None
     years, celsius, change, sigma = np.array(rows).T
     n = len(years)
@@ -128,12 +196,7 @@ def _step(
     if likely is not None:
         base = np.concatenate([readings.base, likely.column[:, None]], axis=1)
         readings = replace(readings, base=base, now=np.append(_ONE, likely.column[-1]))
-    if celsius.std() < WARMED or chance_of(readings, celsius) >= level:
-        return None
-    columns, step = shown_columns(celsius), np.array(between) - celsius.mean()
-    worth, variance, dof = _worth(readings, columns, np.array([step[1] - step[0], step[1] ** 2 - step[0] ** 2]))
-    u = float(np.sqrt(variance))
-    return TemperatureStep(worth * allowed, u * allowed, dof, between[1], between[0], n)
+    return History(readings, celsius)
 
 
 _ONE = np.ones(1)

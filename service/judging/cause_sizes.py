@@ -25,6 +25,7 @@ INPUTS = {ACCELEROMETER: STANDARD_GRAVITY, GYROSCOPE: EARTH_RATE}
 ACTS_ON = {
     "1": ("scale", "nothing"),
     "1/K": ("scale", "temperature"),
+    "1/K²": ("scale", "temperature²"),
     "1/s": ("scale", "time"),
     "input": ("bias", "nothing"),
     "input/K": ("bias", "temperature"),

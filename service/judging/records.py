@@ -71,6 +71,8 @@ class UnitRecords:
     """Sessions with a diagnosis, whatever their state, and when they were measured."""
     waiting: Mapping[str, datetime]
     """The same of sessions whose diagnosis is asked for."""
+    has_type_laws: bool = False
+    """Whether temperature laws of its type are in force."""
 
 
 @dataclass(frozen=True)

@@ -10,19 +10,23 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from estimator.errors import Problem, ScheduleError
+from estimator.health.temperature_law import NO_STEPS
 from estimator.message import say
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
 from service.ingest.checked import Checked
+from service.judging.covered import CoveredTemperatures, covered
 from service.judging.records import Counted, UnitRecords
 from service.judging.store import Derivations
 from service.sessions.calibrations_store import Calibrations
-from service.sessions.records import PARAMETERS
+from service.sessions.records import PARAMETERS, StoredSession
 from service.sessions.store import Sessions
 from service.sessions.words.advice import too_few
 from service.storage.queries import Store
 from service.units.store import Services, Units, epoch
 
+MOST_EARLIER = 50
+"""Sessions before one whose temperatures count: those of many years."""
 NOTHING_READ: Mapping[tuple[str, int], Calibration] = {}
 
 
@@ -109,6 +113,17 @@ def reference_of(store: Store, unit: int, block: str, programme: str, at: dateti
     """The reference for a session of a block of the unit, by what was measured and when."""
     since, until = Services(store).around(unit, at)
     return EpochReference(Sessions(store).reference(unit, block, since, until, alike(programme)), since)
+
+
+def covered_at(store: Store, session: StoredSession) -> CoveredTemperatures | None:
+    """By the unit's calibrations up to a session; None where there is no reference, or where its is not known."""
+    unit, block = Units(store).key(session.unit), Sessions(store).block(session.id)
+    found = reference_of(store, unit, block, session.programme, session.started_at)
+    if found.session is None:
+        return None
+    earlier = Sessions(store).before(session, found.since, MOST_EARLIER)
+    steps = Sessions(store).temperature_steps((session.id,)).get(session.id, NO_STEPS)
+    return covered(Calibrations(store).get(found.session).residuals, (*earlier, session), steps)
 
 
 def alike(programme: str) -> tuple[str, ...]:

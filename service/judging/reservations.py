@@ -18,12 +18,13 @@ from estimator.diagnosis.results import NoiseScale, Structure
 from estimator.health.detection import LEVEL, warmed
 from estimator.health.fits import Readings
 from estimator.health.prognosis import Track
-from estimator.health.temperature_law import Steps
+from estimator.health.temperature_law import NO_STEPS, Steps
 from estimator.health.warmth import Warmth
 from estimator.results import Calibration, Residuals
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.diagnosis.words.causes import UNKNOWN_CAUSE
 from service.judging.cause_sizes import Size, Yardstick, size_of_cause, size_of_structure
+from service.judging.covered import covered
 from service.judging.judge import judge
 from service.judging.temperature_words import at_about, elsewhere, worth_in
 from service.judging.words import (
@@ -52,9 +53,6 @@ from service.sessions.records import StoredSession
 from service.sessions.words.noise import wrong_errors
 from service.types.records import UnitType
 
-WITHIN = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
-"""Verdicts by which temperature did not do much."""
-
 
 @dataclass(frozen=True, eq=False)
 class Covered:
@@ -81,14 +79,14 @@ class Covered:
         return abs(self.outside) > LEAST_DIFFERENCE
 
 
-def covered_by(session: StoredSession, reference: Residuals, earlier: Iterable[StoredSession]) -> Covered | None:
-    """The temperatures that a reference and earlier sessions cover; None where nothing says them."""
-    if session.temperature is None or reference.temperature is None:
+def covered_by(
+    session: StoredSession, reference: Residuals, earlier: Iterable[StoredSession], steps: Steps = NO_STEPS
+) -> Covered | None:
+    """The temperatures that a reference, earlier sessions and the session's law cover; None where nothing says them."""
+    known = covered(reference, earlier, steps)
+    if session.temperature is None or known is None:
         return None
-    own = np.asarray(reference.temperature)
-    passed = [s.temperature for s in earlier if s.temperature is not None and s.verdict in WITHIN]
-    every = np.array([*own, *passed])
-    return Covered(float(every.min()), float(every.max()), float(own.mean()), session.temperature)
+    return Covered(known.lowest, known.highest, known.reference, session.temperature)
 
 
 def worth_of(covered: Covered) -> tuple[Size, ...] | None:

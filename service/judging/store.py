@@ -40,6 +40,7 @@ from service.sessions.tables import CalibrationRow, CommonMotionRow, DecisionRow
 from service.stands.tables import StandRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
+from service.types.tables import ToleranceRow, UnitTypeRow
 from service.units.tables import ServiceRow, UnitRow
 
 UNIT: BindParameter[int] = bindparam("unit")
@@ -62,7 +63,16 @@ CHOICES: Select[*tuple[Any, ...]] = select(
     literal_column("'choice'"), ReferenceChoiceRow.session_id, null(), null(), ReferenceChoiceRow.at,
     ReferenceChoiceRow.id, *NOTHING,
 ).where(ReferenceChoiceRow.unit_id == UNIT)  # fmt: skip
-ALL: CompoundSelect[*tuple[Any, ...]] = union_all(SESSIONS, BREAKS, CHOICES)
+LAWS: Select[*tuple[Any, ...]] = (
+    select(literal_column("'laws'"), null(), null(), null(), null(), null(), *NOTHING)
+    .join_from(UnitRow, UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+    .join(
+        ToleranceRow,
+        (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
+    )
+    .where(UnitRow.id == UNIT, ToleranceRow.temperature_laws.is_not(None))
+)
+ALL: CompoundSelect[*tuple[Any, ...]] = union_all(SESSIONS, BREAKS, CHOICES, LAWS)
 
 
 def unit_records(transaction: Session, unit: int) -> UnitRecords:
@@ -77,6 +87,7 @@ def unit_records(transaction: Session, unit: int) -> UnitRecords:
         references=frozenset(row.id for row in sessions if row.is_reference),
         diagnosed={row.id: row.at for row in sessions if row.diagnosed},
         waiting={row.id: row.at for row in sessions if row.waiting},
+        has_type_laws=any(row.what == "laws" for row in rows),
     )
 
 

@@ -1,7 +1,14 @@
 """What temperature does to a verdict, in words."""
 
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
 from estimator.health.temperature_law import TemperatureCorrection
 from estimator.message import joined, say
+from estimator.session import Array
+from estimator.wording import counted
+from service.judging.covered import CoveredTemperatures
 from service.kit.measures import HARD, PARAMETER_NAMES, THIN, decimals, deviation_measure, in_measure, measured, number
 from service.sessions.decision import Decision
 
@@ -11,31 +18,46 @@ def law_in_words(decision: Decision, step: TemperatureCorrection) -> str:
     as_measured, corrected = _changes(decision, step)
     return say(
         "{sensor} {parameter}: change of {measured} measured at {temperature}, {corrected} at {reference} by the law "
-        "of {sessions} sessions.",
+        "of {learned}.",
         sensor=decision.sensor,
         parameter=PARAMETER_NAMES[decision.parameter],
         measured=as_measured,
         temperature=in_degrees(step.temperature),
         corrected=corrected,
         reference=in_degrees(step.reference_temperature),
-        sessions=step.sessions,
+        learned=_learned(step),
     )
+
+
+def _learned(step: TemperatureCorrection) -> str:
+    """``7 sessions``, or with units of the type."""
+    sessions = counted(step.sessions, "session")
+    if not step.units:
+        return sessions
+    return say("{sessions} and {units} of its type", sessions=sessions, units=counted(step.units, "unit"))
 
 
 def laws_in_words(decisions: tuple[Decision, ...]) -> tuple[str, ...]:
-    """One sentence on everything that temperature was taken off of in a session; none where it was not."""
+    """One sentence on what temperature was taken off of in a session, what it was worth most in first; none where it
+    was not."""
     taken = [(one, step) for one in decisions if (step := one.temperature_correction) is not None]
+    taken.sort(key=lambda pair: -abs(pair[1].worth) / pair[0].tolerance)
     if not taken:
         return ()
-    step = taken[0][1]
+    step = max((own for _, own in taken), key=lambda own: (own.units, own.sessions))
     sentence = say(
-        "Measured at {temperature} and judged at {reference}, by the law of {sessions} sessions: {changes}.",
+        "Measured at {temperature} and judged at {reference}, by the law of {learned}: {changes}.",
         temperature=in_degrees(step.temperature),
         reference=in_degrees(step.reference_temperature),
-        sessions=max(own.sessions for _, own in taken),
-        changes=joined("; ", (_short(*pair) for pair in taken)),
+        learned=_learned(step),
+        changes=joined("; ", (*(_short(*pair) for pair in taken[:MOST_SAID]), *_rest(taken[MOST_SAID:]))),
     )
     return (sentence,)
+
+
+def _rest(taken: Sequence[object]) -> Iterator[str]:
+    if taken:
+        yield say("{rest} more", rest=len(taken))
 
 
 def _short(decision: Decision, step: TemperatureCorrection) -> str:
@@ -77,6 +99,28 @@ def _between(lowest: float, highest: float) -> str:
     """``19–22 °C``."""
     low, high = number(lowest, 0), number(highest, 0)
     return in_degrees(lowest) if low == high else f"{low}–{in_degrees(highest)}"
+
+
+MOST_SAID = 4
+"""Parameters that a sentence lists."""
+CONSTANT = 0.05
+"""°C: a smaller range is said as one number."""
+
+
+def span_in_words(celsius: Array | None) -> str:
+    """``19.8 to 22.3 °C``, of a session's readings."""
+    return "not recorded" if celsius is None else _span(float(np.min(celsius)), float(np.max(celsius)))
+
+
+def covered_in_words(covered: CoveredTemperatures | None) -> str:
+    """The same of what a unit's calibrations cover."""
+    return "not known" if covered is None else _span(covered.lowest, covered.highest)
+
+
+def _span(low: float, high: float) -> str:
+    if high - low <= CONSTANT:
+        return f"{number(low, 1)}{THIN}°C"
+    return say("{low} to {high}{thin_space}°C", low=number(low, 1), high=number(high, 1), thin_space=THIN)
 
 
 def at_about(celsius: float) -> str:

@@ -12,6 +12,7 @@ from service.fleet.wanted_store import Announcements
 from service.groups.records import Level
 from service.groups.sections import MOST_FOUND, found_line, group_section
 from service.ingest import is_own_layout
+from service.judging.reference import covered_at
 from service.judging.usable_reading import usable_of
 from service.kit.arriving_files import where
 from service.kit.limits import in_force
@@ -25,7 +26,7 @@ from service.pages.saved import saved
 from service.pages.session.pages import session_page
 from service.pages.unit.pages import unit_page
 from service.pages.unit.remarks import remarks
-from service.pages.unit.report import unit_report
+from service.pages.unit.report import covered_now, unit_report
 from service.papers.certified import traceability_of
 from service.papers.found_and_left import found_and_left
 from service.papers.session_report import recent_history, session_report
@@ -121,6 +122,7 @@ def show_unit(
             follow=SOONEST if is_judged_later or (is_pending and settings.diagnosis_workers) else None,
             said=remarks(serial, "", (), report.said.files, in_force().attached),
             history_of_custody=Register(store).history(serial),
+            temperatures=covered_now(store, report),
         ),
     )
 
@@ -151,6 +153,7 @@ def show_session(
             said.files,
             in_force().attached,
         ),
+        temperatures=covered_at(store, report.session),
     )
     return render(request, "session.html", page)
 

@@ -11,7 +11,8 @@ from estimator.session import AS_LEFT, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis
 from service.errors import ConflictError
 from service.ingest import read_upload
-from service.judging.reference import reference_of
+from service.judging.covered import CoveredTemperatures
+from service.judging.reference import covered_at, reference_of
 from service.judging.words import verdict_in_words
 from service.models.records import Model, ModelRevision
 from service.models.rules import in_force, model_of
@@ -94,6 +95,8 @@ class StatedSession:
     traceability: Traceability
     software: str
     """Version."""
+    temperatures: CoveredTemperatures | None
+    """That the unit's calibrations up to the session cover; None where nothing says them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,6 +157,7 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
             traceability=traceability_of(store, stored),
             calibration_json=Calibrations(store).json(id),
             software=VERSION,
+            temperatures=covered_at(store, stored),
         )
 
 

@@ -15,6 +15,8 @@ from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array, CalibrationSession
 from service.errors import NotFoundError
 from service.ingest import read_upload
+from service.judging.covered import CoveredTemperatures
+from service.judging.reference import covered_at
 from service.kit.measures import COVERAGE
 from service.models.records import ModelRevision
 from service.models.store import Models, evidence_to_dict
@@ -53,6 +55,8 @@ class Corrected:
     """Accepted causes in the estimation of the parameters."""
     steps: Steps
     """What the session's temperature is worth, where a law says it."""
+    temperatures: CoveredTemperatures | None
+    """That the unit's calibrations up to this one cover."""
 
 
 def corrected(storage: Storage, id: str) -> Corrected:
@@ -61,13 +65,14 @@ def corrected(storage: Storage, id: str) -> Corrected:
         stored, calibration = Sessions(store).get(id), Calibrations(store).get(id)
         revisions = tuple(r for r in Models(store).of_session(id) if r.id <= stored.revision)
         steps = Sessions(store).temperature_steps((id,)).get(id, NO_STEPS)
+        temperatures = covered_at(store, stored)
     if stored.programme not in CALIBRATIONS:
         raise NotFoundError(f"Session {id!r} gives no correction: {stored.programme} does not calibrate a block.")
     session = averaged(read_upload(storage.files.content(stored.sha256), stored.filename))
     correction = correction_of(session, calibration)
     if not correction.blocks:
         raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(correction))}.")
-    return Corrected(stored, calibration, session, correction, revisions, steps)
+    return Corrected(stored, calibration, session, correction, revisions, steps, temperatures)
 
 
 def correction_document(storage: Storage, id: str) -> Json:
@@ -81,6 +86,7 @@ def correction_document(storage: Storage, id: str) -> Json:
         "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in result.found.blocks if _assumed(block)],
         "extended_model": [_revision(revision) for revision in result.revisions],
         "temperature_laws": [_law(*place, step) for place, step in result.steps.items()],
+        "temperatures_covered": None if result.temperatures is None else vars(result.temperatures),
     }
 
 
@@ -224,4 +230,7 @@ def _law(sensor: str, parameter: str, step: TemperatureStep) -> Json:
         "sigma": step.sigma,
         "unit": "relative" if parameter == "scale" else "SI",
         "sessions": step.sessions,
+        "lowest_c": step.lowest,
+        "highest_c": step.highest,
+        "units": step.units,
     }

@@ -5,6 +5,7 @@ from datetime import datetime
 from pydantic import BaseModel, ConfigDict, Field
 
 from estimator.json_object import Json
+from service.judging.covered import CoveredTemperatures
 from service.papers.records import Meaning
 from service.sessions.decision import Verdict
 from service.web.fields import TEXT, LongText, NonBlankName, Text
@@ -47,6 +48,9 @@ class CorrectionDocument(BaseModel):
     )
     temperature_laws: list[Json] = Field(
         description="What the session's temperature is worth, by the unit's law; the formula does not correct it."
+    )
+    temperatures_covered: CoveredTemperatures | None = Field(
+        None, description="That the unit's calibrations up to this one cover; null where the reference says none."
     )
 
 

@@ -191,6 +191,7 @@ POST /units/{{serial:path}}/retire
 POST /units/{{serial:path}}/return
 POST /stands/{{name:path}}/certificates
 POST /unit-types/{{name:path}}/tolerances
+POST /unit-types/{{name:path}}/laws
 POST /unit-types/{{name:path}}/tolerances/preview
 POST {SESSION}/withdraw
 POST {SESSION}/certificate/signatures
@@ -214,6 +215,7 @@ POST {API}/flags/{{id}}/resolve
 POST {API}/flags/{{id}}/assign
 POST {API}/flags/assign
 PUT {API}/unit-types/{{name:path}}
+PUT {API}/unit-types/{{name:path}}/temperature-laws
 POST {API}/unit-types/{{name:path}}/preview
 PUT {API}/stands/{{name:path}}/certificate
 """

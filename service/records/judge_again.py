@@ -10,6 +10,8 @@ from hashlib import sha256
 
 from estimator.errors import SessionError
 from estimator.health.temperature_law import NO_STEPS, Seen, Steps, can_tell, temperature_steps
+from estimator.health.type_law import ENOUGH_WITH_TYPE
+from estimator.health.warmth import ENOUGH_TO_BEND
 from estimator.message import say
 from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
@@ -82,11 +84,12 @@ def placed(
     breaks: Sequence[datetime],
     chosen: Sequence[str],
     is_blind: Callable[[Counted], bool],
+    enough: int = ENOUGH_TO_BEND,
 ) -> tuple[Place, ...]:
     """Every accepted session with its reference, in order of time.
 
     ``chosen`` are the sessions that engineers chose, oldest choice first; ``is_blind`` says of a session whether it
-    gives no uncertainty that others could be judged with.
+    gives no uncertainty that others could be judged with; ``enough`` sessions tell a law over temperature.
     """
     ordered = sorted(sessions, key=_moment)
     groups: dict[Group, list[Counted]] = {}
@@ -99,13 +102,13 @@ def placed(
     def place(one: Counted) -> Place:
         group = _group(one, breaks)
         reference = references.get(group)
-        learned = () if reference is None else _learned(one, reference, groups[group])
+        learned = () if reference is None else _learned(one, reference, groups[group], enough)
         return Place(one, reference, _since(one.at, breaks), one.id in rank, learned)
 
     return tuple(place(one) for one in ordered)
 
 
-def _learned(one: Counted, reference: Counted, group: Sequence[Counted]) -> tuple[Counted, ...]:
+def _learned(one: Counted, reference: Counted, group: Sequence[Counted], enough: int) -> tuple[Counted, ...]:
     """The sessions of its group, in order of time, before one, and its reference, that may tell what its temperature is
     worth."""
     if one.temperature is None or reference.temperature is None or one.programme == IN_SERVICE or one is reference:
@@ -114,7 +117,7 @@ def _learned(one: Counted, reference: Counted, group: Sequence[Counted]) -> tupl
     before = [s for s in earlier if s.temperature is not None and s is not reference]
     own = sorted([reference, *before[-MOST_LEARNED:]], key=_moment)
     warm = [s.temperature for s in own if s.temperature is not None]
-    return tuple(own) if can_tell(warm, reference.temperature, one.temperature) else ()
+    return tuple(own) if can_tell(warm, reference.temperature, one.temperature, enough) else ()
 
 
 def _moment(one: Counted) -> Moment:
@@ -202,7 +205,8 @@ class Foreseen:
 def places_of(known: KnownUnit) -> tuple[Place, ...]:
     """The unit's accepted sessions, each with its reference."""
     own = known.records
-    return placed(own.counted, own.breaks, own.choices, known.is_blind)
+    enough = ENOUGH_WITH_TYPE if own.has_type_laws else ENOUGH_TO_BEND
+    return placed(own.counted, own.breaks, own.choices, known.is_blind, enough)
 
 
 def judging(
@@ -237,7 +241,7 @@ def _outcome(known: KnownUnit, by: Judging, place: Place) -> Rejudgement:
 
 
 def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: UnitType) -> Steps:
-    """What the temperature of a session is worth, by the sessions before it."""
+    """What the temperature of a session is worth, by the sessions before it and the laws of its type."""
     if not place.learned or place.reference is None:
         return NO_STEPS
     start = place.learned[0].at
@@ -249,7 +253,8 @@ def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: Un
     between = place.reference.temperature, place.session.temperature
     assert between[0] is not None
     assert between[1] is not None
-    return temperature_steps(seen, reference, (between[0], between[1]), tolerances_of(unit_type))
+    steps, laws = (between[0], between[1]), unit_type.temperature_laws
+    return temperature_steps(seen, reference, steps, tolerances_of(unit_type), laws)
 
 
 def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitType) -> Rejudgement:

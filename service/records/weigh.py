@@ -5,14 +5,13 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.health.temperature_law import Steps
-from estimator.results import Calibration
 from estimator.session import CalibrationSession
 from service.diagnosis.records import Diagnosed
 from service.diagnosis.store import Diagnoses
 from service.ingest import read_upload
 from service.judging.cause_sizes import Yardstick
 from service.judging.records import Counted
-from service.judging.reference import reference_of
+from service.judging.reference import MOST_EARLIER, reference_of
 from service.judging.reservations import (
     UNCHECKED,
     Basis,
@@ -41,9 +40,6 @@ from service.storage.queries import Store
 from service.types.rules import tolerances_of
 from service.types.store import UnitTypes, held_at
 from service.units.store import Units
-
-MOST_EARLIER = 50
-"""Sessions before one whose temperatures count: those of many years."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +80,7 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
     if is_judged and found.session is not None:
         reference, k = Calibrations(store).get(found.session), nominal_factor_of(decisions)
         basis = Basis(reference, unit_type, k, steps_in(decisions))
-        temperatures = _temperatures(store, stored, basis.reference, found.since)
+        temperatures = _temperatures(store, stored, basis, found.since)
     accepted = in_force([r for r in Models(store).of_session(id) if r.id <= stored.revision])
     sensors = Calibrations(store).get(id).sensors if accepted else ()
     return Weighing(
@@ -97,11 +93,10 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
     )
 
 
-def _temperatures(
-    store: Store, session: StoredSession, reference: Calibration, since: datetime | None
-) -> Covered | None:
+def _temperatures(store: Store, session: StoredSession, basis: Basis, since: datetime | None) -> Covered | None:
     """A session's temperature beside those of its unit; with its history where it lies outside them."""
-    seen = covered_by(session, reference.residuals, Sessions(store).before(session, since, MOST_EARLIER))
+    earlier = Sessions(store).before(session, since, MOST_EARLIER)
+    seen = covered_by(session, basis.reference.residuals, earlier, basis.steps)
     if seen is None or not seen.is_far:
         return seen
     unit, at = Units(store).key(session.unit), session.started_at

@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
 from estimator.json_object import Json
+from service.judging.covered import CoveredTemperatures
 from service.judging.records import SaidVerdict, said
 from service.kit.answer import answer
 from service.papers.records import Traceability
@@ -62,6 +63,9 @@ class TemperatureCorrectionSchema(BaseModel):
     temperature: float = Field(description="Of the session, mean, °C.")
     reference_temperature: float = Field(description="Of the reference session, mean, °C.")
     sessions: int = Field(description="How many sessions the law was learned from.")
+    lowest: float | None = Field(None, description="Of the coldest of them, °C; null where it was not kept.")
+    highest: float | None = Field(None, description="Of the warmest, °C.")
+    units: int = Field(0, description="How many units of its type it was learned from too.")
 
 
 class DecisionSchema(BaseModel):
@@ -137,6 +141,9 @@ class SessionReportAnswer(SaidSession):
     does not."""
     traceability: Traceability
     """What the numbers hang on."""
+    temperatures_covered: CoveredTemperatures | None = None
+    """That the unit's calibrations up to this one cover; null where there is no reference, or where its temperature was
+    not recorded."""
 
 
 class SessionPage(Paged):

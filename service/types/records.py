@@ -3,8 +3,11 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from estimator.health.type_law import TypeLaw
 from service.kit.answer import answer
 from service.sessions.decision import Verdict
+
+answer(TypeLaw)
 
 
 @answer
@@ -47,6 +50,8 @@ class UnitType:
     """Longest time from a session to the next calibration."""
     flag_share: float = 0.3
     """Part of the tolerance from which on a change within it has a flag; a smaller one is a remark."""
+    temperature_laws: tuple[TypeLaw, ...] = ()
+    """What the temperature laws of its units are alike in, as far as it is in force."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,7 @@ class ToleranceRevision:
     since: datetime
     tolerances: Tolerances
     gyro_tolerances: Tolerances | None
+    temperature_laws: tuple[TypeLaw, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, Select, bindparam, func, or_, select, update
 from sqlalchemy.orm import aliased
 
+from estimator.health.type_law import TypeLaw
 from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
@@ -15,6 +16,7 @@ from service.fleet.tables import FleetTallyRow
 from service.sessions.decision import Verdict
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import ParameterRow, SessionRow
+from service.storage.json_text import STORED
 from service.storage.queries import Queries
 from service.types.records import ToleranceRevision, Tolerances, TypeUse, UnitType
 from service.types.tables import ToleranceRow, UnitTypeRow
@@ -95,7 +97,8 @@ class UnitTypes(Queries):
         """Every revision of a type's tolerances, oldest first."""
         query = select(ToleranceRow).join(UnitTypeRow).where(UnitTypeRow.name == name).order_by(ToleranceRow.revision)
         return tuple(
-            ToleranceRevision(row.revision, row.since, *_tolerances(row)) for row in self._session.scalars(query)
+            ToleranceRevision(row.revision, row.since, *_tolerances(row), _laws(row))
+            for row in self._session.scalars(query)
         )
 
     def uses(self, name: str | None = None) -> dict[str, TypeUse]:
@@ -142,15 +145,27 @@ class UnitTypes(Queries):
         self._session.flush()
         return self._record(row)
 
-    def revise(self, name: str, tolerances: Tolerances, gyro_tolerances: Tolerances | None, now: datetime) -> UnitType:
-        """Adds the next revision of a type's tolerances; earlier ones stay."""
+    def revise(
+        self,
+        name: str,
+        tolerances: Tolerances,
+        gyro_tolerances: Tolerances | None,
+        now: datetime,
+        laws: tuple[TypeLaw, ...],
+    ) -> UnitType:
+        """Adds the next revision of a type's tolerances and temperature laws; earlier ones stay."""
         row = self._row(name)
         row.revision += 1
-        self._add_tolerances(row, tolerances, gyro_tolerances, now)
+        self._add_tolerances(row, tolerances, gyro_tolerances, now, laws)
         return self._record(row)
 
     def _add_tolerances(
-        self, row: UnitTypeRow, tolerances: Tolerances, gyro_tolerances: Tolerances | None, now: datetime
+        self,
+        row: UnitTypeRow,
+        tolerances: Tolerances,
+        gyro_tolerances: Tolerances | None,
+        now: datetime,
+        laws: tuple[TypeLaw, ...] = (),
     ) -> None:
         self._session.add(
             ToleranceRow(
@@ -159,6 +174,7 @@ class UnitTypes(Queries):
                 since=now,
                 tolerances=asdict(tolerances),
                 gyro_tolerances=None if gyro_tolerances is None else asdict(gyro_tolerances),
+                temperature_laws=[asdict(law) for law in laws] or None,
             )
         )
         self._session.flush()
@@ -209,6 +225,10 @@ def _tolerances(row: ToleranceRow) -> tuple[Tolerances, Tolerances | None]:
     return Tolerances(**row.tolerances), None if gyro is None else Tolerances(**gyro)
 
 
+def _laws(row: ToleranceRow) -> tuple[TypeLaw, ...]:
+    return tuple(STORED.read(TypeLaw, document) for document in row.temperature_laws or ())
+
+
 def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
     """The record of a type with one revision of its tolerances."""
     of_block, gyro = _tolerances(tolerances)
@@ -223,6 +243,7 @@ def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
         revision=tolerances.revision,
         maximum_interval_days=row.maximum_interval_days,
         flag_share=row.flag_share,
+        temperature_laws=_laws(tolerances),
     )
 
 

@@ -34,3 +34,5 @@ class ToleranceRow(Base):
     since: Mapped[datetime]
     tolerances: Mapped[Json]
     gyro_tolerances: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
+    temperature_laws: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
+    """`TypeLaw`, by which sessions are judged beside the tolerances; NULL where none hold."""

@@ -68,6 +68,7 @@ CATALOGUE = {
     "thermal-lag": _hidden(1, SENSOR, "temperature", "time", free=2),
     "vibration-rectification": _hidden(1, SENSOR, "vibration", "accelerometers"),
     "bias-temperature-curve": _hidden(2, SENSOR, "temperature"),
+    "scale-temperature-curve": _hidden(2, SENSOR, "temperature"),
 }
 
 DISCRETE = frozenset({"positions-swapped", "channels-swapped", "sign-reversed", "runs-swapped", "beta-reversed"})

@@ -70,6 +70,11 @@ def bias_temperature_curve(session: Session, effect: Effect, n: Array, a: Array,
     return sum(y * np.prod([(T - u) / (x - u) for u in at if u != x], axis=0) for x, y in zip(at, through, strict=True))
 
 
+def scale_temperature_curve(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: the same parabola of the scale factor."""
+    return bias_temperature_curve(session, effect, n, a, force) * a
+
+
 def scale_temperature(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
     """(R,) m/s² or rad/s: k·(T − mean T)·a."""
     return effect.k * centred(session.schedule.temperature) * a
@@ -180,6 +185,7 @@ INPUT = {
     "cross-coupling": cross_coupling,
     "bias-temperature": bias_temperature,
     "bias-temperature-curve": bias_temperature_curve,
+    "scale-temperature-curve": scale_temperature_curve,
     "scale-temperature": scale_temperature,
     "bias-ramp": bias_ramp,
     "warm-up": warm_up,

@@ -33,6 +33,7 @@ MICRO_G = 1e6 / STANDARD_GRAVITY
 AMPLITUDE_MEASURES = {
     "1": PPM,
     "1/K": Measure("ppm/K", 1e6),
+    "1/K²": Measure("ppm/K²", 1e6),
     "1/s": Measure("ppm/h", 1e6 * PER_HOUR),
     "m/s²": Measure("µg", MICRO_G),
     "m/s²/K": Measure("µg/K", MICRO_G),

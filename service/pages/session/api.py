@@ -10,6 +10,7 @@ from estimator.message import say
 from service.errors import NotFoundError
 from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.judging.records import said
+from service.judging.reference import covered_at
 from service.papers.certified import traceability_of
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
@@ -120,6 +121,7 @@ def read_session(id: SessionId, store: Reading) -> SessionReportAnswer:
         common_motion=tuple(map(CommonMotionSchema.model_validate, Sessions(store).motions(id))),
         stand_certificate_expired=chain.has_expired,
         traceability=chain,
+        temperatures_covered=covered_at(store, session),
     )
 
 

@@ -10,9 +10,10 @@ from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS
 from service.diagnosis.sections import DiagnosisLine, diagnosis_line
 from service.diagnosis.words.causes import cause_on
+from service.judging.covered import CoveredTemperatures
 from service.judging.parity_words import agreement_in_words
 from service.judging.sections import ParityView, parity_view
-from service.judging.temperature_words import laws_in_words
+from service.judging.temperature_words import covered_in_words, laws_in_words, span_in_words
 from service.kit.measures import (
     HARD,
     THIN,
@@ -93,6 +94,10 @@ class SessionView:
     rule: str
     coverage: str
     size: str
+    temperature: str
+    """Of its readings."""
+    covered: str
+    """The temperatures that the unit's calibrations up to it cover."""
     switched_on: str
     """How long before the first reading; empty where the file does not say."""
     diagnosis: DiagnosisLine
@@ -134,6 +139,7 @@ def session_page(
     computed: Sequence[int] = (),
     said: Remarks | None = None,
     retired: str = "",
+    temperatures: CoveredTemperatures | None = None,
 ) -> SessionView:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
@@ -158,6 +164,8 @@ def session_page(
         rule=decisions[0].rule if decisions else "",
         coverage=coverage_in_words(calibration, coverage),
         size=size_in_words(report.session.size),
+        temperature=span_in_words(calibration.residuals.temperature),
+        covered=covered_in_words(temperatures),
         switched_on=switched_on(report.session.time_since_power_on),
         diagnosis=diagnosis_line(diagnosis, failed),
         gives_correction=report.session.programme in CALIBRATIONS,

@@ -3,7 +3,9 @@
 from dataclasses import fields
 
 from fastapi import APIRouter
+from pydantic import BaseModel, ConfigDict, Field
 
+from service.pages.type.laws import put_in_force
 from service.pages.type.tolerances import Watch, preview_tolerances, set_tolerances
 from service.pages.unit.schemas import NewTolerances, TolerancesSchema, UnitTypePage
 from service.people.admission import PersonOf
@@ -11,7 +13,7 @@ from service.people.dependencies import CREW, StorageOf
 from service.types.records import TolerancePreview, Tolerances, UnitType, WantedTolerances
 from service.types.store import UnitTypes
 from service.web.dependencies import Now, Reading, SettingsOf
-from service.web.fields import TypeName, WindowOf
+from service.web.fields import Name, Reason, TypeName, WindowOf
 from service.web.problem_document import errors
 
 router = APIRouter(prefix="/unit-types", tags=["unit types"])
@@ -22,6 +24,25 @@ def list_unit_types(store: Reading, window: WindowOf) -> UnitTypePage:
     """Unit types, by name."""
     found = UnitTypes(store).page(window.offset, window.limit)
     return UnitTypePage(unit_types=found, **window.place(len(found)))
+
+
+class WantedTypeLaws(BaseModel):
+    """Whether a type's temperature laws are to hold."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    in_force: bool = Field(description="True learns them anew from the sessions accepted now; false takes them back.")
+    by: Name = Field(description="Who says so.")
+    why: Reason = Field(description="Why.")
+
+
+@router.put("/{name:path}/temperature-laws", responses=errors(400, 404, 409, 422))
+def set_type_laws(name: TypeName, new: WantedTypeLaws, storage: StorageOf, now: Now, person: PersonOf) -> UnitType:
+    """Learn them from the type's sessions, or take them back: from the next session on, with a revision of the type.
+
+    409 where fewer than five units with ten sensors were measured six times at different temperatures.
+    """
+    return put_in_force(storage, name, now, who=person.signs(new.by), why=new.why, wanted=new.in_force)
 
 
 @router.get("/{name:path}", responses=errors(404, 422))

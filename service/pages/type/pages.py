@@ -29,6 +29,7 @@ from service.models.sections import AcceptedCause, accepted_causes
 from service.models.store import Models
 from service.pages.fleet.pages import FleetRow, fleet_row
 from service.pages.fleet.view import FleetView
+from service.pages.type.laws import laws_in_words, put_in_force
 from service.pages.type.tolerances import (
     ToleranceField,
     days,
@@ -161,6 +162,8 @@ class RevisionRow:
     who: str
     limits: tuple[tuple[str, str], ...]
     """What is allowed of what."""
+    laws: str
+    """From how many units the temperature laws in force are."""
 
 
 @dataclass(frozen=True)
@@ -184,6 +187,8 @@ class TypePage:
     """The longest interval, in the form."""
     share: str
     """Of the tolerance, %, from which on a change has a flag, in the form."""
+    laws: tuple[str, ...]
+    """Over temperature, that are in force."""
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:
@@ -211,6 +216,7 @@ def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage
         fields=tolerance_fields(known),
         days=days(known),
         share=share(known),
+        laws=laws_in_words(known),
     )
 
 
@@ -241,7 +247,8 @@ def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
 def _revision(one: ToleranceRevision, known: UnitType, report: TypeReport) -> RevisionRow:
     who = report.setters.get(one.since, DEFAULTS if one.revision == 1 else "not recorded")
     held = replace(known, tolerances=one.tolerances, gyro_tolerances=one.gyro_tolerances)
-    return RevisionRow(one.revision, one.since, who, _limits(held))
+    units = max((law.units for law in one.temperature_laws), default=0)
+    return RevisionRow(one.revision, one.since, who, _limits(held), counted(units, "unit") if units else "none")
 
 
 def _limits(known: UnitType) -> tuple[tuple[str, str], ...]:
@@ -304,6 +311,15 @@ def set_limits(
     limits, watch = (asked.tolerances, asked.gyro_tolerances), asked.watch
     set_tolerances(storage, name, *limits, now, watch=watch, who=by, why=why, seen=seen)
     return RedirectResponse(f"/unit-types/{quote(name)}#tolerances", SEE_OTHER)
+
+
+@router.post("/unit-types/{name:path}/laws")
+def set_laws(
+    name: Key, by: By, why: Why, wanted: Annotated[bool, Form()], *, storage: StorageOf, now: Now
+) -> RedirectResponse:
+    """The type's temperature laws from the next session on, learned from its sessions now, or none."""
+    put_in_force(storage, name, now, who=by, why=why, wanted=wanted)
+    return RedirectResponse(f"/unit-types/{quote(name)}#laws", SEE_OTHER)
 
 
 @router.post("/unit-types/{name:path}/tolerances/preview")

@@ -305,7 +305,7 @@ def set_tolerances(
                 WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, now)
         if (current.tolerances, current.gyro_tolerances) != (tolerances, gyro_tolerances):
             before = asdict(current)
-            current = UnitTypes(store).revise(name, tolerances, gyro_tolerances, now)
+            current = UnitTypes(store).revise(name, tolerances, gyro_tolerances, now, current.temperature_laws)
             Audit(store).write(now, who, "tolerances", name, {"before": before, **asdict(current), **said})
     date(storage, Deriving(storage.files, COVERAGE, now), *undated)
     return current

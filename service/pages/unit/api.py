@@ -14,7 +14,7 @@ from service.languages.catalogue import said_in
 from service.languages.language import asked
 from service.outlook.reading import outlook_of
 from service.outlook.records import OutlookAnswer, RiskPoint
-from service.pages.unit.report import unit_report
+from service.pages.unit.report import covered_now, unit_report
 from service.pages.unit.schemas import (
     HistoryAsked,
     HistoryPage,
@@ -177,4 +177,6 @@ def recalibrate_unit(
 @router.get("/{serial:path}", responses=errors(404, 422))
 def read_unit(serial: Serial, store: Reading, now: Now) -> UnitReportSchema:
     """One unit: condition, type, reference, latest sessions, known breaks."""
-    return UnitReportSchema.model_validate(unit_report(store, serial, now))
+    report = unit_report(store, serial, now)
+    found = UnitReportSchema.model_validate(report)
+    return found.model_copy(update={"temperatures_covered": covered_now(store, report)})

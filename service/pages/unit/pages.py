@@ -9,7 +9,9 @@ from estimator.message import say
 from service.flags.pages import FlagCard, flag_cards
 from service.flags.records import Flag
 from service.groups.sections import GroupSection
+from service.judging.covered import CoveredTemperatures
 from service.judging.records import Usable
+from service.judging.temperature_words import covered_in_words
 from service.judging.usable_words import next_in_words
 from service.judging.use import Use, in_words
 from service.kit.failure import unit_failed
@@ -189,6 +191,8 @@ class UnitView:
     sessions: tuple[SessionLine, ...]
     reference: str
     """What the next session is judged against, in words; empty when it becomes the reference itself."""
+    covered: str
+    """The temperatures that its calibrations cover."""
     drawn: int
     """How many sessions, the newest ones, the charts show."""
     flags: tuple[FlagCard, ...]
@@ -233,6 +237,7 @@ def unit_page(
     follow: int | None = None,
     said: Remarks | None = None,
     history_of_custody: Sequence[Custody] = (),
+    temperatures: CoveredTemperatures | None = None,
 ) -> UnitView:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
@@ -255,6 +260,7 @@ def unit_page(
         ),
         sessions=session_lines(report.sessions),
         reference=_reference(report),
+        covered=covered_in_words(temperatures),
         drawn=len({point.session for point in history}),
         flags=flag_cards(flags),
         events=events_of((*report.services, *report.withdrawn_services), notes, report.withdrawals),

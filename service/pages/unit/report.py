@@ -4,9 +4,12 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.message import say
+from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
+from service.judging.covered import CoveredTemperatures
+from service.judging.reference import covered_at
 from service.outlook.records import UnitOutlook
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.states import RecordState, StateChange
@@ -39,6 +42,13 @@ class UnitReport:
     said: UnitEvents = NO_EVENTS
     entry: Registered | None = None
     """What the register says."""
+
+
+def covered_now(store: Store, report: UnitReport) -> CoveredTemperatures | None:
+    """The temperatures that the unit's calibrations cover; None before the first of its epoch, or where nothing says
+    them."""
+    latest = next((s for s in report.sessions if s.state is RecordState.ACCEPTED and s.programme in CALIBRATIONS), None)
+    return None if latest is None or report.reference_session is None else covered_at(store, latest)
 
 
 LATEST = 50

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from service.fleet.condition import UnitSummary
+from service.judging.covered import CoveredTemperatures
 from service.judging.records import SaidVerdict, said
 from service.kit.answer import answer
 from service.sessions.history_store import HistoryQuery
@@ -96,6 +97,9 @@ class UnitReportSchema(BaseModel):
     services: list[Service] = Field(description="All known breaks, oldest first.")
     withdrawn_services: list[Service] = Field(description="Services that were withdrawn, oldest first.")
     waiting: int = Field(description="Sessions that are still to be judged again after a change of the records.")
+    temperatures_covered: CoveredTemperatures | None = Field(
+        None, description="That its calibrations cover; null before the first of its epoch, or where none was recorded."
+    )
 
 
 Parameter = Literal[

@@ -9,6 +9,7 @@ from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.wording import counted
 from service.diagnosis.words.causes import cause_on
 from service.diagnosis.words.findings import FindingView, finding_view
+from service.judging.temperature_words import covered_in_words, span_in_words
 from service.kit.measures import THIN, day_of, method_name, minute_of, number, size_in_words, spaced
 from service.papers.certified import CertifiedSession
 from service.papers.words import stated
@@ -61,10 +62,6 @@ def _corrected(view: FindingView) -> str:
     return "Not taken into account by the numbers of this certificate." if view.acceptable else ""
 
 
-CONSTANT_TEMPERATURE = 0.05
-"""°C: a smaller range is printed as one number."""
-
-
 def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
     """Object, equipment, operator and conditions of the measurement."""
     session, source = found.report.session, found.source
@@ -87,7 +84,8 @@ def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
         Fact("Site", _site(source)),
         Fact("Judged against", _judged_against(found)),
         Fact("State of the unit", _state(found)),
-        Fact("Temperature", _temperature(source)),
+        Fact("Temperature", span_in_words(source.temperature)),
+        Fact("Temperatures covered", covered_in_words(found.temperatures)),
         *([Fact("Switched on", on)] if (on := switched_on(session.time_since_power_on)) else ()),
     )
 
@@ -129,17 +127,6 @@ def _site(source: CalibrationSession) -> str:
             say("g = {size}{thin_space}m/s² ({origin})", size=number(gravity(site), 6), thin_space=THIN, origin=origin)
         )
     return joined(", ", parts) or stated("")
-
-
-def _temperature(source: CalibrationSession) -> str:
-    if source.temperature is None:
-        return "not recorded"
-    low, high = float(source.temperature.min()), float(source.temperature.max())
-    return (
-        say("{low} to {high}{thin_space}°C", low=number(low, 1), high=number(high, 1), thin_space=THIN)
-        if high - low > CONSTANT_TEMPERATURE
-        else f"{number(low, 1)}{THIN}°C"
-    )
 
 
 def _judged_against(found: CertifiedSession) -> str:

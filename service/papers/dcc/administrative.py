@@ -7,6 +7,7 @@ import numpy as np
 
 from estimator.applied_vector import gravity
 from estimator.session import ACCELEROMETER, CalibrationSession
+from service.judging.temperature_words import covered_in_words
 from service.kit.measures import day_of
 from service.kit.printable import Element
 from service.papers.certified import StatedSession
@@ -197,6 +198,7 @@ def statements(found: StatedSession) -> Iterator[Element]:
     yield _statement("Uncertainty", uncertainty_in_words(found.report.calibration, nominal_factor_of(decisions)))
     yield _statement("Item", RELATES)
     yield _statement("Reproduction", WHOLE)
+    yield _statement("Temperatures covered", covered_in_words(found.temperatures))
     yield _statement("Diagnosis", found.finding)
 
 

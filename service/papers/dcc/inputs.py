@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 
 from estimator.codec import Document
+from estimator.health.temperature_law import TemperatureStep
+from service.judging.covered import CoveredTemperatures
 from service.models.records import Model
 from service.papers.certified import CertifiedSession, ReferenceSession
-from service.sessions.decision import nominal_factor_of
+from service.sessions.decision import nominal_factor_of, steps_in
 from service.stands.records import StandCertificate
 from service.storage.json_text import STORED, json_text
 
@@ -24,6 +26,10 @@ class RecomputationInputs(Document, format="imu-recomputation/1"):
     """Kind of sensor, parameter, tolerance: relative for scale, else SI."""
     reference: ReferenceSession | None
     stand_certificate: StandCertificate | None
+    laws: tuple[tuple[str, str, TemperatureStep], ...] = ()
+    """Sensor, parameter, and what was taken off for temperature before it was judged."""
+    temperatures: CoveredTemperatures | None = None
+    """That the calibration covers, with the unit's earlier sessions."""
 
 
 def inputs_json(found: CertifiedSession) -> str:
@@ -37,5 +43,7 @@ def inputs_json(found: CertifiedSession) -> str:
         tolerances=tuple(dict.fromkeys((d.kind, d.parameter, d.tolerance) for d in decisions)),
         reference=found.reference,
         stand_certificate=found.traceability.certificate,
+        laws=tuple((*place, step) for place, step in steps_in(decisions).items()),
+        temperatures=found.temperatures,
     )
     return json_text(STORED.written(inputs))

@@ -11,6 +11,7 @@ from service.judging.calibrate import Calibrated, CalibrationBasis, calibrate
 from service.judging.judge import as_decisions
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.papers.certified import ReferenceSession, StatedSession
+from service.papers.dcc.elements import plain
 from service.papers.dcc.inputs import RecomputationInputs
 from service.papers.session_report import SessionReport
 from service.papers.verifying.records import RawFile
@@ -42,6 +43,7 @@ def stated_again(raw: RawFile, inputs: RecomputationInputs, printed: Printed, no
         customer=printed.customer,
         traceability=traceability(known.stand, inputs.stand_certificate, known.measured_at.date()),
         software=printed.version,
+        temperatures=inputs.temperatures,
     )
 
 
@@ -66,7 +68,8 @@ def _decisions(found: Calibrated, inputs: RecomputationInputs) -> tuple[Decision
     if beside is not None:
         return as_decisions(judge_parity(beside.result, beside.reference, limits, coverage_factor=k), inputs.rule)
     reference = None if inputs.reference is None else inputs.reference.calibration
-    return as_decisions(judge(found.calibration, reference, limits, coverage_factor=k), inputs.rule)
+    steps = {(sensor, parameter): step for sensor, parameter, step in inputs.laws}
+    return as_decisions(judge(found.calibration, reference, limits, coverage_factor=k, steps=steps), inputs.rule)
 
 
 def _record(
@@ -111,5 +114,5 @@ def _opening(found: Calibrated, printed: Printed) -> str:
 def _said(session: StoredSession, printed: Printed) -> str:
     """The verdict with its reservations, which rest on more than the file: as printed, if of this verdict."""
     word = condition_of(session.verdict, is_reference=session.is_reference).word
-    said = printed.declared("Verdict").removesuffix(f". {session.reason}")
+    said = printed.declared("Verdict").removesuffix(f". {plain(session.reason)}")
     return said if said.startswith(word) else word

@@ -172,6 +172,7 @@ ACTED: dict[str, Acted] = {
     "cross-coupling": term(lambda s, x: (s.a * s.pn, s.a * s.on)),
     "bias-temperature": term(lambda s, x: (s.warmth,)),
     "bias-temperature-curve": term(lambda s, x: (s.warmth, s.warmth**2)),
+    "scale-temperature-curve": term(lambda s, x: (s.warmth * s.a, s.warmth**2 * s.a)),
     "scale-temperature": term(lambda s, x: (s.warmth * s.a,)),
     "bias-ramp": term(lambda s, x: (s.elapsed,)),
     "warm-up": term(lambda s, x: (np.exp(-s.t / x[0]),)),

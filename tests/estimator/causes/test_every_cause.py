@@ -23,6 +23,7 @@ TABLE = [
     "cross-coupling",
     "bias-temperature",
     "bias-temperature-curve",
+    "scale-temperature-curve",
     "scale-temperature",
     "bias-ramp",
     "warm-up",

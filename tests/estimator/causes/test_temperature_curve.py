@@ -1,4 +1,4 @@
-"""A zero over temperature: a parabola is named as one, a line as a line, and one is no rival of the other."""
+"""Over temperature a parabola is named as one and a line as a line, of bias and scale factor: neither is a rival."""
 
 from dataclasses import replace
 
@@ -11,7 +11,8 @@ from estimator.diagnosis import Finding
 from tests.estimator.causes.hiding import change, scene_for, spoilt, with_readings
 from tests.estimator.causes.test_every_cause import SETTING
 
-CURVE, LINE = "bias-temperature-curve", "bias-temperature"
+PAIRS = (("bias-temperature-curve", "bias-temperature"), ("scale-temperature-curve", "scale-temperature"))
+"""Parabola and line."""
 
 
 def found(identifier: str) -> Finding:
@@ -20,20 +21,22 @@ def found(identifier: str) -> Finding:
     return finding
 
 
-@pytest.mark.parametrize("identifier", [CURVE, LINE])
+@pytest.mark.parametrize("identifier", [name for pair in PAIRS for name in pair])
 def test_each_is_named_alone(identifier: str) -> None:
     finding = found(identifier)
     assert (finding.cause, finding.alternatives) == (identifier, ())
 
 
-def test_a_bend_that_hardly_shows_leaves_the_line_its_name() -> None:
-    where = scene_for(LINE)
-    hidden = change(LINE, where) + 0.02 * change(CURVE, where)
+@pytest.mark.parametrize(("curve", "line"), PAIRS)
+def test_a_bend_that_hardly_shows_leaves_the_line_its_name(curve: str, line: str) -> None:
+    where = scene_for(line)
+    hidden = change(line, where) + 0.02 * change(curve, where)
     (finding,) = diagnose(with_readings(where.measured(2), hidden * where.world.truth.scale)).findings
-    assert (finding.cause, finding.alternatives) == (LINE, ())
+    assert (finding.cause, finding.alternatives) == (line, ())
 
 
 @pytest.mark.parametrize(("temperatures", "shown"), [(3, False), (4, True)])
 def test_a_parabola_goes_through_any_three_temperatures(temperatures: int, shown: bool) -> None:
     rows = np.arange(SETTING.rows) % temperatures + 20.0
-    assert cause(CURVE).available(replace(SETTING, temperature=rows)) is shown
+    for curve, _ in PAIRS:
+        assert cause(curve).available(replace(SETTING, temperature=rows)) is shown

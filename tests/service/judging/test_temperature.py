@@ -1,12 +1,17 @@
 """A verdict across more °C than a unit's sessions cover says so wherever it stands."""
 
 import json
+from datetime import UTC, datetime
 
+import httpx
 import pytest
 
+from service.papers.verifying.records import Outcome, RawFile
+from service.papers.verifying.verify import Beside, verify
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.made_sessions import MICRO_G, session_bytes, session_id
+from tests.service.papers.documents import text_of
 from tests.service.recordings import recording_document
 
 SAYS = "it was measured at 35 °C, 11 °C above its reference and earlier sessions (20–24 °C)"
@@ -52,6 +57,21 @@ LEARNED = tuple(at(t, month, moved=PER_DEGREE * (t - 20)) for month, t in enumer
 WARM, DRIFTED = at(33.0, 8, moved=PER_DEGREE * 13), at(33.0, 9, moved=PER_DEGREE * 13 + 150)
 
 
+COVERED = {"lowest": 12.0, "highest": 34.0, "reference": 20.0}
+"""By the sessions that the law was learned from: those far from the reference failed before it was known."""
+
+
+def is_covered_everywhere(client: httpx.Client, id: str) -> bool:
+    """Whether all that shows the session says so."""
+    unit, session = "/api/v1/units/BA-017", f"/api/v1/sessions/{id}"
+    answers = (client.get(path).json() for path in (unit, session, f"{session}/correction"))
+    pages = (client.get(path).text for path in ("/units/BA-017", f"/sessions/{id}"))
+    papers = client.get(f"{session}/certificate?format=dcc").text, text_of(client.get(f"{session}/certificate").content)
+    said = [answer["temperatures_covered"] == COVERED for answer in answers]
+    said += ["<dt>Temperatures covered</dt><dd>12.0 to 34.0 °C</dd>" in plain(page) for page in pages]
+    return all([*said, *("12.0 to 34.0 °C" in plain(paper) for paper in papers)])
+
+
 def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holding: Holding) -> None:
     """In any order of arrival; what moved beside the law fails."""
     client = holding(WARM, *LEARNED[3:], DRIFTED, *LEARNED[:3])
@@ -71,8 +91,13 @@ def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holdin
     )
     (law,) = client.get(f"/api/v1/sessions/{warm['id']}/correction").json()["temperature_laws"]
     assert (law["sensor"], law["parameter"], law["worth"]) == ("A3", "bias", own["worth"])
-    certificate = client.get(f"/api/v1/sessions/{warm['id']}/certificate?format=dcc").text
-    assert "deviation at 33.0 °C, before the law of 7 sessions over temperature" in certificate
+    certificate = client.get(f"/api/v1/sessions/{warm['id']}/certificate?format=dcc")
+    assert "deviation at 33.0 °C, before the law of 7 sessions over temperature" in certificate.text
+    again = verify(certificate.content, RawFile("warm.json", WARM), Beside(), datetime.now(UTC))
+    assert again.outcome is Outcome.AGREES, again
+    assert is_covered_everywhere(client, warm["id"])
+    alone = client.get(f"/api/v1/sessions/{session_id(LEARNED[0])}").json()["temperatures_covered"]
+    assert alone == {"lowest": 20.0, "highest": 20.0, "reference": 20.0}
     (moved,) = [d for d in drifted["decisions"] if d["verdict"] == "fail"]
     assert moved["deviation"] == pytest.approx(150 * MICRO_G, abs=20 * MICRO_G)
 

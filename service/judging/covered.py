@@ -1,0 +1,41 @@
+"""The temperatures that the calibration of a unit covers: those of its reference, and those at which it was within
+tolerance of it since."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from estimator.health.temperature_law import NO_STEPS, Steps
+from estimator.results import Residuals
+from service.kit.answer import answer
+from service.sessions.decision import Verdict
+from service.sessions.records import StoredSession
+
+WITHIN = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
+"""Verdicts by which temperature did not do much."""
+
+
+@answer
+@dataclass(frozen=True)
+class CoveredTemperatures:
+    """The temperatures that a calibration covers, °C."""
+
+    lowest: float
+    """Of every reading of the reference, of the sessions since that are within tolerance, and of the sessions that the
+    temperature law was learned from."""
+    highest: float
+    """Of the same."""
+    reference: float
+    """Mean of the reference, whose parameters the others are compared with."""
+
+
+def covered(
+    reference: Residuals, sessions: Iterable[StoredSession], steps: Steps = NO_STEPS
+) -> CoveredTemperatures | None:
+    """By a reference, sessions since and the law of the last of them; None where the reference's is not known."""
+    if reference.temperature is None:
+        return None
+    own = [float(one) for one in reference.temperature]
+    within = [s.temperature for s in sessions if s.temperature is not None and s.verdict in WITHIN]
+    laws = [end for step in steps.values() for end in (step.lowest, step.highest) if end is not None]
+    every = (*own, *within, *laws)
+    return CoveredTemperatures(min(every), max(every), sum(own) / len(own))
