@@ -7,7 +7,7 @@ from estimator.diagnosis.selection.common_or_own import with_events, with_likeli
 from estimator.diagnosis.selection.confirmation import doubtful_claims, hold_jointly
 from estimator.diagnosis.selection.heavy_tails import without_names_of_tails
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
-from estimator.diagnosis.selection.noise_beside import with_noise_beside_common
+from estimator.diagnosis.selection.noise_beside import with_noise_beside_effects
 from estimator.diagnosis.selection.noise_claim import (
     doubted,
     of_whole_kinds,
@@ -29,7 +29,7 @@ def accepted(start: SearchState) -> SearchState:
     An event of most sensors makes all of them scatter. It is one shape with a size of each, which cannot stand in for
     noise: where it leaves readings that scatter as stated, the stated noise is right.
     """
-    start = with_noise_beside_common(start)
+    start = with_noise_beside_effects(start)
     start = replace(start, apart=True) if is_apart(start) else start
     claims, state = doubted(start), None
     if not claims or leaves_stated_noise(start, shared_event(start)):
