@@ -91,6 +91,8 @@ class FleetPage:
     rows: tuple[FleetRow, ...]
     total: int
     shown: Shown[UnitSummary]
+    all_simulated: bool
+    """Whether no session of any unit was measured."""
     simulated: int
     flags: str
     """How many are open on all units together, in words; empty where none is."""
@@ -149,6 +151,7 @@ def fleet_page(
         rows=tuple(fleet_row(unit, uses[unit.serial]) for unit in shown.entries),
         total=condition.units,
         shown=shown,
+        all_simulated=0 < condition.simulated == condition.units - condition.uncalibrated,
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
         stands=tuple(stands),
