@@ -96,6 +96,10 @@ CATALOGUE = {
         "api",
         "Record the certificate of a stand's own calibration, which every session on it hangs on.",
     ),
+    "stand-dcc": CommandEntry(
+        "stands.stand_dcc",
+        "Record the certificate of a stand from its Digital Calibration Certificate, with the stand's uncertainties.",
+    ),
     "correction": CommandEntry(
         "documents.correction", "Write the correction that firmware applies to readings, as JSON."
     ),

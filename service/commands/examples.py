@@ -63,6 +63,7 @@ sign 3f9a0c5be1d24786aa10 --meaning reviewed  # then --meaning approved, by some
 seal trial --out seal.p12  # a key to try the seal with
 customer BA-017 "Northern Airways" --address "2 Field Road, Oslo" --by "K. Ito"  # whom its certificates name
 stand-certificate S1 --number K-2026-114 --issued-by PTB --issued-on 2026-02-01 --valid-until 2028-02-01 --by "K. Ito"
+stand-dcc S1 certificate.xml --by "K. Ito"  # number, days and uncertainties from the document
 correction 3f9a0c5be1d24786aa10 --out correction.json  # formula, numbers, a worked example
 export 3f9a0c5be1d24786aa10 --system px4 --out unit.params  # parameters of a flight controller
 simulate --unit BA-900 --sessions 3 --drift A3.bias=30 --out sessions  # a unit whose truth is known

@@ -1,6 +1,7 @@
 """A pattern for a session: the last one of a unit or of a type's units, or, without any, a simulated one."""
 
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from service.kit.measures import MEASURES
 from service.planning.question import PlanQuestion
 from service.sessions.records import PARAMETERS
 from service.sessions.store import Sessions
+from service.stands.store import StandCertificates
 from service.storage import Storage
 from service.storage.queries import Store
 from service.types.records import UnitType
@@ -86,11 +88,12 @@ def type_names(store: Store) -> tuple[str, ...]:
     return tuple(known.name for known in UnitTypes(store).page(0, MOST_TYPES))
 
 
-def pattern(storage: Storage, serial: str, unit_type: str, question: PlanQuestion) -> CalibrationSession:
-    """The expected form of the next session of the unit or type; NotFoundError for an unknown type."""
+def pattern(storage: Storage, serial: str, unit_type: str, question: PlanQuestion, today: date) -> CalibrationSession:
+    """The expected form of the next session of the unit or type; NotFoundError for an unknown type. Of its stand's
+    errors it states what the stand's certificate of today does."""
     last = earlier(storage, serial, unit_type)
     if last is not None:
-        return last
+        return as_certified(storage, last, today)
     if not unit_type:
         return _simulated(question.cone())
     with storage.database.reading() as store:
@@ -111,6 +114,16 @@ def earlier(storage: Storage, serial: str, unit_type: str) -> CalibrationSession
         return None
     session = read_upload(storage.files.read(stored.sha256), stored.filename)
     return replace(averaged(session) if session.is_raw else session, unit_type=session.unit_type or unit_type or None)
+
+
+def as_certified(storage: Storage, session: CalibrationSession, today: date) -> CalibrationSession:
+    """A session whose stand has the errors that its certificate states; what that leaves open stays as it was."""
+    if session.stand is None:
+        return session
+    with storage.database.reading() as store:
+        errors = StandCertificates(store).errors_on(session.stand.id, today)
+    sigma = replace(session.stand.sigma, **{error.name: error.sigma for error in errors})
+    return replace(session, stand=replace(session.stand, sigma=sigma))
 
 
 def _simulated(template: CalibrationSession) -> CalibrationSession:

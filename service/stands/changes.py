@@ -5,22 +5,29 @@ from datetime import datetime
 from estimator.errors import Problem
 from estimator.message import say
 from service.errors import RefusedError
-from service.stands.records import StandCertificate
+from service.stands.records import StandCertificate, StandError
 from service.stands.store import StandCertificates
 from service.storage import Storage
 from service.storage.audit import Audit
 
 
-def record_stand_certificate(storage: Storage, new: StandCertificate, now: datetime, *, who: str) -> StandCertificate:
-    """Keeps a certificate; one of a number that is there takes its place, and the same again changes nothing."""
+def record_stand_certificate(
+    storage: Storage, new: StandCertificate, now: datetime, *, who: str, errors: tuple[StandError, ...] = ()
+) -> StandCertificate:
+    """Keeps a certificate; one of a number that is there takes its place, and the same again changes nothing.
+
+    ``errors``: of the stand, as the certificate's document states them.
+    """
     if new.valid_until < new.issued_on:
         fault = Problem(
             "valid_until", say("lies before the day of issue, {issued_on}; check both dates", issued_on=new.issued_on)
         )
         raise RefusedError("The certificate cannot be used.", (fault,))
     with storage.database.writing() as store:
-        if new not in StandCertificates(store).of_stand(new.stand):
-            StandCertificates(store).add(new, who, now)
+        kept = StandCertificates(store)
+        is_same = new in kept.of_stand(new.stand) and errors in ((), kept.errors_of(new))
+        if not is_same:
+            kept.add(new, who, now, errors)
             details = {"number": new.number, "valid_until": new.valid_until.isoformat()}
             Audit(store).write(now, who, "stand-certificate", new.stand, details)
     return new

@@ -146,3 +146,14 @@ class StandCertificate:
     """From this day on it speaks for the stand."""
     valid_until: date
     """The last day on which it holds."""
+
+
+@answer
+@dataclass(frozen=True)
+class StandError:
+    """How well a certificate knows one error of a stand."""
+
+    name: str
+    """As in the session file's `stand.sigma_arcsec`."""
+    sigma: float
+    """Standard uncertainty, rad."""

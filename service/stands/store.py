@@ -13,7 +13,15 @@ from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import CommonMotionRow, SessionRow
-from service.stands.records import STILL, KnownStand, MotionOnStand, StandCertificate, StandCondition, StandUse
+from service.stands.records import (
+    STILL,
+    KnownStand,
+    MotionOnStand,
+    StandCertificate,
+    StandCondition,
+    StandError,
+    StandUse,
+)
 from service.stands.tables import StandCertificateRow, StandConditionRow, StandRow, StandTallyRow
 from service.storage.json_text import STORED
 from service.storage.queries import Queries
@@ -172,9 +180,26 @@ class StandCertificates(Queries):
         issued = [certificate for certificate in self.of_stand(stand) if certificate.issued_on <= day]
         return issued[-1] if issued else None
 
-    def add(self, new: StandCertificate, who: str, now: datetime) -> None:
-        """Stores a certificate of a stand that is known."""
+    def errors_on(self, stand: str, day: date) -> tuple[StandError, ...]:
+        """What the certificate of a day states of the stand's errors."""
+        held = self.on(stand, day)
+        return () if held is None else self.errors_of(held)
+
+    def errors_of(self, certificate: StandCertificate) -> tuple[StandError, ...]:
+        """The same of a certificate; none where it was recorded by hand."""
+        query = (
+            select(StandCertificateRow.errors)
+            .join(StandRow, StandRow.id == StandCertificateRow.stand_id)
+            .where(StandRow.name == certificate.stand, StandCertificateRow.number == certificate.number)
+            .order_by(StandCertificateRow.id.desc())
+        )
+        stored = self._session.scalars(query.limit(1)).first()
+        return tuple(StandError(name, sigma) for name, sigma in (stored or {}).items())
+
+    def add(self, new: StandCertificate, who: str, now: datetime, errors: Sequence[StandError] = ()) -> None:
+        """Stores a certificate of a stand that is known, with the errors that its document states."""
         values = {**vars(new), "stand_id": self._key(new.stand), "who": who, "recorded_at": now}
+        values["errors"] = {error.name: error.sigma for error in errors} or None
         del values["stand"]
         self._session.add(StandCertificateRow(**values))
         self._session.flush()

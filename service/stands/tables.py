@@ -2,7 +2,7 @@
 
 from datetime import date, datetime
 
-from sqlalchemy import ForeignKey, String
+from sqlalchemy import JSON, ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from estimator.json_object import Json
@@ -56,5 +56,7 @@ class StandCertificateRow(Base):
     issued_by: Mapped[str] = mapped_column(String(200))
     issued_on: Mapped[date]
     valid_until: Mapped[date]
+    errors: Mapped[Json | None] = mapped_column(JSON(none_as_null=True))
+    """Standard uncertainty of every error that its document states, rad; null where it was recorded by hand."""
     who: Mapped[str]
     recorded_at: Mapped[datetime]

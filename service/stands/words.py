@@ -8,7 +8,7 @@ from estimator.health.common_motion import AXES
 from estimator.message import joined, say
 from estimator.session import ACCELEROMETER
 from service.kit.measures import COVERAGE, day_of, deviation_measure, in_words, measured, signed
-from service.stands.records import StandCertificate, StandCondition, StandEvidence, StandSeating
+from service.stands.records import StandCertificate, StandCondition, StandError, StandEvidence, StandSeating
 
 STEADY = "No change common to all units measured on it."
 TOO_FEW = "Fewer than three units have been measured on it at least twice."
@@ -97,6 +97,21 @@ CHECK = StandWord("conditional-fail", "Check before use", "Check stand and fixtu
 EXPIRED_TODAY = StandWord("fail", "Not traceable today", "Have the stand calibrated, or record its new certificate.")
 WORDS = (EXPIRED_TODAY, CHECK, NOT_STATED, SOON_OVER, READY)
 """Worst first."""
+
+
+ERRORS = {
+    "theta_x": "Levelling about X",
+    "theta_y": "Levelling about Y",
+    "alpha": "Elevation of the head's axis",
+    "beta": "Turn of the head",
+    "meridian": "North direction",
+    "wobble": "Wobble of the turntable",
+}  # fmt: skip
+
+
+def error_in_words(error: StandError) -> tuple[str, str]:
+    """Which error of the stand, and ``±0.40 arcsec``, ± U."""
+    return ERRORS[error.name], "±" + in_words(ACCELEROMETER, "axis", COVERAGE * error.sigma)
 
 
 def held(certificates: Sequence[StandCertificate], today: date) -> StandCertificate | None:

@@ -262,7 +262,7 @@ def read_template(
     """A workbook to fill in and upload as it is: sensors, stand and schedule are there, with units and choices. In the
     language of `?lang=`, or of Accept-Language."""
     block = PlanQuestion.model_validate({"kind": kind, "sensors": sensors})
-    source = pattern(storage, unit.strip(), unit_type.strip(), block)
+    source = pattern(storage, unit.strip(), unit_type.strip(), block, now.date())
     name = unit.strip() or unit_type.strip() or f"{sensors}-{kind}s"
     language = asked(request.scope)
     response = as_file(session_template(source, now, language), XLSX, f"session-{name}.xlsx")

@@ -3,7 +3,7 @@
 from datetime import date
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Depends, Query, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.papers.records import RestingCertificate
@@ -12,7 +12,8 @@ from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.stands.changes import record_stand_certificate
 from service.stands.conditions import stand_conditions
-from service.stands.records import StandCertificate, StandCondition
+from service.stands.dcc import read_dcc
+from service.stands.records import StandCertificate, StandCondition, StandError
 from service.stands.store import StandCertificates
 from service.web.dependencies import Now, Reading
 from service.web.fields import Day, NonBlankName, StandName
@@ -53,6 +54,14 @@ class RestingCertificateList(BaseModel):
     certificates: tuple[RestingCertificate, ...] = Field(description="Every issue, replaced ones too.")
 
 
+DCC_BODY = {
+    "requestBody": {
+        "required": True,
+        "description": "A Digital Calibration Certificate of PTB's schema, release 2 or 3.",
+        "content": {"application/xml": {"schema": {"type": "string"}}},
+    }
+}
+
 router = APIRouter(prefix="/stands", tags=["stands"])
 
 
@@ -88,3 +97,33 @@ def put_stand_certificate(
     """Record the certificate of a stand's own calibration; a session is judged by the one of its day."""
     given = StandCertificate(name, new.number, new.issued_by, new.issued_on, new.valid_until)
     return record_stand_certificate(storage, given, now, who=person.signs(new.by))
+
+
+class RecordedDocument(BaseModel):
+    """A certificate that was read from its document."""
+
+    certificate: StandCertificate = Field(description="What is kept of it.")
+    errors: tuple[StandError, ...] = Field(
+        description="How well it knows each error of the stand; of others it is silent."
+    )
+
+
+async def _document(request: Request) -> bytes:
+    return await request.body()
+
+
+@router.put("/{name:path}/certificate-document", responses=errors(400, 404, 413, 422), openapi_extra=DCC_BODY)
+def put_stand_certificate_document(
+    name: StandName,
+    content: Annotated[bytes, Depends(_document)],
+    by: Annotated[NonBlankName, Query(description="Your name.")],
+    storage: StorageOf,
+    now: Now,
+    person: PersonOf,
+    valid_until: Annotated[Day | None, Query(description="The last day, where the document does not state it.")] = None,
+) -> RecordedDocument:
+    """Record the certificate of a stand from its Digital Calibration Certificate: number, laboratory, days, and the
+    uncertainties of the stand's errors, which templates of sessions on it state from then on."""
+    read = read_dcc(content, name, valid_until)
+    kept = record_stand_certificate(storage, read.certificate, now, who=person.signs(by), errors=read.errors)
+    return RecordedDocument(certificate=kept, errors=read.errors)

@@ -6,7 +6,7 @@ from datetime import date, datetime
 from typing import Annotated
 from urllib.parse import quote
 
-from fastapi import APIRouter, Form, Request
+from fastapi import APIRouter, File, Form, Request, UploadFile
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from estimator.message import say
@@ -33,13 +33,15 @@ from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.store import Sessions
 from service.stands.changes import record_stand_certificate
-from service.stands.records import StandCertificate, StandCondition, StandEvidence, StandUse
+from service.stands.dcc import read_dcc
+from service.stands.records import StandCertificate, StandCondition, StandError, StandEvidence, StandUse
 from service.stands.store import StandCertificates, Stands
 from service.stands.words import (
     WORDS,
     StandWord,
     certificate_in_words,
     condition_in_words,
+    error_in_words,
     held,
     kind_of_shift,
     scatter_of,
@@ -84,6 +86,8 @@ class StandReport:
     """Newest first."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
+    errors: tuple[StandError, ...] = ()
+    """As the certificate of today states them."""
 
 
 def every_stand(store: Store) -> tuple[StandLine, ...]:
@@ -121,6 +125,7 @@ def stand_report(store: Store, name: str, now: datetime) -> StandReport:
         uses=usable_of(store, units, now),
         sessions=Sessions(store).wanted(SessionQuery(stand=name, limit=MOST + 1)),
         models=in_force(Models(store).of_subject(Scope.STAND, name)),
+        errors=StandCertificates(store).errors_on(name, now.date()),
     )
 
 
@@ -167,6 +172,8 @@ class StandPage:
     """Whether what its units show is being worked out, and may change."""
     certificates: tuple[tuple[str, str, str, str], ...]
     """Number, issued by, issued on, valid until; the latest first."""
+    errors: tuple[tuple[str, str], ...]
+    """What the certificate of today states an uncertainty of, and ± U."""
     flags: tuple[FlagCard, ...]
     shifts: tuple[ShiftRow, ...]
     seating: tuple[tuple[str, str], ...]
@@ -198,6 +205,7 @@ def stand_page(report: StandReport, now: datetime, group: GroupSection | None = 
         reasons=(certificate, condition_in_words(condition, is_pending=line.is_pending)),
         is_pending=line.is_pending,
         certificates=tuple(map(_certificate, reversed(line.certificates))),
+        errors=tuple(map(error_in_words, report.errors)),
         flags=flag_cards(report.flags[:MOST]),
         shifts=() if condition is None else _shifts(condition),
         seating=() if condition is None else _seating(condition),
@@ -297,4 +305,24 @@ def record_certificate(
     """Keeps the certificate of the stand's calibration."""
     given = StandCertificate(name, number.strip(), issued_by.strip(), issued_on, valid_until)
     record_stand_certificate(storage, given, now, who=by)
+    return _to_certificates(name)
+
+
+@router.post("/stands/{name:path}/certificate-document")
+def record_certificate_document(
+    name: Key,
+    document: Annotated[UploadFile, File()],
+    *,
+    by: By,
+    valid_until: Annotated[date | None, Form()] = None,
+    storage: StorageOf,
+    now: Now,
+) -> RedirectResponse:
+    """Keeps what the stand's Digital Calibration Certificate says."""
+    read = read_dcc(document.file.read(), name, valid_until)
+    record_stand_certificate(storage, read.certificate, now, who=by, errors=read.errors)
+    return _to_certificates(name)
+
+
+def _to_certificates(name: str) -> RedirectResponse:
     return RedirectResponse(f"/stands/{quote(name)}#certificates", SEE_OTHER)

@@ -1,0 +1,24 @@
+"""What the document of a stand's certificate states of the stand's errors.
+
+Certificates recorded by hand state none.
+
+Revision: 0038, after 0037
+"""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0038"
+down_revision = "0037"
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    """One column, NULL in the rows that are there."""
+    op.add_column("stand_certificates", sa.Column("errors", sa.JSON(), nullable=True))
+
+
+def downgrade() -> None:
+    """The certificates stay."""
+    op.drop_column("stand_certificates", "errors")
