@@ -60,7 +60,7 @@ papers: setup
 	$(BIN)/python -m benchmarks.papers
 
 study: setup
-	$(BIN)/python -m benchmarks.study --sessions 2000 --seed 1
+	$(BIN)/python -m benchmarks.study --sessions 4650 --seed 2611
 	$(BIN)/python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 1
 	$(BIN)/python -m benchmarks.study.amplitudes --sessions 660 --seed 3
 	$(BIN)/python -m benchmarks.study.open_world --sessions 12 --seed 1
