@@ -4,7 +4,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from service.languages.catalogue import said_in
-from service.pages.review.queue import Waiting, waiting_for
+from service.pages.review.queue import ToDo, waiting_for
 from service.people.admission import PersonOf
 from service.web.dependencies import LanguageOf, Now, Reading
 from service.web.problem_document import errors
@@ -15,7 +15,7 @@ router = APIRouter(prefix="/review", tags=["fleet"])
 class ReviewQueue(BaseModel):
     """What waits for whoever asks."""
 
-    waiting: tuple[Waiting, ...] = Field(description="By kind, 15 of each at most; empty where nothing waits.")
+    waiting: tuple[ToDo, ...] = Field(description="By kind, 15 of each at most; empty where nothing waits.")
 
 
 @router.get("", responses=errors())

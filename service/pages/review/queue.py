@@ -43,7 +43,7 @@ class WaitingKind(StrEnum):
 
 @answer
 @dataclass(frozen=True)
-class Waiting:
+class ToDo:
     """One thing that waits for a person."""
 
     kind: WaitingKind
@@ -58,7 +58,7 @@ class Waiting:
     """Address of the page where it is done."""
 
 
-def waiting_for(store: Store, person: Person, now: datetime) -> tuple[Waiting, ...]:
+def waiting_for(store: Store, person: Person, now: datetime) -> tuple[ToDo, ...]:
     """What this person can do something about, kind by kind."""
     found = list(_flags(store, WaitingKind.MINE, Assignee(person.name, person.login))) if person.login else []
     if person.may(Role.CREW):
@@ -71,34 +71,34 @@ def waiting_for(store: Store, person: Person, now: datetime) -> tuple[Waiting, .
     return tuple(found)
 
 
-def _flags(store: Store, kind: WaitingKind, assignee: Assignee) -> Iterator[Waiting]:
+def _flags(store: Store, kind: WaitingKind, assignee: Assignee) -> Iterator[ToDo]:
     found = Flags(store).page(FlagQuery(unresolved=True, assignee=assignee, limit=MOST))
     for flag, card in zip(found, flag_cards(found), strict=True):
-        yield Waiting(kind, flag.subject or flag.unit, flag.summary, flag.raised_at, f"{card.home}#flags")
+        yield ToDo(kind, flag.subject or flag.unit, flag.summary, flag.raised_at, f"{card.home}#flags")
 
 
-def _overdue(store: Store, now: datetime) -> Iterator[Waiting]:
+def _overdue(store: Store, now: datetime) -> Iterator[ToDo]:
     units = Outlooks(store).overdue_units(now)
     if units:
         names = joined(", ", units[:MOST]) + (" …" if len(units) > MOST else "")
         text = say("Calibration overdue: {units}.", units=counted(len(units), "unit"))
-        yield Waiting(WaitingKind.OVERDUE, names, text, None, "/due?when=overdue")
+        yield ToDo(WaitingKind.OVERDUE, names, text, None, "/due?when=overdue")
 
 
-def _questioned(store: Store) -> Iterator[Waiting]:
+def _questioned(store: Store) -> Iterator[ToDo]:
     for one in Sessions(store).wanted(SessionQuery(state=RecordState.QUESTIONED, limit=MOST)):
         text = say("The session of {day} does not count: accept, correct or withdraw it.", day=day_of(one.started_at))
-        yield Waiting(WaitingKind.SESSION, one.unit, text, one.uploaded_at, f"/sessions/{one.id}")
+        yield ToDo(WaitingKind.SESSION, one.unit, text, one.uploaded_at, f"/sessions/{one.id}")
 
 
-def _certificates(store: Store) -> Iterator[Waiting]:
+def _certificates(store: Store) -> Iterator[ToDo]:
     for issue, unit, last in Certificates(store).unsigned(MOST):
         said = TO_APPROVE if last is Meaning.REVIEWED else TO_REVIEW
         page = f"/sessions/{issue.session}/certificate"
-        yield Waiting(WaitingKind.CERTIFICATE, unit, say(said, number=issue.number), issue.issued_at, page)
+        yield ToDo(WaitingKind.CERTIFICATE, unit, say(said, number=issue.number), issue.issued_at, page)
 
 
-def _failed(store: Store, now: datetime) -> Iterator[Waiting]:
+def _failed(store: Store, now: datetime) -> Iterator[ToDo]:
     for one in Failures(store).listed(now, MOST):
         text = say("{what} failed: {why}", what=NAMES[one.kind], why=one.why)
-        yield Waiting(WaitingKind.WORK, one.of, text, None, "/jobs#failed")
+        yield ToDo(WaitingKind.WORK, one.of, text, None, "/jobs#failed")
