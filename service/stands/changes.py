@@ -25,8 +25,7 @@ def record_stand_certificate(
         raise RefusedError("The certificate cannot be used.", (fault,))
     with storage.database.writing() as store:
         kept = StandCertificates(store)
-        is_same = new in kept.of_stand(new.stand) and errors in ((), kept.errors_of(new))
-        if not is_same:
+        if new not in kept.of_stand(new.stand) or errors not in ((), kept.errors_of(new)):
             kept.add(new, who, now, errors)
             details = {"number": new.number, "valid_until": new.valid_until.isoformat()}
             Audit(store).write(now, who, "stand-certificate", new.stand, details)

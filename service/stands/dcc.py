@@ -10,8 +10,7 @@ from calendar import monthrange
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import date, timedelta
-from itertools import islice
-from math import isfinite, pi
+from math import inf, isfinite, pi
 
 from lxml import etree
 
@@ -21,13 +20,14 @@ from estimator.reading.bounds import WITHIN
 from estimator.reading.keys import SIGMA
 from estimator.reading.setting import ARCSEC
 from service.errors import RefusedError
+from service.kit.answer import answer
 from service.kit.printable import Element
 from service.stands.records import StandCertificate, StandError
 
 ROOT = "{https://ptb.de/dcc}digitalCalibrationCertificate"
 CORE = "{*}administrativeData/{*}coreData/{*}"
 LABORATORY = "{*}administrativeData/{*}calibrationLaboratory/{*}contact/{*}name/{*}content"
-NOT_OF_STAND = "latitude"
+NOT_OF_STAND = {"latitude"}
 """An error of the site, which no calibration of a stand tells."""
 SPEAKS_OF_VALIDITY = re.compile(r"valid|expir|recalib|next.?calib|rekalib|gültig|действ|очередн", re.IGNORECASE)
 PERIOD = re.compile(r"P(?:(\d{1,3})Y)?(?:(\d{1,4})M)?(?:(\d{1,6})D)?")
@@ -42,12 +42,15 @@ MOST_NAMED = 200
 """Characters of a number or a laboratory that are kept."""
 
 
+@answer
 @dataclass(frozen=True)
 class ReadCertificate:
-    """What a DCC says of a stand."""
+    """A certificate of a stand as its document states it."""
 
     certificate: StandCertificate
+    """What is kept of it."""
     errors: tuple[StandError, ...]
+    """How well it knows each error of the stand; of others it is silent."""
 
 
 def read_dcc(content: bytes, stand: str, valid_until: date | None) -> ReadCertificate:
@@ -56,7 +59,7 @@ def read_dcc(content: bytes, stand: str, valid_until: date | None) -> ReadCertif
     root = _parsed(content)
     problems: list[Problem] = []
     number, laboratory = (_text(root, path, problems) for path in (CORE + "uniqueIdentifier", LABORATORY))
-    issued = _day(root.findtext(CORE + "issueDate", None) or root.findtext(CORE + "endPerformanceDate", ""))
+    issued = _day(root.findtext(CORE + "issueDate") or root.findtext(CORE + "endPerformanceDate"))
     until = (None if issued is None else _stated_end(root, issued)) or valid_until
     if issued is None:
         problems.append(Problem("issueDate", "is missing, or is no day; ask the laboratory for a valid certificate"))
@@ -101,7 +104,7 @@ def _stated_end(root: Element, issued: date) -> date | None:
     for statement in root.iterfind(".//{*}statement"):
         names = [name.text or "" for name in statement.iterfind("{*}name/{*}content")]
         if SPEAKS_OF_VALIDITY.search(" ".join([*names, statement.get("refType", "")])):
-            day = _day(statement.findtext("{*}date", None))
+            day = _day(statement.findtext("{*}date"))
             ends.append(day or _after(issued, statement.findtext("{*}period", "")))
     return min((end for end in ends if end is not None), default=None)
 
@@ -124,44 +127,44 @@ def _errors(root: Element, problems: list[Problem]) -> Iterator[StandError]:
     """Every error of the stand that the document gives an uncertainty of; of several, the largest."""
     found: dict[str, float] = {}
     for quantity in root.iterfind(".//{*}quantity"):
-        key = _key(quantity)
-        if key is None:
-            continue
-        sigma = _sigma(quantity)
-        if sigma is None or not sigma / ARCSEC <= WITHIN["stand.sigma_arcsec"].high:
-            units = ", ".join(RADIANS)
-            problems.append(
-                Problem(key, say("has no uncertainty with its coverage factor in one of {units}", units=units))
-            )
+        for key in set(_keys(quantity)) & set(SIGMA) - NOT_OF_STAND:
+            found[key] = max(_sigma(quantity), found.get(key, 0.0))
+    for key in (key for key in SIGMA if key in found):
+        if found[key] / ARCSEC <= WITHIN["stand.sigma_arcsec"].high:
+            yield StandError(key, found[key])
         else:
-            found[key] = max(sigma, found.get(key, 0.0))
-    yield from (StandError(key, found[key]) for key in SIGMA if key in found)
+            units = ", ".join(RADIANS)
+            says = say("has no uncertainty with its coverage factor in one of {units}", units=units)
+            problems.append(Problem(key, says))
 
 
-def _key(quantity: Element) -> str | None:
-    """Which error a quantity is; None of any other."""
-    names = [name.text or "" for name in quantity.iterfind("{*}name/{*}content")]
-    told = [*names, *(t.removeprefix("stand_") for t in quantity.get("refType", "").split() if t.startswith("stand_"))]
-    keys = (name.strip().lower().replace(" ", "_") for name in told)
-    return next((key for key in keys if key in SIGMA and key != NOT_OF_STAND), None)
+def _keys(quantity: Element) -> Iterator[str]:
+    """What a quantity may be: what it refers to, and of an angle its names."""
+    yield from (t.removeprefix("stand_") for t in quantity.get("refType", "").split() if t.startswith("stand_"))
+    if _unit(quantity) in RADIANS:
+        names = (name.text or "" for name in quantity.iterfind("{*}name/{*}content"))
+        yield from (name.strip().lower().replace(" ", "_") for name in names)
 
 
-def _sigma(quantity: Element) -> float | None:
-    """Standard uncertainty, rad; None where there is none that can be read."""
-    unit = RADIANS.get((quantity.findtext(".//{*}unit", "") or "").strip())
-    expanded, standard = (_number(quantity, paths) for paths in (EXPANDED, STANDARD))
-    factor = _number(quantity, (".//{*}coverageFactor",)) if expanded is not None else 1.0
-    value = standard if expanded is None else expanded
+def _unit(quantity: Element) -> str:
+    return (quantity.findtext(".//{*}unit") or "").strip()
+
+
+def _sigma(quantity: Element) -> float:
+    """Standard uncertainty, rad; infinite where there is none that can be read."""
+    factor, value = _number(quantity, (".//{*}coverageFactor",)), _number(quantity, EXPANDED)
+    if value is None:
+        factor, value = 1.0, _number(quantity, STANDARD)
+    unit = RADIANS.get(_unit(quantity))
     if unit is None or value is None or factor is None or not (value > 0 and factor >= 1):
-        return None
+        return inf
     return value * unit / factor
 
 
 def _number(quantity: Element, paths: tuple[str, ...]) -> float | None:
     """The first there is, finite."""
-    texts = (quantity.findtext(path, None) for path in paths)
+    text = next((found for path in paths if (found := quantity.findtext(path))), "nan")
     try:
-        value = next((float(text) for text in islice((t for t in texts if t), 1)), None)
+        return value if isfinite(value := float(text)) else None
     except ValueError:
         return None
-    return value if value is None or isfinite(value) else None

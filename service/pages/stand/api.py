@@ -12,8 +12,8 @@ from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.stands.changes import record_stand_certificate
 from service.stands.conditions import stand_conditions
-from service.stands.dcc import read_dcc
-from service.stands.records import StandCertificate, StandCondition, StandError
+from service.stands.dcc import ReadCertificate, read_dcc
+from service.stands.records import StandCertificate, StandCondition
 from service.stands.store import StandCertificates
 from service.web.dependencies import Now, Reading
 from service.web.fields import Day, NonBlankName, StandName
@@ -54,13 +54,7 @@ class RestingCertificateList(BaseModel):
     certificates: tuple[RestingCertificate, ...] = Field(description="Every issue, replaced ones too.")
 
 
-DCC_BODY = {
-    "requestBody": {
-        "required": True,
-        "description": "A Digital Calibration Certificate of PTB's schema, release 2 or 3.",
-        "content": {"application/xml": {"schema": {"type": "string"}}},
-    }
-}
+DCC_BODY = {"requestBody": {"required": True, "content": {"application/xml": {"schema": {"type": "string"}}}}}
 
 router = APIRouter(prefix="/stands", tags=["stands"])
 
@@ -99,15 +93,6 @@ def put_stand_certificate(
     return record_stand_certificate(storage, given, now, who=person.signs(new.by))
 
 
-class RecordedDocument(BaseModel):
-    """A certificate that was read from its document."""
-
-    certificate: StandCertificate = Field(description="What is kept of it.")
-    errors: tuple[StandError, ...] = Field(
-        description="How well it knows each error of the stand; of others it is silent."
-    )
-
-
 async def _document(request: Request) -> bytes:
     return await request.body()
 
@@ -121,9 +106,9 @@ def put_stand_certificate_document(
     now: Now,
     person: PersonOf,
     valid_until: Annotated[Day | None, Query(description="The last day, where the document does not state it.")] = None,
-) -> RecordedDocument:
+) -> ReadCertificate:
     """Record the certificate of a stand from its Digital Calibration Certificate: number, laboratory, days, and the
     uncertainties of the stand's errors, which templates of sessions on it state from then on."""
     read = read_dcc(content, name, valid_until)
-    kept = record_stand_certificate(storage, read.certificate, now, who=person.signs(by), errors=read.errors)
-    return RecordedDocument(certificate=kept, errors=read.errors)
+    record_stand_certificate(storage, read.certificate, now, who=person.signs(by), errors=read.errors)
+    return read

@@ -106,8 +106,12 @@ def test_a_day_that_the_document_lacks_is_asked_for() -> None:
 )
 def test_an_uncertainty_that_cannot_be_used_is_refused_with_its_name(unit: str, u: str) -> None:
     with pytest.raises(RefusedError) as refused:
-        read_dcc(document(quantity("alpha", unit, u)), "S", None)
+        read_dcc(document(quantity("Elevation", unit, u, "stand_alpha")), "S", None)
     assert [problem.field for problem in refused.value.problems] == ["alpha"]
+
+
+def test_a_quantity_of_the_same_name_that_is_no_angle_is_another() -> None:
+    assert read_dcc(document(quantity("alpha", r"\kelvin\tothe{-1}", "1e-6")), "S", None).errors == ()
 
 
 @pytest.mark.parametrize(
