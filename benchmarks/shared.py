@@ -49,6 +49,13 @@ INTRODUCTION = (
     "apart from the estimator. Intervals: 95 % (Wilson)."
 )
 
+MISSED = (
+    "What is missed is mostly a slow room or a ramp: it differs little from biases that wander each by itself, which "
+    "are taken for as likely as a course that no formula gives, so that drifts of each sensor are not called shared. A "
+    "diagnosis in orientations takes longer where the readings do not fit together, since every accelerometer is then "
+    "left out in turn to see whether one of its rows is clipped."
+)
+
 
 @dataclass(frozen=True)
 class Wish:
@@ -70,6 +77,8 @@ class Answer:
     """Whether one shared course is found, and nothing else."""
     right: bool
     """Whether it has its own name too."""
+    seen: bool
+    """Whether an oracle that knows the course would see others follow it beside the strongest sensor."""
     shared: bool
     named: bool
     bystanders: int
@@ -113,6 +122,13 @@ def oracle(m: int) -> float:
     return float(np.sqrt(whole / m))
 
 
+def others_seen(hidden: Driven | Stepped, m: int) -> bool:
+    """Whether one χ² test of all m sensors but the strongest, which knows the course but for the sizes, may be expected
+    to find that they follow."""
+    squares = np.sort(np.square(hidden.strength)) if isinstance(hidden, Driven) and hidden.strength else np.zeros(1)
+    return bool(squares[:-1].sum() + m - 1 > chi2.isf(LEVEL, m - 1))
+
+
 def perform(wish: Wish) -> Answer:
     """Draw and diagnose."""
     hidden = drawn(wish)
@@ -128,12 +144,18 @@ def perform(wish: Wish) -> Answer:
     bystanders = sum(name not in hidden.sensors for f in shared for name in f.sensors)
     one = len(named) == len(shared) == 1
     right = one and shared[0].cause == NAMES.get(wish.course)
-    return Answer(wish, one, right, bool(shared), bool(named), bystanders, away, seconds)
+    seen = others_seen(hidden, wish.block.accelerometers + wish.block.gyros)
+    return Answer(wish, one, right, seen, bool(shared), bool(named), bystanders, away, seconds)
 
 
 def page(answers: Sequence[Answer], command: str) -> str:
     """Markdown."""
-    parts = [f"# Courses that sensors share\n\nMade by `{command}`. {INTRODUCTION}", targets(answers), courses(answers)]
+    parts = [
+        f"# Courses that sensors share\n\nMade by `{command}`. {INTRODUCTION}",
+        targets(answers),
+        MISSED,
+        courses(answers),
+    ]
     return "\n\n".join(parts) + "\n"
 
 
@@ -150,7 +172,12 @@ def targets(answers: Sequence[Answer]) -> str:
     known = [a.away for a in shared if a.away is not None]
     rows = [
         ("one shared course: one finding of it, nothing else", "≥ 95 %", rate([a.one for a in shared])),
-        ("the same, under its own name", "", rate([a.right for a in shared])),
+        (
+            "the same, where an oracle that knows the course sees others follow beside the strongest sensor",
+            "≥ 95 %",
+            rate([a.one for a in shared if a.seen]),
+        ),
+        ("one finding, under its own name", "", rate([a.right for a in shared])),
         ("the time constant within U (k = 2)", "93–97 %", rate([abs(z) < 2 for z in known])),
         ("a sensor named that does not follow, of such sessions", "≤ 5 %", rate([a.bystanders > 0 for a in shared])),
         ("independent drifts: one course claimed", "≤ 1 %", rate([a.shared for a in of(answers, APART)])),

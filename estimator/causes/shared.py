@@ -1,8 +1,9 @@
 """A course that nobody recorded and several sensors share: the temperature of a room, a supply that wanders.
 
 It cannot be named on one sensor alone: there a course without a formula is whatever the sensor reads. Of several it is
-their one course, smooth over the session, with a size each. Its shape is a sum of the leading waves of an integrated
-random walk (of the covariance s²(3t − s)/6, s ≤ t; Rasmussen & Williams 2006, 6.3.1), each as large as the walk has it.
+their one course, with a size each. Its shape is a sum of the leading waves of a random walk, or, where it is smooth, of
+an integrated one (of the covariance s²(3t − s)/6, s ≤ t; Rasmussen & Williams 2006, 6.3.1), each as large as the walk
+has it.
 """
 
 from collections.abc import Iterator
@@ -19,11 +20,12 @@ WAVES = 12
 
 
 class SharedCourse(SensorCause):
-    """Its shape is the sizes of the waves; they are found where sensors share them, and tried on no single one."""
+    """Its shape is the sizes of the waves of `KINDS` in turn, zero but for one of them; they are found where sensors
+    share them, and tried on no single one."""
 
     identifier = "shared-course"
     scope = "environment"
-    equation = "k·h(r), one smooth h for several sensors"
+    equation = "k·h(r), one h for several sensors"
     units = ("m/s²",)
     passing = True
     alike = True
@@ -37,9 +39,10 @@ class SharedCourse(SensorCause):
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, 1) dimensionless."""
-        return column(walking_rate(setting.rows) @ np.array(nonlinear))
+        return column(np.concatenate([waves(setting.rows) for waves in KINDS], axis=1) @ np.array(nonlinear))
 
 
+@lru_cache(maxsize=8)
 def walk(rows: int) -> Array:
     """(R, w) dimensionless: waves of a random walk over the rows, of mean square one together."""
     t = np.arange(1, rows + 1) / rows
@@ -52,6 +55,20 @@ def walking_rate(rows: int) -> Array:
     t = np.arange(1, rows + 1) / rows
     first, last = np.minimum.outer(t, t), np.maximum.outer(t, t)
     return leading(first**2 * (last / 2 - first / 6))
+
+
+KINDS = (walk, walking_rate)
+
+
+def of_kind(kind: int, sizes: Array) -> tuple[float, ...]:
+    """The shape of a course that has waves of one of `KINDS` alone, of ``sizes`` (w,)."""
+    each = [sizes if k == kind else np.zeros_like(sizes) for k in range(len(KINDS))]
+    return tuple(np.concatenate(each).tolist())
+
+
+def kind_of(shape: tuple[float, ...]) -> int:
+    """Of which of `KINDS` the waves of a course are."""
+    return int(np.argmax([np.any(sizes) for sizes in np.split(np.array(shape), len(KINDS))]))
 
 
 def leading(covariance: Array) -> Array:

@@ -63,8 +63,11 @@ def predicted_without_effects(baseline: Baseline) -> Prediction:
     return predicted(baseline, [()] * FOLDS)
 
 
-def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Prediction:
-    """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there."""
+def predicted(
+    baseline: Baseline, effects: Sequence[Sequence[Array]], spreads: Sequence[Array] | None = None
+) -> Prediction:
+    """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there;
+    ``spreads``: the standard deviations (Q,) of all their amplitudes beforehand, of which nothing is known without."""
     R, m = baseline.residual.shape
     whiten, number = baseline.whiten, row_redundancy(baseline)
     whitened = baseline.whitened_design[: R * m]
@@ -77,7 +80,10 @@ def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Predict
         design = np.concatenate([whitened, *map(whiten, columns)], axis=1).reshape(R, m, -1)
         size = np.maximum(np.linalg.norm(design, axis=(0, 1)), 1e-300)
         held, rest = (design[r].reshape(-1, len(size)) / size for r in (rows, ~rows))
-        inverse = np.linalg.pinv(rest.T @ rest + np.diag(priors(baseline, size)), hermitian=True)
+        prior = priors(baseline, size)
+        if spreads is not None and len(spreads[fold]):
+            prior[-len(spreads[fold]) :] += (spreads[fold] * size[-len(spreads[fold]) :]) ** -2.0
+        inverse = np.linalg.pinv(rest.T @ rest + np.diag(prior), hermitian=True)
         error = data[rows].reshape(-1) - held @ (inverse @ (rest.T @ data[~rows].reshape(-1)))
         covariance = np.eye(len(held)) + held @ inverse @ held.T
         squares += float(error @ np.linalg.solve(covariance, error))

@@ -1,7 +1,9 @@
 """Naming may not predict worse: causes and shapes are chosen again from every fold's other rows, and must predict it.
 
 A name chosen with the help of the very rows that it is judged by always seems to help. So in every fold each finding
-is chosen anew among the leaders of its ranking, with all their shapes, from the rows that are not held out.
+is chosen anew among the leaders of its ranking, with all their shapes, from the rows that are not held out. Sizes of
+sensors that share a course are N(0, g) there as where it was found, g of the same rows: many sizes, each of which is
+hardly known, predict well together, and ill as if each could be anything.
 """
 
 from collections.abc import Iterator, Sequence
@@ -75,7 +77,29 @@ def predicted_from_folds(state: SearchState, judged: Sequence[Detection]) -> Pre
 
 @once
 def _predicted(residuals: WhitenedResiduals, traces: tuple[Traces, ...], judged: tuple[Detection, ...]) -> Prediction:
-    return predicted(residuals.baseline, chosen_in_folds(residuals, traces, judged))
+    chosen = chosen_in_folds(residuals, traces, judged)
+    return predicted(residuals.baseline, chosen, spreads(residuals, judged, chosen))
+
+
+def spreads(
+    residuals: WhitenedResiduals, judged: Sequence[Detection], chosen: Sequence[Sequence[Array]]
+) -> list[Array]:
+    """For every fold the (Q,) standard deviations of the amplitudes of its columns, one alone being unknown."""
+    found = []
+    for rest, columns in zip(without_folds(residuals.baseline), chosen, strict=True):
+        of_units = zip(units(judged), columns, strict=True)
+        each = [spread(residuals, rest, c) if len(u) > 1 else np.full(c.shape[-1], np.inf) for u, c in of_units]
+        found.append(np.concatenate([np.zeros(0), *each]))
+    return found
+
+
+def spread(residuals: WhitenedResiduals, rest: "Rest", columns: Array) -> Array:
+    """(q,) of amplitudes of columns (R, m, q) whose squares, in standard errors, have one mean."""
+    rows = residuals.whitened(columns)[rest.remaining]
+    trace = rows - rest.basis @ (rest.basis.T @ rows)
+    size = np.maximum(np.linalg.norm(trace, axis=0), 1e-300)
+    g = max(float(np.mean((rest.z @ trace / size) ** 2)) - 1.0, 1.0)
+    return np.asarray(np.sqrt(g) / size)
 
 
 def chosen_in_folds(

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from estimator.causes.contract import SensorCause
-from estimator.causes.shared import SharedCourse, walking_rate
+from estimator.causes.shared import KINDS, SharedCourse, kind_of, of_kind
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import Detection
 from estimator.diagnosis.signatures.free_course import FreeCourse
@@ -52,13 +52,13 @@ def without_formula(
     cause, setting = members[0].best.cause, residuals.baseline.setting
     if not isinstance(cause, SharedCourse):
         return
-    sensors, waves = [f.best.sensors[0] for f in members], walking_rate(setting.rows)
-    size = np.sqrt(residuals.baseline.variance.mean(axis=0))[sensors]
+    sensors, kind = [f.best.sensors[0] for f in members], kind_of(members[0].best.shape.nonlinear)
+    waves, size = KINDS[kind](setting.rows), np.sqrt(residuals.baseline.variance.mean(axis=0))[sensors]
     columns = np.zeros((setting.rows, len(setting.kinds), len(sensors), waves.shape[1]))
     columns[:, sensors, np.arange(len(sensors))] = waves[:, None, :] * size[:, None]
     rows = residuals.whitened(columns.reshape(*columns.shape[:2], -1))[remaining]
     found = FreeCourse.of(rows - basis @ (basis.T @ rows), z, len(sensors))
-    yield on_sensors(residuals, cause, sensors, tuple(found.waves.tolist())), float(np.log(found.tried))
+    yield on_sensors(residuals, cause, sensors, of_kind(kind, found.waves)), float(np.log(found.tried))
 
 
 def on_sensors(

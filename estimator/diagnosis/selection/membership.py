@@ -16,9 +16,10 @@ With P = (A + I/g)⁻¹ of the set, sensor c joins or leaves it with the change 
     joins:  ½ u²/s − ½ ln(g·s),   s = A_cc + 1/g − a'Pa,   u = y_c − a'Py          (a: column c of A, rows of the set)
     leaves: −½ (Py)_c²/P_cc + ½ ln(g/P_cc)
 
-so that a step costs one inversion a size for all sensors together. What a sensor loses by leaving is what the readings
-say for its own size, given the course and all others: it is named where that is odds of nineteen, and else it follows
-below what can be named alone.
+so that a step costs one inversion a size for all sensors together. A sensor's first two terms, without those of p(k),
+are what the readings say for its own size, given the course and all others: it is named where that is odds of nineteen,
+and else it follows below what can be named alone. That most others follow is odds of k that it does too, whatever it
+reads, so that it may be counted with them, but not be named for it.
 """
 
 from collections.abc import Sequence
@@ -30,7 +31,7 @@ from scipy.special import gammaln, logsumexp
 from estimator.session import Array
 
 SURE = float(np.log(19))
-"""ln odds by which a sensor is named as following a course: one in twenty that joined last is a bystander."""
+"""ln odds by which a sensor is named as following a course: one in twenty that it is a bystander."""
 
 SIZES = 4.0 ** np.arange(1, 9)
 """g: mean square sizes of a course's sensors, standard errors, from 2 to 256 of them; all equally likely."""
@@ -76,8 +77,8 @@ class Loadings:
         everyone = tuple(range(len(self.along)))
         climbed = [self.climbed(begun) for begun in ((), everyone)]
         chosen, value = max(climbed, key=lambda result: result[1])
-        lost = self.steps(chosen)[0] - value
-        sure = tuple(c for c in chosen if -lost[c] > SURE)
+        readings, whole = self.likelihoods(chosen)
+        sure = tuple(c for c in chosen if whole - readings[c] > SURE)
         return CauseMembers(chosen, sure, value, float(self.steps(())[0].max()))
 
     def climbed(self, begun: tuple[int, ...]) -> tuple[tuple[int, ...], float]:
@@ -92,7 +93,13 @@ class Loadings:
 
     def steps(self, chosen: tuple[int, ...]) -> tuple[Array, float]:
         """(k,) ln p of the sets that differ from one by a sensor, and the ln p of that set itself."""
-        k, inside = len(self.along), np.zeros(len(self.along), dtype=bool)
+        likelihood, own = self.likelihoods(chosen)
+        prior = [self.log_prior({c} ^ set(chosen)) for c in range(len(self.along))]
+        return likelihood + prior, own + self.log_prior(set(chosen))
+
+    def likelihoods(self, chosen: tuple[int, ...]) -> tuple[Array, float]:
+        """The same of the readings alone, without ln p(k)."""
+        inside = np.zeros(len(self.along), dtype=bool)
         inside[list(chosen)] = True
         A, y, cross = self.gram[np.ix_(inside, inside)], self.along[inside], self.gram[inside]
         P = np.linalg.inv(A + np.eye(len(y)) / SIZES[:, None, None])
@@ -104,8 +111,7 @@ class Loadings:
         own = np.diagonal(P, axis1=1, axis2=2)
         change[:, inside] = -0.5 * (P @ y) ** 2 / own + 0.5 * np.log(SIZES[:, None] / own)
         mean = logsumexp(of_set[:, None] + change, axis=0) - np.log(len(SIZES))
-        prior = [self.log_prior({c} ^ set(chosen)) for c in range(k)]
-        return mean + prior, float(logsumexp(of_set) - np.log(len(SIZES))) + self.log_prior(set(chosen))
+        return np.asarray(mean), float(logsumexp(of_set) - np.log(len(SIZES)))
 
     def log_prior(self, chosen: set[int]) -> float:
         """ln p(k) of a set; 0 of none, which is what all are held against."""

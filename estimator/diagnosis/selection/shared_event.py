@@ -23,26 +23,32 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.arrays import eigh
-from estimator.causes.contract import SensorCause, Shape
+from estimator.causes.contract import SensorCause
 from estimator.causes.shared import SharedCourse
 from estimator.content import once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER, backward_elimination
+from estimator.diagnosis.selection.event_course import (
+    OVERLAP,
+    EventCourse,
+    courses,
+    energies,
+    energy_of,
+    unit_traces,
+    without_formula,
+)
 from estimator.diagnosis.selection.forward import forward_selection, with_structures
 from estimator.diagnosis.selection.membership import SIZES, SURE, CauseMembers, Loadings, counts_of, log_sets
 from estimator.diagnosis.selection.ranking import conditional_log_evidence, extended_basis, scores_given
 from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Detection, SearchState
 from estimator.diagnosis.selection.shared_shape import APART, log_shared, powers, refined_together
-from estimator.diagnosis.signatures.free_course import FreeCourse
-from estimator.diagnosis.signatures.products import Products
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
-from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
+from estimator.diagnosis.signatures.traces import Scored
 from estimator.diagnosis.signatures.wandering import (
     log_beside_wandering,
     log_marginal,
     log_mean,
     log_turning,
-    wanderings,
 )
 from estimator.least_squares import orthonormal
 from estimator.session import Array
@@ -51,45 +57,12 @@ from estimator.significance import family_wise, p_value
 SCREEN = 0.01
 """p-value of the best course, all courses together, below which it is looked at closely; it names nothing."""
 CLOSEST = 3
-"""Courses that are looked at closely by either measure: next to the best one others may explain almost as much."""
-OVERLAP = 1e-4
-"""Least eigenvalue of the correlation of traces that counts as a direction: below it amplitudes would cancel."""
-ONE_ROW = 0.7
-"""Share of a shape's energy that one row may hold, as the first does of a block that settles within three: more is
-something that befell the row."""
+"""Courses that are looked at closely by either measure, beside the best of every cause: next to the best one others may
+explain almost as much."""
 MOST = 1e15
 """Shapes and sets of sensors that are counted: nothing that was chosen among more is believed."""
 RULED_OUT = 20.0
 """ln evidence by which a rival of a course is out of the question: no list shows a share of 1e-9."""
-
-
-@dataclass(frozen=True, eq=False)
-class EventCourse:
-    """A cause's shapes with one nonlinear parameter, one shape a sensor."""
-
-    traces: Traces
-    numbers: tuple[int, ...]
-    """Of the shapes, in the order of the sensors."""
-    tried: float
-    """n_ψ, how many nonlinear parameters the cause is tried with."""
-
-    @property
-    def sensors(self) -> tuple[int, ...]:
-        """Of its shapes."""
-        return tuple(int(i) for i in self.traces.sensor[list(self.numbers)])
-
-    def on(self, sensors: Sequence[int]) -> "EventCourse":
-        """Those of some sensors."""
-        return self.of([k for k in self.numbers if self.traces.sensor[k] in sensors])
-
-    def of(self, numbers: Sequence[int]) -> "EventCourse":
-        """Those of some numbers."""
-        return replace(self, numbers=tuple(numbers))
-
-    def scored(self, k: int) -> Scored:
-        """The shape of one number, still to be scored."""
-        shape, trace = self.traces.whole(k)
-        return Scored(self.traces.cause, shape, self.traces.lasting[k], trace, 0.0, 0, 0.0, 1.0, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,36 +143,6 @@ def significant_course(start: SearchState) -> tuple[Followed, tuple[Scored, ...]
     return followed, event
 
 
-def courses(residuals: WhitenedResiduals, traces: Traces) -> list[EventCourse]:
-    """A cause's shapes by their nonlinear parameters, where two sensors or more show them in more rows than one."""
-    rows, m = residuals.baseline.residual.size, len(residuals.baseline.unstated)
-    square = np.einsum("snq,snq->sn", traces.columns[:, :rows], traces.columns[:, :rows])
-    shown = np.sqrt(square.sum(axis=1)) > INVISIBLE * np.linalg.norm(traces.raw, axis=1)
-    of_row = square.reshape(len(square), -1, m).sum(axis=2)
-    shown &= of_row.max(axis=1) < ONE_ROW * of_row.sum(axis=1)
-    grouped: dict[tuple[float, ...], list[int]] = {}
-    for k in np.flatnonzero(shown & (traces.sensor >= 0)).tolist():
-        grouped.setdefault(traces.shapes[k].nonlinear, []).append(k)
-    several = [tuple(numbers) for numbers in grouped.values() if len(numbers) > 1]
-    return [EventCourse(traces, numbers, len(several)) for numbers in several]
-
-
-def without_formula(start: SearchState) -> list[EventCourse]:
-    """The likeliest smooth course that no formula gives, of all sensors; none in a block of one, nor in noise that what
-    it leaves must tell."""
-    residuals, setting, m = start.residuals, start.baseline.setting, start.sensor_count
-    if m < 2 or start.baseline.unstated.any():
-        return []
-    found, cause = FreeCourse.of(wanderings(residuals)[1].trace, residuals.z, m), SharedCourse()
-    nonlinear = tuple(found.waves.tolist())
-    shapes = tuple(Shape((i,), cause.placed(setting, i, nonlinear), nonlinear) for i in range(m))
-    columns = np.concatenate([shape.columns for shape in shapes], axis=-1)
-    trace, raw = residuals.trace(columns, 0.0).T[..., None], np.linalg.norm(residuals.whitened(columns), axis=0)
-    products, sensor = Products.of(residuals, trace), np.arange(m)
-    traces = Traces(cause, shapes, (False,) * m, sensor, trace, raw[:, None], m, products)
-    return [replace(course, tried=found.tried) for course in courses(residuals, traces)]
-
-
 def closest(start: SearchState, every: Sequence[EventCourse]) -> list[EventCourse]:
     """The courses that all sensors together, or a few of them, show best; none where that is chance."""
     energy, freedom = energies(start.residuals, every)
@@ -208,8 +151,10 @@ def closest(start: SearchState, every: Sequence[EventCourse]) -> list[EventCours
     few = likeliest_few(start, every) - price
     if (p_value(energy, freedom) * len(every)).min() > SCREEN and few.max() < SURE:
         return []
-    leaders = [k for values in (whole, few) for k in np.argsort(-values, kind="stable")[:CLOSEST].tolist()]
-    return [every[k] for k in dict.fromkeys(leaders)]
+    by_whole = np.argsort(-whole, kind="stable").tolist()
+    of_cause = {id(every[k].traces): k for k in reversed(by_whole)}
+    by_few = np.argsort(-few, kind="stable").tolist()
+    return [every[k] for k in dict.fromkeys([*by_whole[:CLOSEST], *by_few[:CLOSEST], *of_cause.values()])]
 
 
 def likeliest_few(start: SearchState, every: Sequence[EventCourse]) -> Array:
@@ -269,29 +214,6 @@ def powers_apart(
         every.append(values[1:])
         own.append(float(values[0]))
     return every, own
-
-
-def energies(residuals: WhitenedResiduals, every: Sequence[EventCourse]) -> tuple[Array, Array]:
-    """(C,) T and (C,) int its degrees of freedom of courses, each with a size of every sensor."""
-    pairs = [energy_of(residuals, course) for course in every]
-    return np.array([energy for energy, _ in pairs]), np.array([freedom for _, freedom in pairs])
-
-
-def energy_of(residuals: WhitenedResiduals, course: EventCourse) -> tuple[float, int]:
-    """T and its degrees of freedom of one course."""
-    unit = unit_traces(course)
-    size, turn = eigh(unit.T @ unit)
-    independent = size > OVERLAP
-    along = (turn.T @ (unit.T @ residuals.z))[independent]
-    return float((along**2 / size[independent]).sum()), int(independent.sum())
-
-
-def unit_traces(course: EventCourse) -> Array:
-    """(n, k) traces of a course's sensors side by side, each of length one."""
-    columns = course.traces.columns[list(course.numbers)]
-    flat = columns.swapaxes(0, 1).reshape(columns.shape[1], -1)
-    norms = np.linalg.norm(flat, axis=0)
-    return np.asarray(flat / np.where(norms > 0, norms, 1.0))
 
 
 def loadings(start: SearchState, course: EventCourse) -> Loadings:
@@ -360,14 +282,17 @@ def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
 
 def ranked(start: SearchState, followed: Followed, event: Sequence[Scored]) -> tuple[Detection, ...]:
     """The course's sensors as findings, with the causes that the same sensors may share instead; empty where one of
-    these is likelier."""
+    these is likelier.
+
+    One that can be named was a candidate with the sensors that follow it (`closest`), and is an alternative at most.
+    """
     sensors = followed.course.sensors
     power, freedom = sum(s.statistic for s in event), sum(s.freedom for s in event)
     whole = float(bayes_factor(power, freedom)) - float(np.log(followed.course.tried))
     rivals = shared_rivals(start, event, sensors)
-    if any(log_evidence > whole for _, log_evidence in rivals):
+    if any(log_evidence > whole for course, log_evidence in rivals if not course.traces.cause.shared_sentence):
         return ()
-    rivals = [(course, log_evidence) for course, log_evidence in rivals if log_evidence > whole - RULED_OUT]
+    rivals = [(course, min(evidence, whole)) for course, evidence in rivals if evidence > whole - RULED_OUT]
     given = scores_given(start, start.traces, None)
     common = [(given.scored(k), e) for k, e in given.ranked() if given.sensor[k] < 0]
     p_family, named = family_p_value(start, event), followed.sure if len(followed.sure) > 1 else frozenset(sensors)

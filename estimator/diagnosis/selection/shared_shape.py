@@ -12,9 +12,9 @@ one column more for all sensors together, so that ψ has an uncertainty and ever
 Against it every sensor may have a shape of its own, each of those that are tried as likely beforehand as for all. With
 T_i(ψ) what a sensor's own trace explains beside those of the others at ψ̂, they share one shape where
 
-    ln mean_ψ exp ½w[T(ψ) − T(ψ̂)] − Σ_i ln mean_ψ exp ½w[T_i(ψ) − T_i(ψ̂)] > −ln 19,        w = g/(1 + g)
+    ln mean_ψ exp ½w[T(ψ) − T(ψ̂)] − Σ_i ln mean_ψ exp ½w[T_i(ψ) − T_i(ψ̂)] > −ln 100,        w = g/(1 + g)
 
-with sizes N(0, g): the ln of the Bayes factor. Below that bound they are surely apart, and about zero the session does
+with sizes N(0, g): the ln of the Bayes factor. Below that bound they are apart, and about zero the session does
 not tell, so that one misfortune is likelier than many. No share of the sensors decides, and no strong few: a weak one
 that fits ill speaks against it as loudly as it can.
 """
@@ -33,8 +33,8 @@ from estimator.diagnosis.signatures.traces import Scored
 from estimator.least_squares import FAINT, least_squares, orthonormal
 from estimator.session import Array
 
-APART = float(-np.log(19))
-"""ln Bayes factor below which each sensor surely has a shape of its own."""
+APART = float(-np.log(100))
+"""ln Bayes factor below which each sensor has a shape of its own: one in a hundred shared courses at most is below."""
 
 VAGUE = 2.0
 """Sigmas of its own below which no size is known once ψ is free: then the session does not determine ψ."""

@@ -22,7 +22,7 @@ import numpy as np
 
 from estimator.arrays import eigh
 from estimator.causes.fixture import turned
-from estimator.causes.shared import walk, walking_rate
+from estimator.causes.shared import KINDS
 from estimator.content import once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
@@ -75,24 +75,23 @@ class Wandering:
 @once
 def wanderings(residuals: WhitenedResiduals) -> tuple[Wandering, ...]:
     """Zeros that walk, and zeros whose rate walks."""
-    rows = residuals.baseline.setting.rows
-    return Wandering.of(residuals, walk(rows)), Wandering.of(residuals, walking_rate(rows))
+    return tuple(Wandering.of(residuals, waves(residuals.baseline.setting.rows)) for waves in KINDS)
 
 
 def log_wandering(residuals: WhitenedResiduals) -> float:
-    """ln evidence of courses of all zeros, each its own, against no effect; the likelier kind of course."""
-    return max(log_mean(log_ratio(residuals, *kind.power_and_size())) for kind in wanderings(residuals))
+    """ln evidence of courses of all zeros, each its own, against no effect, a mean over kinds of courses."""
+    return log_mean([log_mean(log_ratio(residuals, *kind.power_and_size())) for kind in wanderings(residuals)])
 
 
 def log_beside_wandering(residuals: WhitenedResiduals, trace: Array, sizes: Array) -> tuple[float, float]:
     """ln evidence of courses of all zeros, each its own, and of the same with traces (n, k) of amplitudes N(0, s)
-    beside them, ``sizes`` (S,), against no effect; the likelier kind of course."""
+    beside them, ``sizes`` (S,), against no effect, a mean over kinds of courses."""
     together = []
     for kind in wanderings(residuals):
         (power, size), (more_power, more_size) = kind.power_and_size(), kind.beside(residuals.z, trace, sizes)
         values = log_ratio(residuals, power[:, None] + more_power, size[:, None] + more_size)
         together.append(log_mean(values.ravel()))
-    return log_wandering(residuals), max(together)
+    return log_wandering(residuals), log_mean(together)
 
 
 def log_turning(residuals: WhitenedResiduals, sizes: Array) -> float:

@@ -54,6 +54,11 @@ def test_those_that_follow_are_named_whatever_their_number(count: int) -> None:
     assert members.sure == tuple(range(count))
 
 
+def test_who_shows_nothing_is_not_named_because_most_others_follow() -> None:
+    members = orthogonal([12.0] * 23 + [1.5]).members()
+    assert members.sure == tuple(range(23))
+
+
 def test_all_of_a_kind_cost_no_more_than_all_of_the_block() -> None:
     both = {KIND: 24, "gyroscope": 24}
     assert log_sets(both, {"gyroscope"}, 24) == pytest.approx(np.log(3 * 24))
