@@ -44,12 +44,12 @@ def test_the_change_is_the_difference_and_less_uncertain_on_one_stand(storage: S
     assert a3.deviation == pytest.approx(difference)
     assert abs(difference - 90 * MICRO_G) < 4 * (a3.uncertainty or 0)
     parts = [c.sensor("A3").bias.repeatability or 0 for c in (found.before, found.after)]
-    assert found.own["A3", "bias"] == pytest.approx(np.hypot(parts[0], parts[1]))
+    assert found.on_one_stand["A3", "bias"] == pytest.approx(np.hypot(parts[0], parts[1]))
     scale = [c.sensor("A3").scale.repeatability or 0 for c in (found.before, found.after)]
-    assert found.own["A3", "scale"] == pytest.approx(
+    assert found.on_one_stand["A3", "scale"] == pytest.approx(
         np.hypot(scale[0], scale[1]) / (found.before.sensor("A3").scale.value or 0)
     )
-    assert all(own <= (decisions[key].uncertainty or 0) * (1 + 1e-9) for key, own in found.own.items())
+    assert all(own <= (decisions[key].uncertainty or 0) * (1 + 1e-9) for key, own in found.on_one_stand.items())
 
 
 @pytest.mark.parametrize(("at", "between"), [(0, 0), (1, 1)], ids=["at the first session", "at the second"])
@@ -85,7 +85,9 @@ def test_covariances_of_two_axes_are_added_in_one_frame(storage: Storage) -> Non
     assert np.abs(frames[0] - frames[1]).max() > 0.5
     rng = np.random.default_rng(7)
     change = simulated_axes(found.after, rng) - simulated_axes(found.before, rng)
-    assert found.own["A2", "axis"] == pytest.approx(np.sqrt(np.linalg.eigvalsh(np.cov(change.T))[-1]), rel=0.02)
+    assert found.on_one_stand["A2", "axis"] == pytest.approx(
+        np.sqrt(np.linalg.eigvalsh(np.cov(change.T))[-1]), rel=0.02
+    )
 
 
 def test_sessions_on_two_stands_have_no_stand_in_common() -> None:
