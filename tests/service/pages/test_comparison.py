@@ -49,7 +49,7 @@ def test_the_change_is_the_difference_and_less_uncertain_on_one_stand(storage: S
     assert found.on_one_stand["A3", "scale"] == pytest.approx(
         np.hypot(scale[0], scale[1]) / (found.before.sensor("A3").scale.value or 0)
     )
-    assert all(u <= (decisions[key].uncertainty or 0) * (1 + 1e-9) for key, u in found.on_one_stand.items())
+    assert all(own <= (decisions[key].uncertainty or 0) * (1 + 1e-9) for key, own in found.on_one_stand.items())
 
 
 @pytest.mark.parametrize(("at", "between"), [(0, 0), (1, 1)], ids=["at the first session", "at the second"])
