@@ -34,7 +34,7 @@ with http_client(create_app(settings)) as client:
 """Imports all that is left, starts the service, and asks it for a few answers."""
 
 
-PARTS = {
+PARTS: dict[str, dict[str, str]] = {
     "service/papers/seal": {},
     "service/papers/onboard": {"service/all_api.py": "onboard"},
     "service/people/oidc": {"service/all_pages.py": "oidc_pages"},
