@@ -15,10 +15,11 @@ calibration brings, before the noise of the reading.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.curves import Curve, ThermalCurves
 from estimator.message import joined, say
 from estimator.parameters import ELEMENTS
 from estimator.results import Calibration, SensorCalibration
@@ -172,3 +173,36 @@ def _covariance(calibration: Calibration, sensors: Sequence[SensorCorrection]) -
     places = [calibration.names.index(f"{s.name}.{element}") for s in sensors for element in ELEMENTS]
     assumed = np.array([element == "quadratic" and not s.quadratic_known for s in sensors for element in ELEMENTS])
     return np.where(assumed | assumed[:, None], 0.0, calibration.covariance[np.ix_(places, places)])
+
+
+def at_temperature(calibration: Calibration, temperature: float) -> Calibration:
+    """The calibration as it is at a temperature, °C, with the band's uncertainty; itself where it has no curves.
+
+    Correlations with axes and quadratic terms are left out: these are the same at every temperature.
+    """
+    curves = calibration.thermal
+    if curves is None:
+        return calibration
+    known, covariance = {own.name: own for own in curves.sensors}, calibration.covariance.copy()
+    sensors = []
+    for sensor in calibration.sensors:
+        own = known.get(sensor.name)
+        parts = {} if own is None else {"scale": own.scale, "bias": own.bias}
+        moved = {name: _at(curves, curve, temperature) for name, curve in parts.items() if curve is not None}
+        places = [calibration.names.index(f"{sensor.name}.{name}") for name in moved]
+        block = np.diag([sigma**2 for _, sigma in moved.values()])
+        if own is not None and own.cross is not None:
+            powers = curves.powers(np.array([temperature]), len(own.cross))[0]
+            block[0, 1] = block[1, 0] = powers @ own.cross @ powers
+        if moved:
+            covariance[places], covariance[:, places] = 0.0, 0.0
+            covariance[np.ix_(places, places)] = block
+        changed = {n: replace(getattr(sensor, n), value=value, sigma=sigma) for n, (value, sigma) in moved.items()}
+        sensors.append(replace(sensor, **changed))
+    return replace(calibration, sensors=tuple(sensors), covariance=covariance)
+
+
+def _at(curves: ThermalCurves, curve: Curve, temperature: float) -> tuple[float, float]:
+    """Value and one sigma, SI, at a temperature, °C."""
+    at = np.array([temperature])
+    return float(curves.value(curve, at)[0]), float(curves.sigma(curve, at)[0])

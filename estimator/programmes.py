@@ -5,16 +5,18 @@ from typing import TYPE_CHECKING
 from estimator.calibration import calibrate as calibrate_block
 from estimator.on_demand import function_on_demand
 from estimator.results import Calibration
-from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, CalibrationSession
+from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, THERMAL, CalibrationSession
 
 if TYPE_CHECKING:
     from estimator.alignment import align, rate_table
     from estimator.alignment.as_calibration import alignment_calibration, rate_table_calibration
+    from estimator.thermal import calibrate_thermal
 else:
     align = function_on_demand("estimator.alignment", "align")
     rate_table = function_on_demand("estimator.alignment", "rate_table")
     alignment_calibration = function_on_demand("estimator.alignment.as_calibration", "alignment_calibration")
     rate_table_calibration = function_on_demand("estimator.alignment.as_calibration", "rate_table_calibration")
+    calibrate_thermal = function_on_demand("estimator.thermal", "calibrate_thermal")
 
 
 def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:
@@ -34,4 +36,6 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
         return alignment_calibration(align(session))
     if session.programme == RATE_TABLE:
         return rate_table_calibration(rate_table(session))
+    if session.programme == THERMAL:
+        return calibrate_thermal(session, quadratic=quadratic)
     return calibrate_block(session, quadratic=quadratic)

@@ -10,6 +10,7 @@ import numpy as np
 
 from estimator.codec import DEGREES, RUN, Document, named
 from estimator.coverage import coverage_factor
+from estimator.curves import ThermalCurves
 from estimator.json_object import Json
 from estimator.session import Array
 
@@ -180,13 +181,13 @@ class Calibration(
     format="imu-calibration/1",
     order=(
         "unit", "method", "sensors", "fit", "gauge", "names", "units", "covariance", "repeatability", "residuals",
-        "parity",
+        "parity", "thermal",
     ),
     keys={
         "names": "covariance.names", "units": "covariance.units",
         "covariance": "covariance.total", "repeatability": "covariance.repeatability",
     },
-    optional=("parity",),
+    optional=("parity", "thermal"),
 ):  # fmt: skip
     """The calibration of one block: m sensors, P = 5 m parameters with their joint covariance."""
 
@@ -208,6 +209,8 @@ class Calibration(
     """What holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all axes)."""
     parity: Json | None = None
     """``imu-parity/1``, where the calibration is a reference moved by what a recording shows."""
+    thermal: ThermalCurves | None = None
+    """Bias and scale factor over temperature, of a thermal programme; everything else is at its reference."""
 
     def sensor(self, name: str) -> SensorCalibration:
         """The calibration of the sensor called ``name``; KeyError if there is none."""

@@ -17,11 +17,14 @@ ARBITRARY_ORIENTATIONS = "arbitrary-orientations"
 ROTATION_ALIGNMENT = "rotation-alignment"
 RATE_TABLE = "rate-table"
 IN_SERVICE = "in-service"
+THERMAL = "thermal"
 CALIBRATIONS = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS)
 """Programmes that calibrate every sensor of a block."""
+CORRECTED = (*CALIBRATIONS, THERMAL)
+"""Programmes whose result firmware can correct readings by."""
 DIAGNOSED = (*CALIBRATIONS, ROTATION_ALIGNMENT)
 """Programmes in which causes are looked for: in alignments lever arms alone."""
-PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_TABLE, IN_SERVICE)
+PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_TABLE, IN_SERVICE, THERMAL)
 """All, as session files name them."""
 AS_FOUND, AS_LEFT = "as-found", "as-left"
 STAGES = (AS_FOUND, AS_LEFT)

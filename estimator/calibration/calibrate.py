@@ -37,9 +37,9 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
     return calibrate_free(rows, quadratic=quadratic)
 
 
-def averaged(session: CalibrationSession) -> CalibrationSession:
-    """The session with one row a position; ScheduleError where its programme does not calibrate."""
-    if session.programme not in CALIBRATIONS:
+def averaged(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRATIONS) -> CalibrationSession:
+    """The session with one row a position; ScheduleError where its programme is none of those that calibrate."""
+    if session.programme not in programmes:
         hint = "; compare it with a calibration: imu-health parity" if session.programme == IN_SERVICE else ""
         raise ScheduleError(
             [

@@ -11,6 +11,7 @@ from estimator.session import (
     GYROSCOPE,
     RATE_TABLE,
     ROTATION_ALIGNMENT,
+    THERMAL,
     TWO_AXIS_STAND,
     CalibrationSession,
 )
@@ -29,7 +30,7 @@ def check_schedule(programme: str, table: Rows, kinds: set[str], *, raw: bool, p
     """Record schedules that cannot be calibrated from whatever is read; what is hard to observe is a result instead."""
     if programme == TWO_AXIS_STAND:
         _check_beta(table, problems)
-    if programme in (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS):
+    if programme in (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, THERMAL):
         _check_positions(table, raw, problems)
     if programme in NEEDED_KINDS:
         _check_turning(programme, table, kinds, raw, problems)

@@ -19,6 +19,7 @@ from estimator.session import (
     ARBITRARY_ORIENTATIONS,
     GYROSCOPE,
     ROTATION_ALIGNMENT,
+    THERMAL,
     TWO_AXIS_STAND,
     Array,
     Site,
@@ -36,7 +37,7 @@ YEARS = Interval(1950, 2200)
 """Strapdown systems are younger; later is a slip."""
 POWERED_ON, SINCE_POWER_ON = "powered_on_at", "time_since_power_on_s"
 """The keys that tell when the unit was switched on: a moment, or how long that was before the first row."""
-NEEDS_GRAVITY = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT)
+NEEDS_GRAVITY = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, THERMAL)
 NEEDS_LATITUDE = (TWO_AXIS_STAND, ROTATION_ALIGNMENT)
 """Programmes whose accelerometers need gravity, and whose gyros the latitude."""
 

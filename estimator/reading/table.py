@@ -13,7 +13,7 @@ from estimator.reading.fields import Fields
 from estimator.reading.interval import Interval
 from estimator.reading.keys import DIRECTIONS
 from estimator.reading.shape import check_unknown, read_columns
-from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, TWO_AXIS_STAND, Array, Sensor
+from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, THERMAL, TWO_AXIS_STAND, Array, Sensor
 
 RUNS = ("direct", "flipped")
 """What the column ``run`` may say."""
@@ -54,7 +54,7 @@ def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) ->
         flipped=_flipped(columns) if on_stand else None,
         beta=np.radians(_required(columns, "beta_deg")) if on_stand else None,
         time=_time(columns),
-        temperature=_optional(columns, "temperature_c"),
+        temperature=(_required if programme == THERMAL else _optional)(columns, "temperature_c"),
         vibration=_vibration(columns, len(names)),
         turn_angle=_turning(columns, "turn_angle_deg", needed=programme == ROTATION_ALIGNMENT),
         turn_rate=_turning(columns, "turn_rate_deg_s", needed=programme == RATE_TABLE),

@@ -15,7 +15,7 @@ from rich.text import Text
 
 from estimator import calibrate
 from estimator.results import Calibration, Estimate, SensorCalibration
-from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
+from estimator.session import CORRECTED, CalibrationSession, Sensor
 from service.commands.console import AsJson, Files, for_each, print_json, screen
 from service.commands.speech import translated
 from service.ingest import read_file
@@ -29,6 +29,7 @@ from service.kit.measures import (
     method_name,
     number,
 )
+from service.sessions.words.curves import curves_in_words
 from service.sessions.words.readings import fit_in_words
 
 NOT_OBSERVABLE = "not observable"
@@ -56,7 +57,21 @@ def _print_table(result: Result) -> None:
 
 def calibration_view(session: CalibrationSession, calibration: Calibration) -> RenderableType:
     """The whole calibration of one session; ± is U, the stand's errors included."""
-    return Group(_heading(session, calibration), _parameters(session, calibration), *_notes(calibration), Text(""))
+    parts = (_heading(session, calibration), _parameters(session, calibration), *temperature_view(calibration))
+    return Group(*parts, *_notes(calibration), Text(""))
+
+
+def temperature_view(calibration: Calibration) -> Iterator[RenderableType]:
+    """What a thermal session shows of scale factors and biases."""
+    curves = curves_in_words(calibration)
+    if curves is None:
+        return
+    yield Text(f"Over temperature: changes from {curves.reference}, where all other values hold, ± U of the value")
+    table = _table("sensor", "parameter", "order", f"at {curves.lowest}", f"at {curves.highest}")
+    for row in curves.rows:
+        table.add_row(escape(row.sensor), row.parameter, str(row.order), row.cold, row.hot)
+    yield table
+    yield from (Text(translated(line), "yellow") for line in curves.findings)
 
 
 def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
@@ -70,7 +85,7 @@ def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
 
 def _parameters(session: CalibrationSession, calibration: Calibration) -> RenderableType:
     """Two tables of one row a sensor: side by side where the screen is wide enough."""
-    if session.programme not in CALIBRATIONS:
+    if session.programme not in CORRECTED:
         return _axes_of_block(calibration)
     numbers = _table("sensor", "scale, off nominal", "bias", "quadratic")
     axes = _table("sensor", "axis, block axes", "±")

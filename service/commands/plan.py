@@ -1,6 +1,7 @@
 """`imu-health plan`, `missing` and `ready`: expected results of a session before it is measured, its missing positions
 during it, and whether its unit is warm and still enough."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, TypeVar
 from urllib.parse import urlencode
@@ -13,13 +14,20 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from estimator.calibration.free.schedule import GENERIC
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.errors import Problem, SessionError
 from estimator.json_object import Json
 from estimator.planning import OrientationRank, Plan, missing, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
+from estimator.reading.bounds import WITHIN
+from estimator.results import Calibration
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
+from estimator.simulate import orientation_schedule
+from estimator.thermal.plan import expected
+from estimator.thermal.simulate import thermal_schedule
 from service.client import connect
+from service.commands.calibrate import temperature_view
 from service.commands.console import AsJson, print_json, screen, usable
 from service.commands.speech import FAILED, output_language
 from service.ingest import read_file
@@ -78,11 +86,16 @@ def plan_session(
         int | None,
         typer.Option(help="Propose this many still orientations instead of a stand.", show_default=False),
     ] = None,
+    temperatures: Annotated[
+        str | None,
+        typer.Option(help="Soaks of a thermal session in order, °C: 20,-40,70,20.", show_default=False),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Plan a session: elevation, positions, expected uncertainty of every parameter, and what it cannot see.
 
-    A SESSION in arbitrary orientations is answered with the rank of its orientations and what to add.
+    A SESSION in arbitrary orientations is answered with the rank of its orientations and what to add. --temperatures
+    is answered with the bands of bias and scale factor over temperature, the orientations repeated at every soak.
     """
     question = checked(
         PlanQuestion, kind=kind, sensors=sensors, elevation=alpha, positions=positions, runs=runs, minutes=minutes,
@@ -90,16 +103,45 @@ def plan_session(
     )  # fmt: skip
     with usable(file or Path("plan")):
         pattern = question.cone() if file is None else read_file(file)
-        if orientations is not None or pattern.programme == ARBITRARY_ORIENTATIONS:
+        if temperatures is not None:
+            sigma = question.sigma(pattern) if file is None or noise is not None else input_noise(pattern)
+            _show(over_temperature(pattern, soaks(temperatures), orientations or GENERIC, sigma), as_json)
+        elif orientations is not None or pattern.programme == ARBITRARY_ORIENTATIONS:
             _show(rank_of(pattern, orientations), as_json)
         else:
             sigma = question.sigma(pattern) if file is None or noise is not None else input_noise(pattern)
             _show(plan(pattern, question.request(head_kind(pattern)), sigma=sigma), as_json)
 
 
-def _show(result: Plan | OrientationRank, as_json: bool) -> None:
+def soaks(text: str) -> tuple[float, ...]:
+    """``20,-40,70`` as temperatures, °C; a usage error when it is not of that form."""
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        found = ()
+    if not found or any(temperature not in WITHIN["temperature_c"] for temperature in found):
+        raise typer.BadParameter(f"--temperatures {text!r}: write soaks in °C, for instance 20,-40,70,20")
+    return found
+
+
+def over_temperature(
+    pattern: CalibrationSession, temperatures: tuple[float, ...], orientations: int, sigma: Array
+) -> Calibration:
+    """What a thermal session of the block would tell; ``sigma`` (m,) of a reading at the input, m/s² (rad/s)."""
+    if not 1 <= orientations <= MOST_ORIENTATIONS:
+        raise SessionError([Problem("--orientations", f"ask for 1 to {MOST_ORIENTATIONS}")])
+    sensors = tuple(replace(sensor, bias_repeatability=0.0) for sensor in pattern.sensors)  # sigma holds it
+    up = proposed_orientations(sensors, orientations)
+    schedule = orientation_schedule(sensors, pattern.site, up, unit_name=pattern.unit)
+    noise = sigma * np.abs([sensor.nominal_scale for sensor in sensors])
+    return expected(thermal_schedule(schedule, np.random.default_rng(0), temperatures), noise)
+
+
+def _show(result: Plan | OrientationRank | Calibration, as_json: bool) -> None:
     if as_json:
         print_json(result.to_dict())
+    elif isinstance(result, Calibration):
+        screen().print(Group(*temperature_view(result)))
     else:
         screen().print(plan_view(result) if isinstance(result, Plan) else orientation_view(result))
 

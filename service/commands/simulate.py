@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from math import ceil
@@ -24,11 +24,13 @@ from estimator.session import (
     RATE_TABLE,
     ROTATION_ALIGNMENT,
     SIMULATED,
+    THERMAL,
     TWO_AXIS_STAND,
     Array,
     CalibrationSession,
 )
 from estimator.simulate import StandDraw, draw_stand, scattered, uncounted, whole_pulses
+from estimator.thermal.simulate import ThermalLaw, over_temperature, thermal_schedule, usual_law
 from estimator.writing import session_document
 from service.commands.console import AsJson, print_json
 from service.commands.hiding import (
@@ -66,8 +68,13 @@ MOST_AFTER = 4
 """Sessions that are dated from the first date on; those of a longer series end with them."""
 FLIGHT_AFTER = timedelta(days=30)
 """From a calibration to the recording in service that follows it."""
-KNOWN = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
+KNOWN = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE, THERMAL)
 """Programmes that can be simulated."""
+STILL: dict[str, Callable[[CalibrationSession, np.random.Generator], CalibrationSession]] = {
+    ARBITRARY_ORIENTATIONS: lambda schedule, _: schedule,
+    THERMAL: thermal_schedule,
+}
+"""What is made of still orientations, by programme."""
 ON_TURNTABLE = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes of a turntable, which has no two-axis stand's geometry."""
 STAND_ERRORS = ("theta_x", "theta_y", "alpha")
@@ -104,6 +111,8 @@ class Simulated:
     truth: SensorParameters | Truth
     draw: StandDraw | None
     """None without a stand."""
+    law: ThermalLaw | None = None
+    """What temperature does; None where a programme holds it."""
 
 
 def read_drift(text: str) -> ParameterMove:
@@ -124,6 +133,17 @@ def read_levers(texts: list[str]) -> Array | None:
     for match in filter(None, matches):
         places[int(match["sensor"]) - 1, :2] = CENTIMETRE * float(match["x"]), CENTIMETRE * float(match["y"])
     return places if matches else None
+
+
+def check_drift(block: str, programme: str, sensors: int, drift: list[str]) -> None:
+    """A usage error where a drift is of no sensor of the block, or does not show in the programme."""
+    changes = tuple(map(read_drift, drift))
+    letter = block[0].upper()
+    if any(change.sensor >= sensors for change in changes) or any(text[0] != letter for text in drift):
+        named = f"{letter}1 to {letter}{sensors}"
+        raise typer.BadParameter(f"--drift names a sensor that is not there; the block has {named}")
+    if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
+        raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the biases of x and y")
 
 
 def safe_name(unit: str) -> str:
@@ -156,8 +176,9 @@ def simulate_files(
 
     `in-service` is a flight of the block that the same seed and serial number put on the stand, a month after each of
     its sessions; its drift shows from the first on. `arbitrary-orientations` is of accelerometers and as many rate
-    gyros, held still in so many positions. `rotation-alignment` and `rate-table` are of three accelerometers and three
-    gyros on a turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
+    gyros, held still in so many positions, `thermal` the same at soaks from −40 to 70 °C and back. `rotation-alignment`
+    and `rate-table` are of three accelerometers and three gyros on a turntable; there only the bias drifts, of A1 and
+    A2, the axes x and y. --json prints the truth.
 
     --hide puts a cause of the catalogue into the last session, for `imu-health diagnose` to find. Neither the file nor
     --json tells it; --answer does, and with the same options and seed it can be had later. Every file says that it is
@@ -167,12 +188,7 @@ def simulate_files(
     if programme not in KNOWN:
         raise typer.BadParameter(f"--programme is {programme}; give one of {', '.join(KNOWN)}")
     check_block(block, programme)
-    letter = block[0].upper()
-    if any(change.sensor >= sensors for change in changes) or any(text[0] != letter for text in drift or ()):
-        named = f"{letter}1 to {letter}{sensors}"
-        raise typer.BadParameter(f"--drift names a sensor that is not there; the block has {named}")
-    if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
-        raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the biases of x and y")
+    check_drift(block, programme, sensors, drift or [])
     levers = read_levers(lever_arm or [])
     if levers is not None and programme != ROTATION_ALIGNMENT:
         raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")
@@ -180,8 +196,8 @@ def simulate_files(
         raise typer.BadParameter(f"--warming: {programme} records no temperature; {TWO_AXIS_STAND} does")
     wish = read_request(hide, strength, sensor, answer, programme)
     rng = np.random.default_rng([seed, *unit.encode()])
-    if programme == ARBITRARY_ORIENTATIONS:
-        schedule = orientations(unit, sensors, positions, rng)
+    if programme in STILL:
+        schedule = STILL[programme](orientations(unit, sensors, positions, rng), rng)
     else:
         schedule = warmed(replace(schedule_of(block, sensors, "SIM", alpha, positions), unit=unit), warming)
     made = (
@@ -239,6 +255,7 @@ def _simulated(
     count = len(schedule.sensors)
     norm = norms_of(schedule.sensors)
     start = scattered(schedule.sensors, norm, rng)
+    law = usual_law(schedule.sensors, rng) if schedule.programme == THERMAL else None
     for number in range(sessions):
         at = _measured(number, sessions)
         truth = start.stepped((number + in_service) * step_of(changes, count, schedule.block), norm)
@@ -249,7 +266,7 @@ def _simulated(
         dated = _dated(schedule, at)
         draw = draw_stand(dated, rng) if schedule.stand is not None else None
         session = uncounted(dated, truth, rng, noise=noise_of(schedule, noise), draw=draw)
-        yield Simulated(session, truth, draw)
+        yield Simulated(session if law is None else over_temperature(session, truth, law), truth, draw, law)
 
 
 def _turned(
@@ -301,7 +318,12 @@ def _turntable(truth: Truth) -> Json:
 
 def _sensors(simulated: Simulated, truth: SensorParameters) -> Json:
     stand = None if simulated.draw is None else simulated.draw.constant
-    errors = {} if stand is None else {"stand_arcsec": {k: float(getattr(stand, k)) / ARCSEC for k in STAND_ERRORS}}
+    errors: Json = {} if stand is None else {"stand_arcsec": {k: getattr(stand, k) / ARCSEC for k in STAND_ERRORS}}
+    if simulated.law is not None:
+        errors = {
+            "scale_by_temperature": simulated.law.scale.tolist(),
+            "bias_by_temperature": simulated.law.bias.tolist(),
+        }
     return {
         "sensors": [
             {

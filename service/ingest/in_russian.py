@@ -36,7 +36,8 @@ COLUMNS = {
 VALUES = {
     "accelerometer": "акселерометр", "gyroscope": "гироскоп", "two-axis-stand": "двухосный стенд",
     "arbitrary-orientations": "произвольные положения", "rotation-alignment": "выставка на поворотном столе",
-    "rate-table": "стол угловых скоростей", "in-service": "в эксплуатации", "as-found": "до работ",
+    "rate-table": "стол угловых скоростей", "in-service": "в эксплуатации",
+    "thermal": "температурная калибровка", "as-found": "до работ",
     "as-left": "после работ", "free-running": "непрерывный", "reset": "со сбросом", "direct": "прямая",
     "flipped": "обратная", "measured": "измерение", "simulated": "имитация",
 }  # fmt: skip

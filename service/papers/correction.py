@@ -8,11 +8,12 @@ import numpy as np
 from estimator.applied_vector import magnitude, stand_geometry
 from estimator.calibration.calibrate import averaged
 from estimator.codec import json_numbers
-from estimator.correction import BlockCorrection, Correction, SensorCorrection, correction_of
+from estimator.correction import BlockCorrection, Correction, SensorCorrection, at_temperature, correction_of
+from estimator.curves import ThermalCurves
 from estimator.health.temperature_law import NO_STEPS, Steps, TemperatureStep
 from estimator.json_object import Json
 from estimator.results import Calibration
-from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array, CalibrationSession
+from estimator.session import ACCELEROMETER, CORRECTED, TWO_AXIS_STAND, Array, CalibrationSession
 from service.errors import NotFoundError
 from service.ingest import read_upload
 from service.judging.covered import CoveredTemperatures
@@ -32,12 +33,19 @@ FORMULA = (
     "vector = matrix * a, over the sensors in the order of the block, in block axes",
 )
 """Of the sensor model solved for the input; step by step, as firmware computes it."""
+OVER_TEMPERATURE = (
+    "dT = temperature - reference_temperature_c, the temperature in degrees Celsius held within temperature_range_c",
+    "scale = sum of scale_over_temperature[k] * dT^k where it is given, bias = sum of bias_over_temperature[k] * dT^k",
+)
+"""Comes first where the session holds curves over temperature."""
 ALWAYS_LEFT = (
     "noise of the single reading",
-    "temperature: the parameters are those at the session's temperature",
     "nonlinearity beyond the quadratic term, asymmetry, hysteresis, cross-coupling",
 )
 """Errors that no such correction can remove."""
+ONE_TEMPERATURE = "temperature: the parameters are those at the session's temperature"
+BEYOND_RANGE = "temperature outside the range of the session, hysteresis and lag"
+"""The same of a session without curves over temperature, and of one with them."""
 DIGITS = 9
 """Of the worked example's numbers in words."""
 
@@ -66,9 +74,9 @@ def corrected(storage: Storage, id: str) -> Corrected:
         revisions = tuple(r for r in Models(store).of_session(id) if r.id <= stored.revision)
         steps = Sessions(store).temperature_steps((id,)).get(id, NO_STEPS)
         temperatures = covered_at(store, stored)
-    if stored.programme not in CALIBRATIONS:
+    if stored.programme not in CORRECTED:
         raise NotFoundError(f"Session {id!r} gives no correction: {stored.programme} does not calibrate a block.")
-    session = averaged(read_upload(storage.files.content(stored.sha256), stored.filename))
+    session = averaged(read_upload(storage.files.content(stored.sha256), stored.filename), CORRECTED)
     correction = correction_of(session, calibration)
     if not correction.blocks:
         raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(correction))}.")
@@ -78,12 +86,22 @@ def corrected(storage: Storage, id: str) -> Corrected:
 def correction_document(storage: Storage, id: str) -> Json:
     """imu-correction/1; NotFoundError where the session's programme gives none."""
     result = corrected(storage, id)
+    curves, blocks, moved = result.calibration.thermal, result.found.blocks, result.found.blocks
+    if curves is not None and result.session.temperature is not None:
+        first_row = at_temperature(result.calibration, float(result.session.temperature[0]))
+        moved = correction_of(result.session, first_row).blocks
     return {
         **_identity(result.stored, result.calibration),
-        "formula": list(FORMULA),
-        "blocks": [_block(block, result.session) for block in result.found.blocks],
+        **_temperatures(curves),
+        "formula": [*(OVER_TEMPERATURE if curves else ()), *FORMULA],
+        "blocks": [_block(block, at, result.session, curves) for block, at in zip(blocks, moved, strict=True)],
         "left_out": [{"sensor": name, "why": why} for name, why in result.found.left_out],
-        "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in result.found.blocks if _assumed(block)],
+        "not_corrected": [
+            ALWAYS_LEFT[0],
+            BEYOND_RANGE if curves else ONE_TEMPERATURE,
+            *ALWAYS_LEFT[1:],
+            *(_assumed(block) for block in blocks if _assumed(block)),
+        ],
         "extended_model": [_revision(revision) for revision in result.revisions],
         "temperature_laws": [_law(*place, step) for place, step in result.steps.items()],
         "temperatures_covered": None if result.temperatures is None else vars(result.temperatures),
@@ -110,14 +128,33 @@ def _identity(stored: StoredSession, calibration: Calibration) -> Json:
     }
 
 
-def _block(block: BlockCorrection, session: CalibrationSession) -> Json:
+def _temperatures(curves: ThermalCurves | None) -> Json:
+    if curves is None:
+        return {}
+    ends = [curves.lowest, curves.highest]
+    return {"reference_temperature_c": curves.reference_temperature, "temperature_range_c": ends}
+
+
+def _over_temperature(sensor: SensorCorrection, curves: ThermalCurves | None) -> Json:
+    """Coefficients in rising powers of dT."""
+    own = None if curves is None else next((one for one in curves.sensors if one.name == sensor.name), None)
+    if own is None:
+        return {}
+    curved = {"scale_over_temperature": own.scale, "bias_over_temperature": own.bias}
+    return {name: c.coefficients[: c.order + 1].tolist() for name, c in curved.items() if c is not None}
+
+
+def _block(
+    block: BlockCorrection, at_first: BlockCorrection, session: CalibrationSession, curves: ThermalCurves | None
+) -> Json:
+    """``at_first``: the same block at the temperature of the first row."""
     unit = _unit(block)
     return {
         "kind": block.kind,
         "gives": f"{'specific force' if block.kind == ACCELEROMETER else 'angular rate'}, {unit}, block axes",
-        "sensors": [_sensor(sensor, unit) for sensor in block.sensors],
+        "sensors": [_sensor(sensor, unit) | _over_temperature(sensor, curves) for sensor in block.sensors],
         "matrix": block.matrix.tolist(),
-        "example": _example(block, session),
+        "example": _example(at_first, session),
     }
 
 

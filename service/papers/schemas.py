@@ -39,7 +39,12 @@ class CorrectionDocument(BaseModel):
     model_revision: int = Field(description="Model revision in force; 0 is the baseline.")
     frame: str = Field(description="The axes of the result, and what holds them.")
     software: str = Field(description="What computed it.")
-    formula: list[str] = Field(description="Three steps from a reading to the vector.")
+    reference_temperature_c: float | None = Field(
+        None,
+        description="Of a thermal session: T₀ of `scale_over_temperature` and `bias_over_temperature` of a sensor.",
+    )
+    temperature_range_c: tuple[float, float] | None = Field(None, description="Where they hold; null without them.")
+    formula: list[str] = Field(description="The steps from a reading to the vector.")
     blocks: list[BlockCorrectionSchema] = Field(description="One a kind of sensor.")
     left_out: list[dict[str, str]] = Field(description="Sensors that cannot be corrected, and why.")
     not_corrected: list[str] = Field(description="What the formula leaves in the readings.")

@@ -122,7 +122,8 @@ SESSION_FILE: Json = {
         "unit": _text("Serial number of the unit."),
         "block": {"enum": KINDS, "description": "Kind of every sensor that does not state its own."},
         "programme": _text(
-            "`two-axis-stand`, `arbitrary-orientations`, `rotation-alignment`, `rate-table` or `in-service`."
+            "`two-axis-stand`, `arbitrary-orientations`, `rotation-alignment`, `rate-table`, `in-service` "
+            "or `thermal`."
         ),
         "sensors": {"type": "array", "items": SENSOR, "minItems": 3, "description": "At least three of each kind."},
         "table": TABLE,

@@ -7,7 +7,7 @@ from estimator.message import say, without_stop
 from estimator.parity import ParityResult
 from estimator.reading.sensors import PULSES
 from estimator.results import Calibration, Estimate, SensorCalibration
-from estimator.session import CALIBRATIONS
+from estimator.session import CORRECTED
 from service.diagnosis.sections import DiagnosisLine, diagnosis_line
 from service.diagnosis.words.causes import cause_on
 from service.judging.covered import CoveredTemperatures
@@ -35,12 +35,14 @@ from service.pages.unit.remarks import Remarks
 from service.papers.records import Traceability
 from service.papers.session_report import SessionReport
 from service.sessions.charts import ChartSet, noise_of, residual_charts
+from service.sessions.curve_charts import curve_charts
 from service.sessions.decision import Decision, Verdict, nominal_factor_of
 from service.sessions.doubt import Remedies, Reservations
 from service.sessions.lines import ResidualTable, residual_table
 from service.sessions.records import ALL_PARAMETERS, DiagnosisSummary, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import MEANINGS, STATES, Condition, condition_of, state_in_words
+from service.sessions.words.curves import CurvesInWords, curves_in_words
 from service.sessions.words.motion import MotionLine, motions_in_words
 from service.sessions.words.readings import FitWords, bands_in_words, combination_in_words, fit_in_words, switched_on
 
@@ -86,6 +88,9 @@ class SessionView:
     fit: FitWords
     parity: ParityView | None
     """Of a recording in service only."""
+    curves: CurvesInWords | None
+    """Of a thermal session only."""
+    curve_charts: tuple[ChartSet, ...]
     charts: tuple[ChartSet, ...]
     bands: str
     """What is drawn of the noise."""
@@ -157,6 +162,8 @@ def session_page(
         sensors=tuple(_sensor(s, parameters, judged, (coverage, units.get(s.name, ""))) for s in calibration.sensors),
         fit=fit_in_words(calibration) if parity is None else agreement_in_words(parity),
         parity=None if parity is None else parity_view(parity),
+        curves=curves_in_words(calibration),
+        curve_charts=curve_charts(calibration),
         charts=residual_charts(calibration),
         bands=bands_in_words(calibration, noise.times),
         residuals=residual_table(calibration),
@@ -168,7 +175,7 @@ def session_page(
         covered=covered_in_words(temperatures),
         switched_on=switched_on(report.session.time_since_power_on),
         diagnosis=diagnosis_line(diagnosis, failed),
-        gives_correction=report.session.programme in CALIBRATIONS,
+        gives_correction=report.session.programme in CORRECTED,
         motions=motions_in_words(report.motions, coverage),
         laws=laws_in_words(decisions),
         state=_state(report),

@@ -45,6 +45,8 @@ class ExportInput:
     """By kind of sensor."""
     noise: BlockNoise | None = None
     """At rest; None where the session holds no rests."""
+    temperature: float | None = None
+    """°C that the parameters hold at, of a session with curves over temperature."""
 
     @property
     def accelerometers(self) -> NominalVector | None:
@@ -72,6 +74,8 @@ def heading(given: ExportInput, system: str) -> Iterator[str]:
     yield from _uses(given)
     if given.simulated:
         yield "SIMULATED: this unit does not exist"
+    if given.temperature is not None:
+        yield f"parameters at {given.temperature:g} degrees Celsius; imu-correction/1 has them over temperature"
     yield from FRAME
 
 

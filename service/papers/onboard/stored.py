@@ -23,6 +23,7 @@ def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
         raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
     with storage.database.reading() as store:
         noise, use = SessionNoises(store).get(id), usable_unit(store, one.stored.unit, now)
+    curves = one.calibration.thermal
     return ExportInput(
         unit=one.stored.unit,
         session=one.stored.id,
@@ -36,4 +37,5 @@ def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
         software=f"imu-health {VERSION}",
         vectors={block.kind: nominal_vector(one.session, block) for block in one.found.blocks},
         noise=noise,
+        temperature=None if curves is None else curves.reference_temperature,
     )

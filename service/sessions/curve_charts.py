@@ -1,0 +1,101 @@
+"""Curves over temperature with their bands: a panel a sensor."""
+
+from collections.abc import Iterator
+from functools import cache
+
+import altair as alt
+import numpy as np
+
+from estimator.curves import Curve, ThermalCurves
+from estimator.json_object import Json
+from estimator.message import say
+from estimator.results import Calibration
+from estimator.session import Array
+from service.kit.measures import Measure, deviation_measure
+from service.sessions.charts import (
+    BAND,
+    DATA_FORM,
+    HEIGHT,
+    HIGH,
+    LEFT,
+    LOW,
+    RIGHT,
+    UNIT,
+    ChartSet,
+    Panel,
+    filled,
+    padded,
+    specification,
+    zero_line,
+)
+from service.sessions.words.curves import change
+
+POINTS = 56
+"""Temperatures that a curve is drawn at."""
+Named = tuple[str, str, Curve]
+"""Sensor, its kind, its curve."""
+
+
+def curve_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
+    """Changes from the reference temperature, one set a kind of sensor and parameter; none without curves."""
+    curves = calibration.thermal
+    return () if curves is None else tuple(_sets(calibration, curves))
+
+
+def _sets(calibration: Calibration, curves: ThermalCurves) -> Iterator[ChartSet]:
+    kinds = {sensor.name: sensor.kind for sensor in calibration.sensors}
+    for kind in dict.fromkeys(kinds[own.name] for own in curves.sensors):
+        own = [one for one in curves.sensors if kinds[one.name] == kind]
+        yield _set(curves, kind, "bias", {one.name: one.bias for one in own})
+        scales = {one.name: one.scale for one in own if one.scale is not None}
+        if scales:
+            yield _set(curves, kind, "scale", scales)
+
+
+def _set(curves: ThermalCurves, kind: str, parameter: str, own: dict[str, Curve]) -> ChartSet:
+    T = np.linspace(curves.lowest, curves.highest, POINTS)
+    found = {name: change(curves, curve, parameter, T) for name, curve in own.items()}
+    low = min(float((moved - u).min()) for moved, u in found.values())
+    high = max(float((moved + u).max()) for moved, u in found.values())
+    measure = deviation_measure(kind, parameter, max(-low, high))
+    bottom, top = padded(low * measure.factor, high * measure.factor)
+    left, right = padded(curves.lowest, curves.highest)
+    texts = {UNIT: measure.label, BAND: say("U, {label}", label=measure.label)}
+    words = {
+        "bias": say("Bias of the {kind}s over temperature", kind=kind),
+        "scale": say("Scale factor of the {kind}s over temperature", kind=kind),
+    }
+    return ChartSet(
+        name=f"curves-{kind}-{parameter}",
+        heading=words[parameter],
+        spec=filled(_spec(), {LEFT: left, RIGHT: right, LOW: bottom, HIGH: top, **texts}),
+        panels=tuple(_panel(name, T, *found[name], measure, own[name].order) for name in own),
+    )
+
+
+def _panel(name: str, T: Array, moved: Array, spread: Array, measure: Measure, order: int) -> Panel:
+    data: list[Json] = [
+        {
+            "x": float(f"{t:.4g}"),
+            "y": float(f"{y * measure.factor:.5g}"),
+            "low": float(f"{(y - u) * measure.factor:.5g}"),
+            "high": float(f"{(y + u) * measure.factor:.5g}"),
+            "band": float(f"{u * measure.factor:.3g}"),
+        }
+        for t, y, u in zip(T, moved, spread, strict=True)
+    ]
+    return Panel(name, say("polynomial of order {order}", order=order), None, {DATA_FORM: data})
+
+
+@cache
+def _spec() -> Json:
+    """With blanks for the unit and the ranges."""
+    x = alt.X("x:Q", title="°C", axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
+    scale = alt.Scale(domain=[LOW, HIGH])
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    shade = base.mark_area(color="var(--accent)", opacity=0.25).encode(y=alt.Y("low:Q", scale=scale), y2="high:Q")
+    line = base.mark_line(color="var(--accent)", strokeWidth=2).encode(
+        y=alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=scale),
+        tooltip=[alt.Tooltip("x:Q", title="°C"), alt.Tooltip("y:Q", title=UNIT), alt.Tooltip("band:Q", title=BAND)],
+    )
+    return specification([shade, zero_line(), line], HEIGHT)
