@@ -134,7 +134,7 @@ def size(history: History) -> float:
 
 
 def delays(figures: Sequence[Array], histories: Sequence[History], level: float) -> list[int | None]:
-    """Sessions to the alarm from the first that could show the change, which is 1; None where it comes never or before."""
+    """Sessions to the alarm, the first that could show the change being 1; None where it comes never or before."""
     found: list[int | None] = []
     for own, history in zip(figures, histories, strict=True):
         first_to_show, at = int(np.searchsorted(history.time, history.onset, side="right")), alarm(own, level)
@@ -179,8 +179,9 @@ def heading(sound: Sequence[History], count: int, seed: int) -> str:
         "# Detection, session by session\n\n"
         f"Made by `python -m benchmarks.backtest.watching --seed {seed} --sound {len(sound)} --histories {count}`: "
         f"{len(sound)} sound histories of {years:.0f} years together set every rule's threshold to one alarm in "
-        f"{1 / ALARMS:.0f} years; {count} histories with each change. Share found by the end of the history, in % with its 95 % interval; then the sessions to the "
-        "alarm, the first that could show the change counted as 1: median of all histories, with its 95 % interval."
+        f"{1 / ALARMS:.0f} years; {count} histories with each change. Share found by the end of the history, in % with "
+        "its 95 % interval; then the sessions to the alarm, the first that could show the change counted as 1: median "
+        "of all histories, with its 95 % interval."
     )
 
 
