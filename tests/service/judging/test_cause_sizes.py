@@ -36,7 +36,7 @@ def found(cause: str, units: tuple[str, ...], amplitude: tuple[float, ...], sens
         ("temperature-rate", ("m/s²/(K/s)",), (1.0,), ("A2",), "bias", 0.0),
         ("scale-asymmetry", ("1",), (5e-5,), ("A2",), "scale", 5e-5),
         ("scale-temperature", ("1/K",), (2e-5,), ("A2",), "scale", 6e-5),
-        ("scale-temperature-curve", ("1/K", "1/K²"), (0.0, 2e-5), ("A2",), "scale", 2e-5 * 1.5**2),
+        ("scale-temperature-curve", ("1/K", "1/K²"), (2e-5, 0.0), ("A2",), "scale", 6e-5),
         ("scale-ramp", ("1/s",), (1e-8,), ("A2",), "scale", 1e-8 * 23 * 60),
         ("axis-creep", ("rad/s", "rad/s"), (3e-8, 4e-8), ("A2",), "axis", 5e-8 * 23 * 60),
         ("cubic-nonlinearity", ("(m/s²)⁻²",), (1e-7,), ("A2",), "bias", 1e-7 * G**3),
