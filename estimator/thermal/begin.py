@@ -44,7 +44,7 @@ class Begun:
         free = np.zeros((len(self.at), self.rows.elements), dtype=bool)
         q, live = self.order + 1, ~self.rows.gyro
         free[:, q : 2 * q] = True
-        free[np.ix_(live, [*range(q), -2, -1])] = True
+        free[np.ix_(live, np.array([*range(q), -2, -1]))] = True
         free[live, -3] = quadratic
         return free
 

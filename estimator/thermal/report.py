@@ -94,7 +94,7 @@ def knowledge(begun: Begun, solved: Solved, covariance: Array, dof: Array) -> Kn
     flat = change.reshape(5 * k, k * p)
     observable = np.ones((k, 5), dtype=bool)
     observable[:, 2] = solved.free[:, -3]
-    observable[np.ix_(gyro, [0, 2, 3, 4])] = False
+    observable[np.ix_(gyro, np.array([0, 2, 3, 4]))] = False
     seen = observable.ravel()
     gain = solved.rows.scale_basis @ state.scale.T
     residual = solved.linear.residual * solved.rows.sigma

@@ -35,7 +35,8 @@ def test_page_api_and_correction_hold_the_curves(client: httpx.Client, document:
 
 def assert_firmware_gives_gravity(found: dict[str, Any], document: dict[str, Any]) -> None:
     """Every row of the file, at whatever temperature: a loop of 1 mg is what remains."""
-    [block], low, high = found["blocks"], *found["temperature_range_c"]
+    [block] = found["blocks"]
+    low, high = found["temperature_range_c"]
     table, vectors = document["table"], []
     for row, temperature in enumerate(table["temperature_c"]):
         dT = min(max(temperature, low), high) - found["reference_temperature_c"]
