@@ -64,7 +64,7 @@ BOUNDS = (
     Bound("direction_sigma_deg", Interval(1e-9, 180, "degrees"), "more than half a turn states nothing"),
     Bound("<sensor>", Interval(-1e20, 1e20), "a count of 64 bits has 2e19"),
     Bound("<sensor>_se", Interval(1e-24, 1e20), "a picovolt per m/s² times the best resolution known"),
-    Bound("beta_deg", Interval(-360, 360, "degrees"), "a turn of the head either way; 999 is a slip, not 279"),
+    Bound("beta_deg", Interval(-720, 720, "degrees"), "two turns of the head either way; 999 is a slip, not 279"),
     Bound("time_s", Interval(-1e12, 1e12, "s"), "seconds, or what a clock in milliseconds since 1970 said until 2001"),
     Bound("temperature_c", Interval(-100, 200, "°C"), "where electronics work"),
     Bound("vibration_m_s2", Interval(0, 1e4, "m/s²"), "a thousand g"),

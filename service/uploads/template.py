@@ -69,7 +69,7 @@ CHOICES = {
 }  # fmt: skip
 """Allowed values of a cell or a column."""
 LIMITS = {
-    "beta_deg": (-360, 360), "time_s": (0, 1e9), "temperature_c": (-100, 200), "latitude_deg": (-90, 90),
+    "beta_deg": (-720, 720), "time_s": (0, 1e9), "temperature_c": (-100, 200), "latitude_deg": (-90, 90),
     "height_m": (-500, 9000), "gravity_m_s2": (9.7, 9.9), "alpha_deg": (-90, 90), "chi_deg": (-90, 90),
 }  # fmt: skip
 """Of numbers, as in the reader."""

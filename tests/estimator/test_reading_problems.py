@@ -118,7 +118,7 @@ FAULTS = [
     (STAND, ["table", "beta_rad"], [0.0] * 24, "beta_rad", None, "beta_deg"),
     (STAND, ["table", "time_ms"], [0.0] * 24, "time_ms", None, "time_s"),
     (STAND, ["table", "beta_deg", 3], None, "beta_deg", 4, "missing"),
-    (STAND, ["table", "beta_deg", 3], 999, "beta_deg", 4, "is 999; must be from -360 to 360 degrees"),
+    (STAND, ["table", "beta_deg", 3], 999, "beta_deg", 4, "is 999; must be from -720 to 720 degrees"),
     (STAND, ["table", "time_s", 8], 400.0, "time_s", 9, "earlier"),
     (STAND, ["table", "temperature_c", 2], 293.15, "temperature_c", 3, "from -100 to 200"),
     (STAND, ["table", "A3"], ..., "A3", None, "missing"),
