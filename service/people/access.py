@@ -186,6 +186,7 @@ POST /register/import
 POST /units/{{serial:path}}/retire
 POST /units/{{serial:path}}/return
 POST /stands/{{name:path}}/certificates
+POST /stands/{{name:path}}/certificate-document
 POST /unit-types/{{name:path}}/tolerances
 POST /unit-types/{{name:path}}/tolerances/preview
 POST {SESSION}/withdraw
@@ -213,6 +214,7 @@ POST {API}/flags/assign
 PUT {API}/unit-types/{{name:path}}
 POST {API}/unit-types/{{name:path}}/preview
 PUT {API}/stands/{{name:path}}/certificate
+PUT {API}/stands/{{name:path}}/certificate-document
 """
 
 ADMIN = f"""
