@@ -190,6 +190,7 @@ POST /register/import
 POST /units/{{serial:path}}/retire
 POST /units/{{serial:path}}/return
 POST /stands/{{name:path}}/certificates
+POST /stands/{{name:path}}/certificate-document
 POST /unit-types/{{name:path}}/tolerances
 POST /unit-types/{{name:path}}/laws
 POST /unit-types/{{name:path}}/tolerances/preview
@@ -218,6 +219,7 @@ PUT {API}/unit-types/{{name:path}}
 PUT {API}/unit-types/{{name:path}}/temperature-laws
 POST {API}/unit-types/{{name:path}}/preview
 PUT {API}/stands/{{name:path}}/certificate
+PUT {API}/stands/{{name:path}}/certificate-document
 """
 
 ADMIN = f"""

@@ -77,9 +77,9 @@ def _parsed(content: bytes) -> Element:
     try:
         root: Element = etree.fromstring(content, parser)
     except etree.XMLSyntaxError as fault:
-        raise RefusedError(say("The file is no XML: {fault}", fault=fault)) from fault
+        raise RefusedError(say("The file is no XML: {fault}", fault=fault), ()) from fault
     if root.tag != ROOT or root.getroottree().docinfo.doctype:
-        raise RefusedError("The file is no Digital Calibration Certificate of PTB's schema.")
+        raise RefusedError("The file is no Digital Calibration Certificate of PTB's schema.", ())
     return root
 
 
