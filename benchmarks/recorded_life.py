@@ -203,8 +203,8 @@ def waited_for(http: httpx.Client, address: str) -> dict[str, Any]:
 
 def main() -> None:
     """Print both tables."""
-    heads = ("learned on", "next", "τ", "moved since the last, mg rms (z / all)", "left by the prediction")
-    print(table(heads, predictions()), flush=True)
+    learned = ("learned on", "next", "τ", "moved since the last, mg rms (z / all)", "left by the prediction")
+    print(table(learned, predictions()), flush=True)
     warm = (course(name, CONSTANTS[0]).zero for name in WARM)
     print(f"\nBoth warm, {' and '.join(WARM)} differ by {rms(np.subtract(*warm))} mg rms.", flush=True)
     with (
