@@ -119,6 +119,8 @@ def test_a_service_entered_a_week_late_takes_the_fail_back(crew: str, page: Page
     assert "Unfit" in head(page)
     page.goto(f"{crew}/units/SL-1")
     send(page, "Record a service", at="2026-04-24T10:00")
+    assert page.locator("h1").inner_text() == "What this service would change"
+    follow(page.get_by_role("button", name="Record it"))
     assert "Reference set" in head(page)
     assert "First session after a service" in head(page)
 
