@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.groups.random_effects import mean_of
-from estimator.health.temperature_law import FOLLOW, History, Seen, history_of
+from estimator.health.temperature_law import FOLLOW, LawHistory, Seen, history_of
 from estimator.health.type_law import SCATTERS, TypeLaw, chances, columns_about, fit_at_every_scatter
 from estimator.health.warmth import WARMED, shown_columns
 from estimator.results import Calibration
@@ -63,7 +63,7 @@ def _law(units: Sequence[UnitHistory], of: tuple[str, str], tolerance: float) ->
     return TypeLaw(*of, tolerance, about, mean, sigma, tuple(scatter.tolist()), len(histories), len(told))
 
 
-def _histories(unit: UnitHistory, kind: str, parameter: str, tolerance: float) -> Iterator[History]:
+def _histories(unit: UnitHistory, kind: str, parameter: str, tolerance: float) -> Iterator[LawHistory]:
     """Of the unit's sensors of a kind, where its sessions show a bend apart from level and line."""
     for sensor in unit.reference.sensors:
         own = history_of(unit.sessions, sensor, parameter, tolerance) if sensor.kind == kind else None
@@ -71,7 +71,7 @@ def _histories(unit: UnitHistory, kind: str, parameter: str, tolerance: float) -
             yield own
 
 
-def _fitted(histories: Sequence[History], about: float) -> tuple[Array, Array, Array]:
+def _fitted(histories: Sequence[LawHistory], about: float) -> tuple[Array, Array, Array]:
     """(K,) chances of scatters, and (n, 2) coefficients of every history, T per °C and °C², with their variances."""
     fits = [fit_at_every_scatter(one.readings, columns_about(one.celsius, about)) for one in histories]
     logs = np.stack([own for *_, own in fits])

@@ -93,7 +93,7 @@ class Seen:
 
 
 @dataclass(frozen=True, eq=False)
-class History:
+class LawHistory:
     """One parameter of one sensor over sessions at n temperatures."""
 
     readings: Readings
@@ -161,14 +161,14 @@ def _step(
     return step if shows or coverage_factor(COVERAGE, step.dof) * step.sigma <= allowed else None
 
 
-def _shows(history: History, level: float) -> bool:
+def _shows(history: LawHistory, level: float) -> bool:
     """Whether the sessions follow the temperature as chance rarely does."""
     celsius = history.celsius
     is_spread = len(celsius) >= ENOUGH_TO_BEND and celsius.std() >= WARMED
     return bool(is_spread and chance_of(history.readings, celsius) < level)
 
 
-def _own_worth(history: History, between: tuple[float, float]) -> tuple[float, float, float | None]:
+def _own_worth(history: LawHistory, between: tuple[float, float]) -> tuple[float, float, float | None]:
     celsius = history.celsius
     columns, step = shown_columns(celsius), np.array(between) - celsius.mean()
     return _worth(history.readings, columns, np.array([step[1] - step[0], step[1] ** 2 - step[0] ** 2]))
@@ -184,7 +184,7 @@ def _as_step(
     return TemperatureStep(worth * allowed, u * allowed, dof, between[1], between[0], len(celsius), *span)
 
 
-def history_of(learned: Sequence[Seen], origin: SensorCalibration, parameter: str, allowed: float) -> History | None:
+def history_of(learned: Sequence[Seen], origin: SensorCalibration, parameter: str, allowed: float) -> LawHistory | None:
     """A parameter of a sensor over sessions, in tolerances; None where none of them tells it."""
     rows = [row for one in learned if (row := _row(one, origin, parameter)) is not None]
     if not rows:
@@ -196,7 +196,7 @@ def history_of(learned: Sequence[Seen], origin: SensorCalibration, parameter: st
     if likely is not None:
         base = np.concatenate([readings.base, likely.column[:, None]], axis=1)
         readings = replace(readings, base=base, now=np.append(_ONE, likely.column[-1]))
-    return History(readings, celsius)
+    return LawHistory(readings, celsius)
 
 
 _ONE = np.ones(1)

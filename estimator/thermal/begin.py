@@ -14,7 +14,7 @@ from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured
 from estimator.message import say
 from estimator.session import Array, CalibrationSession
-from estimator.thermal.course import Course, course_of
+from estimator.thermal.course import TemperatureCourse, course_of
 from estimator.thermal.model import State, ThermalRows
 from estimator.thermal.solve import is_determined
 
@@ -27,7 +27,7 @@ class Begun:
     """A session as the search takes it up. k sensors that answer, among the session's m."""
 
     session: CalibrationSession
-    course: Course
+    course: TemperatureCourse
     at: Array
     """(k,) places of the sensors."""
     unit: Array

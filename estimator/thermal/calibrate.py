@@ -15,7 +15,7 @@ from estimator.session import CORRECTED, CalibrationSession
 from estimator.thermal.begin import Begun, begin
 from estimator.thermal.orders import Orders, orders_of
 from estimator.thermal.report import ratio_of, result
-from estimator.thermal.solve import Solved, is_determined, search_with_noise
+from estimator.thermal.solve import ThermalFit, is_determined, search_with_noise
 from estimator.thermal.structure import with_forms
 
 
@@ -37,7 +37,7 @@ def calibrate_thermal(session: CalibrationSession, *, quadratic: bool | None = N
     return result(begun, of_orders(begun, solved, orders), orders, forms)
 
 
-def widest(begun: Begun, quadratic: bool | None) -> Solved:
+def widest(begun: Begun, quadratic: bool | None) -> ThermalFit:
     """The fit with polynomials of highest order."""
     live, with_terms = ~begun.rows.gyro, begun.free(quadratic=True)
     if quadratic is not False and live.any() and is_determined(begun.rows, begun.state, with_terms):
@@ -48,7 +48,7 @@ def widest(begun: Begun, quadratic: bool | None) -> Solved:
     return search_with_noise(begun.rows, begun.state, begun.free(quadratic=False), stated=begun.stated)
 
 
-def of_orders(begun: Begun, solved: Solved, orders: Orders) -> Solved:
+def of_orders(begun: Begun, solved: ThermalFit, orders: Orders) -> ThermalFit:
     """The fit without the terms that the readings do not ask for."""
     q, state, gyro = begun.order + 1, solved.state, solved.rows.gyro
     state = replace(

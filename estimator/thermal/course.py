@@ -30,7 +30,7 @@ LAGS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class TemperatureCourse:
     """Temperatures of R rows."""
 
     temperature: Array
@@ -113,7 +113,7 @@ class Course:
         return lagging(self.temperature, self.time, time_constant) - self.temperature
 
 
-def course_of(session: CalibrationSession) -> Course:
+def course_of(session: CalibrationSession) -> TemperatureCourse:
     """The course of a session; ScheduleError where it shows nothing over temperature."""
     T = session.temperature
     if T is None:
@@ -127,7 +127,7 @@ def course_of(session: CalibrationSession) -> Course:
             least=f"{NARROWEST:g}",
         )
         raise ScheduleError([Problem("temperature_c", problem)])
-    return Course(T, session.time, levels_of(T))
+    return TemperatureCourse(T, session.time, levels_of(T))
 
 
 def levels_of(temperature: Array) -> int:

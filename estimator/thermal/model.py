@@ -108,7 +108,7 @@ class State:
 
 
 @dataclass(frozen=True, eq=False)
-class Linear:
+class ThermalEquations:
     """One linearisation, in sigmas of the readings. P = m·p."""
 
     residual: Array
@@ -174,8 +174,8 @@ def jacobian(rows: ThermalRows, state: State) -> tuple[Array, Array]:
     return local, np.concatenate([tips, slope[..., None] * state.axes * rows.gyro[:, None]], axis=-1)
 
 
-def linearise(rows: ThermalRows, state: State) -> Linear:
-    """Normal equations at one point; shapes and units: see `Linear`."""
+def linearise(rows: ThermalRows, state: State) -> ThermalEquations:
+    """Normal equations at one point; shapes and units: see `ThermalEquations`."""
     R, m, p = *rows.y.shape, rows.elements
     groups = len(rows.prior)
     local, shared = (part / rows.sigma[..., None] for part in jacobian(rows, state))
@@ -205,7 +205,7 @@ def linearise(rows: ThermalRows, state: State) -> Linear:
     across = np.swapaxes(coupling, 1, 2).reshape(-1, m * p)
     F = information.reshape(m * p, m * p) - np.swapaxes(flat, 1, 2).reshape(-1, m * p).T @ across
     U = np.einsum("rm,rmi->mi", residual, local).ravel() - np.einsum("gpc,gc->p", flat, pull)
-    return Linear(residual, local, shared, inverse, coupling, pull, U, (F + F.T) / 2 + gauge(rows, state, F))
+    return ThermalEquations(residual, local, shared, inverse, coupling, pull, U, (F + F.T) / 2 + gauge(rows, state, F))
 
 
 def gauge(rows: ThermalRows, state: State, F: Array) -> Array:

@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from estimator.session import Array
-from estimator.thermal.solve import Solved
+from estimator.thermal.solve import ThermalFit
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class Orders:
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class OrderChoice:
     """One pair of orders of one sensor."""
 
     order: tuple[int, int]
@@ -42,7 +42,7 @@ class Model:
     """(p, p)"""
 
 
-def orders_of(solved: Solved, order: int, ratio: float) -> Orders:
+def orders_of(solved: ThermalFit, order: int, ratio: float) -> Orders:
     """Orders of every sensor up to ``order``; ``ratio`` is χ² per degree of freedom of the noise."""
     m, p = solved.free.shape
     theta, q = solved.state.vector, solved.state.scale.shape[1]
@@ -60,15 +60,15 @@ def orders_of(solved: Solved, order: int, ratio: float) -> Orders:
     return Orders(chosen, free, spread)
 
 
-def model(theta: Array, C: Array, pair: tuple[int, int], highest: tuple[int, int], q: int, rows: int) -> Model:
+def model(theta: Array, C: Array, pair: tuple[int, int], highest: tuple[int, int], q: int, rows: int) -> OrderChoice:
     """The fit theta (p,), C (p, p) of one sensor without what is above a pair of orders; the bias' elements from q."""
     out = np.r_[pair[0] + 1 : highest[0] + 1, q + pair[1] + 1 : q + highest[1] + 1].astype(int)
     gain = C[:, out] @ np.linalg.inv(C[np.ix_(out, out)])
     rise = float(theta[out] @ np.linalg.solve(C[np.ix_(out, out)], theta[out])) if len(out) else 0.0
-    return Model(pair, rise - len(out) * float(np.log(rows)), theta - gain @ theta[out], C - gain @ C[out])
+    return OrderChoice(pair, rise - len(out) * float(np.log(rows)), theta - gain @ theta[out], C - gain @ C[out])
 
 
-def unsaid(models: list[Model], best: Model) -> Array:
+def unsaid(models: list[OrderChoice], best: OrderChoice) -> Array:
     """(p, p) what the covariance of the best model leaves out of the others'."""
     weights = np.exp(-0.5 * np.array([one.bic - best.bic for one in models]))
     total = np.zeros_like(best.covariance)

@@ -17,20 +17,20 @@ from estimator.session import Array
 from estimator.significance import p_value
 from estimator.thermal.begin import Begun
 from estimator.thermal.orders import Orders
-from estimator.thermal.solve import Solved
-from estimator.thermal.structure import LEVEL, Form, Misfits, misfits, places
+from estimator.thermal.solve import ThermalFit
+from estimator.thermal.structure import LEVEL, MisfitForm, Misfits, misfits, places
 
 METHOD = "thermal/maximum-likelihood"
 """As results name it."""
 
 
-def ratio_of(solved: Solved, *, stated: bool) -> float:
+def ratio_of(solved: ThermalFit, *, stated: bool) -> float:
     """By how much the covariance grows because the stated noise does not explain the residuals."""
     doubted = stated and solved.dof > 0 and p_value(solved.chi2, solved.dof) < UNLIKELY
     return solved.chi2 / solved.dof if doubted else 1.0
 
 
-def result(begun: Begun, solved: Solved, orders: Orders, forms: tuple[Form, ...]) -> Calibration:
+def result(begun: Begun, solved: ThermalFit, orders: Orders, forms: tuple[MisfitForm, ...]) -> Calibration:
     """Everything that was found, in SI."""
     session, ratio = begun.session, ratio_of(solved, stated=begun.stated)
     covariance = solved.covariance * ratio + block_diag(*orders.spread)
@@ -52,7 +52,7 @@ def result(begun: Begun, solved: Solved, orders: Orders, forms: tuple[Form, ...]
     return replace(plain, method=METHOD, thermal=thermal)
 
 
-def fit_of(begun: Begun, solved: Solved, known: Knowledge, ratio: float) -> Fit:
+def fit_of(begun: Begun, solved: ThermalFit, known: Knowledge, ratio: float) -> Fit:
     """How well the curves fit."""
     sigma = np.sqrt(
         np.diagonal(known.covariance) / np.nan_to_num(known.parameters.si_factors(begun.unit), nan=1.0) ** 2
@@ -74,7 +74,7 @@ def fit_of(begun: Begun, solved: Solved, known: Knowledge, ratio: float) -> Fit:
     )
 
 
-def knowledge(begun: Begun, solved: Solved, covariance: Array, dof: Array) -> Knowledge:
+def knowledge(begun: Begun, solved: ThermalFit, covariance: Array, dof: Array) -> Knowledge:
     """The five elements of every sensor at the reference temperature, SI."""
     q, (k, p), state, gyro = begun.order + 1, solved.free.shape, solved.state, solved.rows.gyro
     value = begun.course.to_powers(begun.order)[0]
@@ -110,7 +110,7 @@ def knowledge(begun: Begun, solved: Solved, covariance: Array, dof: Array) -> Kn
 
 
 def curves_of(
-    begun: Begun, solved: Solved, orders: Orders, covariance: Array, missed: Misfits, dof: Array
+    begun: Begun, solved: ThermalFit, orders: Orders, covariance: Array, missed: Misfits, dof: Array
 ) -> tuple[SensorCurves, ...]:
     """The curves of every sensor, SI."""
     q, p = begun.order + 1, solved.free.shape[1]
@@ -143,7 +143,7 @@ def curves_of(
 
 
 def findings(
-    begun: Begun, solved: Solved, covariance: Array, forms: tuple[Form, ...], missed: Misfits
+    begun: Begun, solved: ThermalFit, covariance: Array, forms: tuple[MisfitForm, ...], missed: Misfits
 ) -> list[ThermalFinding]:
     """What the readings show beside the curves, SI."""
     q, p = begun.order + 1, solved.free.shape[1]

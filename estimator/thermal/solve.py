@@ -12,7 +12,7 @@ from estimator.arrays import eigh
 from estimator.calibration.free.information import unseen_below
 from estimator.calibration.free.noise import FreeNoise
 from estimator.session import Array
-from estimator.thermal.model import Linear, State, ThermalRows, cost, linearise
+from estimator.thermal.model import State, ThermalEquations, ThermalRows, cost, linearise
 
 MOST_ROUNDS = 40
 """Of a search, and of searches while the noise settles; five are usual."""
@@ -25,7 +25,7 @@ SETTLED = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class ThermalFit:
     """Where a search ended. P = m·p elements."""
 
     rows: ThermalRows
@@ -33,7 +33,7 @@ class Solved:
     state: State
     free: Array
     """(m, p) bool, elements that were estimated."""
-    linear: Linear
+    linear: ThermalEquations
     covariance: Array
     """(P, P), zero for what was not estimated."""
     chi2: float
@@ -66,7 +66,7 @@ def is_determined(rows: ThermalRows, state: State, free: Array) -> bool:
     return bool(values[0] > unseen_below(values[: max(int(chosen.sum()) - 3, 1)]))
 
 
-def inverse_of(linear: Linear, free: Array) -> Array:
+def inverse_of(linear: ThermalEquations, free: Array) -> Array:
     """(P, P) covariance of the free elements (m, p) of one linearisation; zero elsewhere."""
     chosen = np.flatnonzero(free.ravel())
     F = linear.information[np.ix_(chosen, chosen)]
@@ -76,7 +76,7 @@ def inverse_of(linear: Linear, free: Array) -> Array:
     return covariance
 
 
-def search(rows: ThermalRows, state: State, free: Array) -> Solved:
+def search(rows: ThermalRows, state: State, free: Array) -> ThermalFit:
     """Least χ² over the free elements (m, p) from a state whose other elements stay."""
     state, iterations, converged = state.held(rows), 0, False
     chi2 = cost(rows, state)
@@ -99,12 +99,12 @@ def search(rows: ThermalRows, state: State, free: Array) -> Solved:
             converged = True
             break
         state, chi2 = trial, lower
-    return Solved(
+    return ThermalFit(
         rows, state, free, linear, covariance, chi2, iterations, converged, redundancy_of(rows, linear, covariance)
     )
 
 
-def redundancy_of(rows: ThermalRows, linear: Linear, covariance: Array) -> Array:
+def redundancy_of(rows: ThermalRows, linear: ThermalEquations, covariance: Array) -> Array:
     """(m,) degrees of freedom that are left in each sensor's residuals: readings less what the fit leans on them."""
     m, p = linear.local.shape[1:]
     taken = np.zeros(m)
@@ -116,7 +116,7 @@ def redundancy_of(rows: ThermalRows, linear: Linear, covariance: Array) -> Array
     return len(rows.y) - taken
 
 
-def search_with_noise(rows: ThermalRows, state: State, free: Array, *, stated: bool) -> Solved:
+def search_with_noise(rows: ThermalRows, state: State, free: Array, *, stated: bool) -> ThermalFit:
     """The search, with the noise estimated on the way unless it is stated; ``rows.sigma`` is its first guess."""
     solved = search(rows, state, free)
     if stated or solved.redundancy.sum() < 1:
@@ -134,7 +134,7 @@ def search_with_noise(rows: ThermalRows, state: State, free: Array, *, stated: b
     return solved
 
 
-def of_kind(solved: Solved) -> Array:
+def of_kind(solved: ThermalFit) -> Array:
     """(m,) χ² per degree of freedom of all sensors of a sensor's kind: the first guess is of no kind in particular."""
     ratio = np.ones(len(solved.rows.gyro))
     for kind in (solved.rows.gyro, ~solved.rows.gyro):

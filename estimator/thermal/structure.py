@@ -19,9 +19,9 @@ from estimator.curves import HYSTERESIS, LAG
 from estimator.least_squares import inverse
 from estimator.session import Array
 from estimator.significance import p_value
-from estimator.thermal.course import Course
-from estimator.thermal.model import Linear, ThermalRows, linearise
-from estimator.thermal.solve import Solved, search_with_noise
+from estimator.thermal.course import TemperatureCourse
+from estimator.thermal.model import ThermalEquations, ThermalRows, linearise
+from estimator.thermal.solve import ThermalFit, search_with_noise
 
 LEVEL = 0.005
 """Probability that a sound session shows any of one kind."""
@@ -36,7 +36,7 @@ FLAT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Form:
+class MisfitForm:
     """A loop, or a lag of one time constant, of all sensors that show it."""
 
     kind: str
@@ -64,13 +64,13 @@ def with_column(rows: ThermalRows, place: int, column: Array) -> ThermalRows:
     return replace(rows, bias_basis=basis)
 
 
-def noise_ratio(solved: Solved, gain: float, count: int, *, stated: bool) -> float:
+def noise_ratio(solved: ThermalFit, gain: float, count: int, *, stated: bool) -> float:
     """χ² per degree of freedom that ``count`` more amplitudes leave; not below one where the noise is stated."""
     left = (solved.chi2 - gain) / max(solved.dof - count, 1)
     return max(left, 1.0 if stated else 1e-6)
 
 
-def amplitudes(linear: Linear, at: Array, old: Array, covariance: Array) -> tuple[Array, Array, Array]:
+def amplitudes(linear: ThermalEquations, at: Array, old: Array, covariance: Array) -> tuple[Array, Array, Array]:
     """(n,) amplitudes of the elements ``at`` given those at ``old`` (k,), their covariance (n, n), and their score."""
     lean = covariance @ linear.information[np.ix_(old, at)]
     told = linear.information[np.ix_(at, at)] - linear.information[np.ix_(at, old)] @ lean
@@ -82,7 +82,9 @@ def amplitudes(linear: Linear, at: Array, old: Array, covariance: Array) -> tupl
     return known @ score, known, score
 
 
-def tried_forms(solved: Solved, course: Course, order: int, kinds: set[str], *, stated: bool) -> Iterator[Form]:
+def tried_forms(
+    solved: ThermalFit, course: TemperatureCourse, order: int, kinds: set[str], *, stated: bool
+) -> Iterator[MisfitForm]:
     """Every form of some kinds, with what it explains."""
     columns: list[tuple[str, Array, float | None]] = []
     if HYSTERESIS in kinds and {1.0, -1.0} <= set(course.leg.tolist()):
@@ -101,12 +103,14 @@ def tried_forms(solved: Solved, course: Course, order: int, kinds: set[str], *, 
         own = np.where(variance > 0, size**2 / np.where(variance > 0, variance, 1.0), 0.0) / ratio
         chance = float(p_value(gain / ratio, rank, solved.dof - rank)) * len(columns)
         each = np.minimum(1.0, p_value(own, 1, solved.dof - rank) * m)
-        yield Form(kind, column, tau, gain / ratio, min(1.0, chance), each)
+        yield MisfitForm(kind, column, tau, gain / ratio, min(1.0, chance), each)
 
 
-def with_forms(solved: Solved, course: Course, order: int, *, stated: bool) -> tuple[Solved, tuple[Form, ...]]:
+def with_forms(
+    solved: ThermalFit, course: TemperatureCourse, order: int, *, stated: bool
+) -> tuple[ThermalFit, tuple[MisfitForm, ...]]:
     """The fit with the forms that its readings show."""
-    found: list[Form] = []
+    found: list[MisfitForm] = []
     for _ in range(len(places(order))):
         kinds = set(places(order)) - {form.kind for form in found}
         forms = list(tried_forms(solved, course, order, kinds, stated=stated))
@@ -133,7 +137,7 @@ class Misfits:
     """(m, 2) over all curves."""
 
 
-def misfits(solved: Solved, course: Course, *, stated: bool) -> Misfits:
+def misfits(solved: ThermalFit, course: TemperatureCourse, *, stated: bool) -> Misfits:
     """What is left over bins of temperature."""
     linear, at, old = binned(solved, course)
     size, known, score = amplitudes(linear, at.ravel(), old, solved.covariance)
@@ -158,7 +162,7 @@ def misfit(size: Array, covariance: Array, freedom: int) -> tuple[float, float]:
     return float(np.sqrt(max(0.0, Q - rank) / (1 / value[seen]).sum())), chance
 
 
-def binned(solved: Solved, course: Course) -> tuple[Linear, Array, Array]:
+def binned(solved: ThermalFit, course: TemperatureCourse) -> tuple[ThermalEquations, Array, Array]:
     """The fit with bins of temperature beside its curves: where these stand, (m, 2, BINS), and where its own, (P,)."""
     (m, p), q, b = solved.free.shape, solved.state.scale.shape[1], solved.state.bias.shape[1]
     columns = np.eye(BINS)[np.minimum(((course.x(course.temperature) + 1) / 2 * BINS).astype(int), BINS - 1)]

@@ -98,7 +98,7 @@ CATALOGUE = {
     ),
     "stand-dcc": CommandEntry(
         "stands.stand_dcc",
-        "Record the certificate of a stand from its Digital Calibration Certificate, with the stand's uncertainties.",
+        "Record a stand's certificate from its document.",
     ),
     "correction": CommandEntry(
         "documents.correction", "Write the correction that firmware applies to readings, as JSON."

@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 
+from estimator.codec import UnreadableError
 from estimator.errors import Problem, ScheduleError
 from estimator.health.temperature_law import NO_STEPS
 from estimator.message import say
@@ -123,7 +124,11 @@ def covered_at(store: Store, session: StoredSession) -> CoveredTemperatures | No
         return None
     earlier = Sessions(store).before(session, found.since, MOST_EARLIER)
     steps = Sessions(store).temperature_steps((session.id,)).get(session.id, NO_STEPS)
-    return covered(Calibrations(store).get(found.session).residuals, (*earlier, session), steps)
+    try:
+        residuals = Calibrations(store).get(found.session).residuals
+    except UnreadableError:  # a damaged document costs the session's page this range, not the page
+        return None
+    return covered(residuals, (*earlier, session), steps)
 
 
 def alike(programme: str) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ from service.sessions.store import Sessions
 from service.sessions.words.conditions import condition_of
 from service.storage import Storage
 from service.storage.queries import Store
-from service.units.records import Foreseen, ForeseenChange, NewService, ServicePreview
+from service.units.records import ForeseenChange, ForeseenKind, NewService, ServicePreview
 from service.units.store import Services, Units
 
 RAISED, RESOLVED = ("none", "open"), ("open", "resolved")
@@ -124,19 +124,19 @@ def _changes(before: _State, after: _State) -> Iterator[ForeseenChange]:
         words = _verdict(was), _verdict(now)
         if words[0] != words[1]:
             what = say("Session of {day}", day=day_of(was.started_at))
-            yield ForeseenChange(Foreseen.VERDICT, what, *words, was.id)
+            yield ForeseenChange(ForeseenKind.VERDICT, what, *words, was.id)
     if before.next != after.next:
-        yield ForeseenChange(Foreseen.DUE, "Next calibration", before.next, after.next)
+        yield ForeseenChange(ForeseenKind.DUE, "Next calibration", before.next, after.next)
     for key in sorted(before.flags.keys() - after.flags.keys()):
         flag = before.flags[key]
         of_diagnosis = flag.matter in (Matter.CAUSE, Matter.UNEXPLAINED)
-        yield ForeseenChange(Foreseen.FLAG, flag.summary, *(DIAGNOSED_AGAIN if of_diagnosis else RESOLVED))
+        yield ForeseenChange(ForeseenKind.FLAG, flag.summary, *(DIAGNOSED_AGAIN if of_diagnosis else RESOLVED))
     for key in sorted(after.flags.keys() - before.flags.keys()):
-        yield ForeseenChange(Foreseen.FLAG, after.flags[key].summary, *RAISED)
+        yield ForeseenChange(ForeseenKind.FLAG, after.flags[key].summary, *RAISED)
     for key in sorted(before.flags.keys() & after.flags.keys()):
         old, new = before.flags[key].summary, after.flags[key].summary
         if old != new:
-            yield ForeseenChange(Foreseen.FLAG, old, "open", new)
+            yield ForeseenChange(ForeseenKind.FLAG, old, "open", new)
 
 
 def _verdict(session: StoredSession) -> str:

@@ -47,7 +47,7 @@ class NewService:
     """The sensor concerned; empty for the whole unit."""
 
 
-class Foreseen(StrEnum):
+class ForeseenKind(StrEnum):
     """What a service would change."""
 
     VERDICT = "verdict"
@@ -61,7 +61,7 @@ class Foreseen(StrEnum):
 class ForeseenChange:
     """One thing that a service would change."""
 
-    kind: Foreseen
+    kind: ForeseenKind
     """`verdict`, `next-calibration` or `flag`."""
     what: str
     """In words: the session, the date or the flag."""

@@ -17,7 +17,7 @@ from service.sessions.states import Step
 from service.sessions.store import Sessions
 from service.sessions.words.conditions import condition_of
 from service.storage import Storage
-from service.units.records import Foreseen, NewService
+from service.units.records import ForeseenKind, NewService
 from service.units.store import Services, Units
 from tests.conftest import Filled, Holding
 from tests.service.dated import upload_and_date
@@ -61,17 +61,17 @@ def test_what_was_foreseen_comes_and_goes_with_the_service(storage: Storage) -> 
     assert found.is_late
     service, _ = record_service(storage, "BA-017", LATE, NOW)
     sessions, flags, unit, _ = state(storage)
-    verdicts = {one.session: one.after for one in found.changes if one.kind is Foreseen.VERDICT}
+    verdicts = {one.session: one.after for one in found.changes if one.kind is ForeseenKind.VERDICT}
     assert SECOND in verdicts
     assert verdicts == {
         now.id: condition_of(now.verdict, is_reference=now.is_reference).word
         for was, now in zip(before[0], sessions, strict=True)
         if (was.verdict, was.is_reference) != (now.verdict, now.is_reference)
     }
-    [due] = [one.after for one in found.changes if one.kind is Foreseen.DUE]
+    [due] = [one.after for one in found.changes if one.kind is ForeseenKind.DUE]
     assert unit is not None
     assert due == (unit.due_reason if unit.due is None else day_of(unit.due))
-    flagged = [(one.what, one.after) for one in found.changes if one.kind is Foreseen.FLAG]
+    flagged = [(one.what, one.after) for one in found.changes if one.kind is ForeseenKind.FLAG]
     assert flagged == [(before[1][0].summary, flags[0].summary)]
     withdraw_service(storage, way(storage), service.id, Step("K. Ito", NOW, "another unit"))
     again = state(storage)
@@ -82,7 +82,7 @@ def test_what_was_foreseen_comes_and_goes_with_the_service(storage: Storage) -> 
 def test_a_service_after_every_session_changes_no_verdict(storage: Storage) -> None:
     found = preview_service(storage, way(storage), "BA-017", NewService("repair", NOW))
     assert not found.is_late
-    assert not [one for one in found.changes if one.kind is Foreseen.VERDICT]
+    assert not [one for one in found.changes if one.kind is ForeseenKind.VERDICT]
 
 
 def test_what_cannot_be_recorded_has_no_preview(storage: Storage) -> None:

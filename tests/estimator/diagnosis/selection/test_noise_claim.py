@@ -171,7 +171,7 @@ def test_a_course_of_the_applied_vector_is_no_wrong_claim() -> None:
 
 def test_what_passes_for_a_shared_course_in_far_too_small_errors_is_not_searched_beside() -> None:
     """Scatter that is taken ten times too seriously looks alike on some sensors by chance."""
-    sound = measured(seed=1)
+    sound = measured(seed=3)
     right, wrong = (begin(baseline_of(session), [], CATALOGUE) for session in (sound, stated(sound, 0.1)))
     event = shared_event(wrong)
     assert event
