@@ -143,11 +143,12 @@ def test_a_document_fills_the_stand_s_certificate_its_page_and_the_next_template
     page = flagged.get("/stands/ODG-1").text
     assert "PTB 5.2-117" in page
     assert "±1.0 arcsec" in page
-    book = flagged.get("/api/v1/templates/session", params={"unit": "BA-017"}).content
+    book = flagged.get("/api/v1/session-template", params={"unit": "BA-017"}).content
     rows = dict(
         pl.read_excel(BytesIO(book), sheet_name="session", has_header=False).select("column_1", "column_2").rows()
     )
-    assert float(rows["stand.sigma_arcsec.alpha"]) == pytest.approx(0.5)
+    stated = {explained: value for value, explained in rows.items()}
+    assert float(stated["Error of the elevation, one sigma, arcsec."]) == pytest.approx(0.5)
 
 
 def test_the_page_takes_the_document_too(flagged: httpx.Client) -> None:
