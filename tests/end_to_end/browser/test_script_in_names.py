@@ -113,7 +113,8 @@ def test_the_tip_of_a_mark_shows_a_name_as_text(chromium: Browser, planted: Plan
         page.evaluate(OPEN_ALL)
         draw_all(page)
         tips = set()
-        for mark in page.locator(".chart [aria-roledescription='point'], .chart .mark-symbol path").all()[:40]:
+        marks = page.locator(".chart [aria-roledescription='point'], .chart .mark-symbol path").all()
+        for mark in [mark for mark in marks if mark.is_visible()][:40]:
             mark.hover(force=True)
             tips |= set(page.locator("#vg-tooltip-element").all_inner_texts())
         assert page.evaluate("window.hit") is None
