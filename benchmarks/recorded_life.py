@@ -2,7 +2,7 @@
 
 The accelerometers of every session are uploaded as a crew would, oldest first, and the service is asked what it says.
 The recordings state no day: each streaming run has one of its own here, a month apart, and within it the time of the
-packets. What a time constant learned on earlier sessions is worth is told by the next session's zeros: per sensor one
+packets. A time constant learned on earlier sessions is judged by the zeros of the next session: per sensor one
 zero after settling, common to all sessions, and one amplitude per switching on, with one time constant of all sensors,
 
     b(t) = b_∞ + k·exp(−t/τ),
@@ -60,7 +60,7 @@ BIAS = 1
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """What a session tells of a warm-up of one time constant. m sensors."""
+    """What a session shows of a warm-up of one time constant. m sensors."""
 
     score: Array
     """(m,) U, s²/m."""
@@ -167,7 +167,7 @@ def predictions() -> Iterator[tuple[str, ...]]:
         yield ", ".join(names), following, f"{known.tau:.0f} s", rms(last - zero), rms(left)
 
 
-def told(http: httpx.Client) -> Iterator[tuple[str, ...]]:
+def judged_sessions(http: httpx.Client) -> Iterator[tuple[str, ...]]:
     """What the service says of every session as it comes."""
     for name, session in array().items():
         receipt = http.post("/sessions", json=session_document(session)).raise_for_status()
@@ -213,7 +213,7 @@ def main() -> None:
         httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", timeout=LONGEST) as http,
     ):
         heads = ("session", "minutes since switching on", "named", "verdict", "reason", "next")
-        print("\n" + table(heads, told(http)), flush=True)
+        print("\n" + table(heads, judged_sessions(http)), flush=True)
         lasting = waited_for(http, "/units/mimu4444/diagnosis")["findings"]
         names = "; ".join(f"`{f['cause']}` ({', '.join(f['sensors'])})" for f in lasting)
         print(f"\nWhat lasts over the sessions: {names or 'nothing'}.")

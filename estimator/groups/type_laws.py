@@ -19,7 +19,7 @@ from estimator.results import Calibration
 from estimator.session import Array
 
 FEWEST_UNITS = 5
-"""Whose histories tell of a type."""
+"""With histories, for a law of their type."""
 FEWEST_SENSORS = 10
 """The same: the spread over fewer is hardly known."""
 ROUNDS = 200
@@ -36,7 +36,7 @@ class UnitHistory:
 
 
 def type_laws(units: Sequence[UnitHistory], tolerances: Mapping[tuple[str, str], float]) -> tuple[TypeLaw, ...]:
-    """Of every kind of sensor and parameter that enough units tell of.
+    """Of every kind of sensor and parameter with enough units.
 
     Parameters
     ----------
@@ -52,15 +52,15 @@ def type_laws(units: Sequence[UnitHistory], tolerances: Mapping[tuple[str, str],
 
 
 def _law(units: Sequence[UnitHistory], of: tuple[str, str], tolerance: float) -> TypeLaw | None:
-    told = [own for unit in units if (own := tuple(_histories(unit, *of, tolerance)))]
-    histories = [one for own in told for one in own]
-    if len(told) < FEWEST_UNITS or len(histories) < FEWEST_SENSORS:
+    each = [found for unit in units if (found := tuple(_histories(unit, *of, tolerance)))]
+    histories = [history for found in each for history in found]
+    if len(each) < FEWEST_UNITS or len(histories) < FEWEST_SENSORS:
         return None
     about = float(np.mean([one.celsius.mean() for one in histories]))
     scatter, size, variance = _fitted(histories, about)
     pairs = [_mean_and_spread(size[:, q], variance[:, q]) for q in range(2)]
     mean, sigma = zip(*pairs, strict=True)
-    return TypeLaw(*of, tolerance, about, mean, sigma, tuple(scatter.tolist()), len(histories), len(told))
+    return TypeLaw(*of, tolerance, about, mean, sigma, tuple(scatter.tolist()), len(histories), len(each))
 
 
 def _histories(unit: UnitHistory, kind: str, parameter: str, tolerance: float) -> Iterator[LawHistory]:

@@ -185,7 +185,7 @@ def _as_step(
 
 
 def history_of(learned: Sequence[Seen], origin: SensorCalibration, parameter: str, allowed: float) -> LawHistory | None:
-    """A parameter of a sensor over sessions, in tolerances; None where none of them tells it."""
+    """A parameter of a sensor over sessions, in tolerances; None where none of them states it."""
     rows = [row for one in learned if (row := _row(one, origin, parameter)) is not None]
     if not rows:
         return None

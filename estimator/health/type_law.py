@@ -21,7 +21,7 @@ from estimator.session import Array
 SCATTERS = np.concatenate([[0.0], np.geomspace(0.01, 3.0, 24)])
 """(K,) τ, T: from what is not seen to what spoils every session."""
 ENOUGH_WITH_TYPE = 4
-"""Sessions at least where the type tells the rest: level, a change through time, and two numbers beside."""
+"""Sessions at least where the type supplies the rest: level, a change through time, and two numbers beside."""
 DEPENDENT = 1e-10
 """Eigenvalue of scaled columns below which one of them is a mix of the others."""
 KNOWN = 1e-6

@@ -31,7 +31,7 @@ class Begun:
     at: Array
     """(k,) places of the sensors."""
     unit: Array
-    """(k,) input that y = 1 stands for: m/s²; of gyros 1 rad/s."""
+    """(k,) input at y = 1: m/s²; of gyros 1 rad/s."""
     stated: bool
     """Whether the noise is."""
     rows: ThermalRows
@@ -94,7 +94,7 @@ def without_temperature(
     Parameters
     ----------
     live, gyro : (m,) bool, accelerometers that answer, and gyros.
-    size : (m,) input that y = 1 stands for, m/s² (rad/s).
+    size : (m,) input at y = 1, m/s² (rad/s).
     """
     y, sigma = dimensionless(session, size)
     setting, axes = settings_of(session), np.stack([s.nominal_axis for s in session.sensors])

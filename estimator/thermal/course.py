@@ -22,7 +22,7 @@ HIGHEST_ORDER = 4
 APART = 2.0
 """°C between two levels of temperature: a chamber holds a soak closer than that."""
 NARROWEST = 10.0
-"""°C of range below which a room may do as much, and a curve tells nothing."""
+"""°C of range below which a room may do as much, and a curve shows nothing."""
 TURN = 0.05
 """Part of the range by which the temperature must return for a leg to have ended: noise and overshoot are less."""
 LAGS = 8

@@ -73,12 +73,12 @@ def noise_ratio(solved: ThermalFit, gain: float, count: int, *, stated: bool) ->
 def amplitudes(linear: ThermalEquations, at: Array, old: Array, covariance: Array) -> tuple[Array, Array, Array]:
     """(n,) amplitudes of the elements ``at`` given those at ``old`` (k,), their covariance (n, n), and their score."""
     lean = covariance @ linear.information[np.ix_(old, at)]
-    told = linear.information[np.ix_(at, at)] - linear.information[np.ix_(at, old)] @ lean
+    left = linear.information[np.ix_(at, at)] - linear.information[np.ix_(at, old)] @ lean
     score = linear.score[at] - lean.T @ linear.score[old]
     own = np.diagonal(linear.information)[at]
-    told[np.diagonal(told) <= FLAT * own] = 0.0
-    told[:, ~told.any(axis=1)] = 0.0
-    known = inverse(told, FLAT)
+    left[np.diagonal(left) <= FLAT * own] = 0.0
+    left[:, ~left.any(axis=1)] = 0.0
+    known = inverse(left, FLAT)
     return known @ score, known, score
 
 

@@ -28,7 +28,7 @@ ROOT = "{https://ptb.de/dcc}digitalCalibrationCertificate"
 CORE = "{*}administrativeData/{*}coreData/{*}"
 LABORATORY = "{*}administrativeData/{*}calibrationLaboratory/{*}contact/{*}name/{*}content"
 NOT_OF_STAND = {"latitude"}
-"""An error of the site, which no calibration of a stand tells."""
+"""An error of the site, which no calibration of a stand measures."""
 SPEAKS_OF_VALIDITY = re.compile(r"valid|expir|recalib|next.?calib|rekalib|gültig|действ|очередн", re.IGNORECASE)
 PERIOD = re.compile(r"P(?:(\d{1,3})Y)?(?:(\d{1,4})M)?(?:(\d{1,6})D)?")
 RADIANS = {

@@ -18,7 +18,7 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> House:
 
 
 @pytest.fixture(scope="module")
-def told(served: Served) -> list[bool | str]:
+def answers(served: Served) -> list[bool | str]:
     """What is known of three sessions: of a plain one, one that was said to be urgent, and one that is so no more."""
     client, sessions, address = served.http, "/api/v1/sessions", str(served.http.base_url).rstrip("/")
     first, second = (session_bytes(unit="HURRIED", month=month) for month in (3, 6))
@@ -31,13 +31,13 @@ def told(served: Served) -> list[bool | str]:
     return [plain["is_urgent"], urgent["is_urgent"], page, later["is_urgent"], client.get("/sessions").text]
 
 
-def test_it_is_said_with_the_file_and_changed_later(told: list[bool | str]) -> None:
-    assert (told[0], told[1], told[3]) == (False, True, False)
+def test_it_is_said_with_the_file_and_changed_later(answers: list[bool | str]) -> None:
+    assert (answers[0], answers[1], answers[3]) == (False, True, False)
 
 
-def test_it_stands_on_the_page_and_in_the_list(told: list[bool | str]) -> None:
-    assert "This unit is wanted back soon." in str(told[2])
-    assert str(told[4]).count('<span class="tag">urgent</span>') == 1
+def test_it_stands_on_the_page_and_in_the_list(answers: list[bool | str]) -> None:
+    assert "This unit is wanted back soon." in str(answers[2])
+    assert str(answers[4]).count('<span class="tag">urgent</span>') == 1
 
 
 def test_six_files_change(house: House) -> None:

@@ -90,24 +90,24 @@ def box() -> Iterator[Mailbox]:
 
 
 def failed_unit(storage: Storage) -> int:
-    """A unit whose verdict has changed and that has a flag; the number of the address that is told."""
+    """A unit whose verdict has changed and that has a flag; the number of the address that messages go to."""
     id = register_webhook(storage, (), CREW, "", who="K. Ito", now=NOW, has_mail=True).id
     for content in FAILED:
         upload(storage, content, "a.json", NOW)
     return id
 
 
-def test_flags_and_verdicts_are_told_and_put_off_messages_are_sent_later(storage: Storage, box: Mailbox) -> None:
+def test_flags_and_verdicts_are_sent_and_put_off_messages_follow_later(storage: Storage, box: Mailbox) -> None:
     id, ways = failed_unit(storage), Ways(mail=box.server)
     box.refusals = 2
     deliver_due(storage, ways, lambda: NOW, Metrics())
     assert box.messages == []
     deliver_due(storage, ways, lambda: NOW + timedelta(minutes=5), Metrics())
     deliver_due(storage, ways, lambda: NOW + timedelta(minutes=9), Metrics())
-    told = [message_from_string(one) for one in box.messages]
-    assert [one["To"] for one in told] == ["crew@example.org"] * 2
-    assert str(make_header(decode_header(told[1]["Subject"]))).startswith("BA-017: A3 bias changed by")
-    assert len({one["Message-ID"] for one in told}) == 2
+    sent = [message_from_string(one) for one in box.messages]
+    assert [one["To"] for one in sent] == ["crew@example.org"] * 2
+    assert str(make_header(decode_header(sent[1]["Subject"]))).startswith("BA-017: A3 bias changed by")
+    assert len({one["Message-ID"] for one in sent}) == 2
     with storage.database.reading() as store:
         assert {one.state for one in Webhooks(store).deliveries(id, 10)} == {DeliveryState.DELIVERED}
 

@@ -55,7 +55,7 @@ def nobody_commits(storage: Storage, *, is_postgresql: bool) -> Iterator[Connect
 def test_of_two_administrators_who_demote_each_other_one_is_left(
     settings: Settings, storage: Storage, staff: Staff, databases: Databases, change: dict[str, object], late: int
 ) -> None:
-    """``late``: what the second is told on SQLite whose account was changed before anybody looked who it is."""
+    """``late``: the second's answer on SQLite whose account was changed before anybody looked who it is."""
     tokens = {other: admin_headers(storage, who) for who, other in (("admin", "engineer"), ("engineer", "admin"))}
 
     def demote(client: httpx.Client, other: str) -> int:
