@@ -7,9 +7,8 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.blocks import unit_type
 from service.demo.cast import CAST, START, DemoHandling, DemoMember, Intervention, Remark
 from service.demo.history import files_of
-from service.flags.changes import acknowledge_flag, resolve_flag
-from service.flags.records import FlagState
-from service.flags.store import Flags
+from service.flags.changes import bring_flags
+from service.flags.store import FlagQuery, Flags
 from service.fleet.store import Fleet
 from service.kit.arriving_files import DEMONSTRATION
 from service.records.changes import record_service
@@ -19,7 +18,7 @@ from service.sessions.store import Sessions
 from service.storage import Storage
 from service.types.store import UnitTypes
 from service.units.records import NewService
-from service.units.store import Units
+from service.units.remarks_store import Notes
 from service.uploads.receive import upload
 
 UPLOADED_AFTER = timedelta(hours=3)
@@ -38,7 +37,7 @@ def is_wanted(storage: Storage) -> bool:
 
 
 def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) -> None:
-    """Uploads every session of every member, oldest unit first; ``advance`` is called once a session."""
+    """Uploads every session of every member; ``advance`` is called once a session. What is there already stays."""
     with storage.database.writing() as store:
         for kind in (ACCELEROMETER, GYROSCOPE):
             UnitTypes(store).add_once(unit_type(kind), START)
@@ -75,12 +74,20 @@ def _do(storage: Storage, serial: str, done: Done) -> None:
         case DemoHandling():
             _handle(storage, serial, done)
         case Remark():
-            add_note(storage, serial, done.text, at=done.at, who=done.who, now=done.at)
+            _remark(storage, serial, done)
+
+
+def _remark(storage: Storage, serial: str, done: Remark) -> None:
+    """Notes it, unless a filling that was interrupted did."""
+    with storage.database.reading() as store:
+        noted = {(note.at, note.text) for note in Notes(store).of_unit(serial)}
+    if (done.at, done.text) not in noted:
+        add_note(storage, serial, done.text, at=done.at, who=done.who, now=done.at)
 
 
 def _handle(storage: Storage, serial: str, done: DemoHandling) -> None:
-    """The open flag on the matter of the sensor."""
+    """Handles the latest flag on the matter of the sensor, unless a filling that was interrupted did."""
     with storage.database.reading() as store:
-        opened = {flag.key: flag.id for flag in Flags(store).open_of(Units(store).key(serial))}
-    act = acknowledge_flag if done.state is FlagState.ACKNOWLEDGED else resolve_flag
-    act(storage, opened[(done.matter.value, done.sensor)], done.who, done.why, done.at)
+        flags = Flags(store).page(FlagQuery(unit=serial, matter=done.matter))
+    latest = max(flag.id for flag in flags if flag.place == done.sensor and flag.raised_at <= done.at)
+    bring_flags(storage, (latest,), done.state, done.who, done.why, done.at)

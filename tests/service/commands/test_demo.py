@@ -49,6 +49,9 @@ CONDITIONS = {
     "RT-301": Verdict.CONDITIONAL_PASS,
 }
 
+BEGUN = CAST[:3]
+"""Units that the first filling of the served demonstration ends with: a flag resolved, a note written."""
+
 
 @pytest.fixture
 def empty(sqlite: Databases, stock_of: StockOf) -> Iterator[Storage]:
@@ -63,7 +66,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     settings = Settings(data_folder=tmp_path_factory.mktemp("demonstration"))
     upgrade(settings.database)
     with stores(settings) as storage:
-        begin(storage)
+        begin(storage, sum(member.files for member in BEGUN))
     finish(settings)
     return settings
 
@@ -75,11 +78,13 @@ def demonstration(served: Settings) -> Iterator[Storage]:
         yield found
 
 
-def begin(storage: Storage) -> None:
-    """Fills until the first session is stored."""
+def begin(storage: Storage, sessions: int = 1) -> None:
+    """Fills until so many sessions are stored."""
+    left = iter(range(sessions - 1))
 
     def break_off() -> None:
-        raise InterruptedError
+        if next(left, None) is None:
+            raise InterruptedError
 
     with pytest.raises(InterruptedError):
         fill(storage, 2.0, break_off)
@@ -154,6 +159,18 @@ def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Set
         fleet = httpx.get(f"{address}/api/v1/fleet").json()
         sessions = httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]
     assert (fleet["units"], fleet["simulated"], len(sessions)) == (len(CAST), len(CAST), FILES)
+
+
+def test_what_people_did_before_a_filling_was_broken_off_is_done_once(served: Settings) -> None:
+    done = [(member, handled) for member in BEGUN for handled in member.handled]
+    assert done
+    assert any(member.remarks for member in BEGUN)
+    with stores(served) as storage, storage.database.reading() as store:
+        for member in BEGUN:
+            assert len(Notes(store).of_unit(member.serial)) == len(member.remarks)
+        for member, handled in done:
+            flags = Flags(store).page(FlagQuery(unit=member.serial, matter=handled.matter))
+            assert [change.text for flag in flags for change in flag.changes].count(handled.why) == 1
 
 
 def test_every_unit_is_said_alike_everywhere(served: Settings, run: Run) -> None:
