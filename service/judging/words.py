@@ -69,11 +69,11 @@ def unexplained(structures: Sequence[Structure], size: str) -> str:
 
 
 def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *, named: bool = False) -> str:
-    """``Unfit with warm up (A2) corrected``; without a cause: if none of those named acted.
+    """``unfit with warm up (A2) corrected``; without a cause: if none of those named acted.
 
     ``named``: the causes are those that the diagnosis names.
     """
-    word = condition_of(verdict).word
+    word = uncapitalised(condition_of(verdict).word)
     if named:
         return say("{word} with these effects corrected", word=word)
     if not causes:

@@ -44,7 +44,8 @@ Errors = Mapping[str, Mapping[str, float]]
 def gain_in_words(gain: Gain, sensors: Sequence[str] = ()) -> str:
     """``Held-out error of A2 halves: 14 → 7 µg (readings that took no part).``
 
-    Of some sensors, or of all where none is named; empty where a version that stated none made it.
+    Of some sensors, or of all where none is named; empty where a version that stated none made it, and where what was
+    found leaves every reading's prediction as it was: a change since earlier sessions is none within the session.
     """
     parts = errors_in_words(gain.before.rms_by_sensor or {}, gain.after.rms_by_sensor or {}, sensors)
     return say("Held-out error {parts} (readings that took no part).", parts=parts) if parts else ""
@@ -67,12 +68,12 @@ def concerned(findings: Iterable[Finding]) -> tuple[str, ...]:
 
 
 def _errors(before: Errors, after: Errors) -> Iterator[HeldOut]:
-    """Of every sensor of which both errors are known."""
+    """Of every sensor of which both errors are known, and that the extended model predicts otherwise."""
     for kind, own in before.items():
         typical = median(own.values())
         for sensor, error in own.items():
             since = after.get(kind, {}).get(sensor, 0.0)
-            if error > 0 and since > 0 and isfinite(error) and isfinite(since):
+            if error > 0 and since > 0 and error != since and isfinite(error) and isfinite(since):
                 yield HeldOut(sensor, kind, error, since, typical)
 
 

@@ -106,3 +106,7 @@ def test_each_sensor_has_its_own_unit() -> None:
 
 def test_an_earlier_version_stated_no_sensor() -> None:
     assert gain_in_words(Gain(BEFORE, AFTER, "positions")) == ""
+
+
+def test_a_change_since_earlier_sessions_leaves_every_prediction_as_it_was() -> None:
+    assert told({"A2": 8.0}, {"A2": 8.0}) == ""

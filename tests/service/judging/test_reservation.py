@@ -13,7 +13,7 @@ from service.sessions.words.conditions import FIT, REFERENCE, UNDECIDED, said_wi
 from tests.service.findings import JUMP
 
 JUMPED = Reservation(Doubt.CAUSE, "the bias of A2 has one step", "repeat the session", share=1.0)
-UNFIT = Reservation(Doubt.OTHER_MODEL, "Unfit with warm up (A2) corrected", "repeat the session")
+UNFIT = Reservation(Doubt.OTHER_MODEL, "unfit with warm up (A2) corrected", "repeat the session")
 WRONG = Reservation(Doubt.RECORD, "the channels of A1 and A2 are exchanged", "correct the file and upload it again")
 
 
@@ -70,10 +70,10 @@ def test_a_size_stands_beside_its_tolerance_in_one_measure_with_its_expanded_unc
 
 def test_another_verdict_names_the_model_that_gives_it() -> None:
     assert otherwise(Verdict.FAIL, ("warm-up", "bias-ramp"), ("A2",)) == (
-        "Unfit with warm up (A2) and bias ramp corrected"
+        "unfit with warm up (A2) and bias ramp corrected"
     )
-    assert otherwise(Verdict.PASS, ("warm-up",), (), named=True) == "Fit with these effects corrected"
-    assert otherwise(Verdict.PASS, (), ()) == "Fit if the cause is none of the known ones"
+    assert otherwise(Verdict.PASS, ("warm-up",), (), named=True) == "fit with these effects corrected"
+    assert otherwise(Verdict.PASS, (), ()) == "fit if the cause is none of the known ones"
 
 
 def test_structure_says_where_it_is() -> None:
