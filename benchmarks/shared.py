@@ -51,11 +51,9 @@ INTRODUCTION = (
 
 MISSED = (
     "What is missed is mostly a slow room or a ramp: it differs little from biases that wander each by itself, which "
-    "are taken for as likely as a course that no formula gives, so that drifts of each sensor are not called shared. A "
-    "diagnosis in orientations takes longer where the readings do not fit together, since every accelerometer is then "
-    "left out in turn to see whether one of its rows is clipped. Not "
-    "covered: sensors that settle each with a time constant of its own, between an eighth and a half of the session, "
-    "often pass for one course; whether they can be separated was not examined."
+    "are taken for as likely as a course that no formula gives, so that drifts of each sensor are not called shared. "
+    "Not covered: sensors that settle each with a time constant of its own, between an eighth and a half of the "
+    "session, often pass for one course; whether they can be separated was not examined."
 )
 
 
