@@ -81,7 +81,9 @@ class Shared(
         "course",
         "measured",
         "band",
+        "shape_in_doubt",
     ),
+    optional=("shape_in_doubt",),
 ):
     """The one course that the sensors of a finding follow, each by a size of its own. R rows."""
 
@@ -104,6 +106,8 @@ class Shared(
     """(R,) the same as all sensors together read it, each scaled onto that one."""
     band: tuple[float, ...]
     """(R,) one standard error of what they read."""
+    shape_in_doubt: bool = False
+    """Whether every sensor may as well have a shape of its own: odds below a hundred for one of all."""
 
 
 def _with_all_shapes(document: Json) -> Json:

@@ -46,6 +46,7 @@ def test_a_time_constant_and_every_size_lie_within_their_uncertainty() -> None:
     (found,) = found_in(hidden)
     assert found.shared is not None
     assert abs(found.shared.shape["s"] - hidden.shape) < 3 * found.shared.shape_sigma["s"]
+    assert not found.shared.shape_in_doubt
     true = dict(zip(hidden.sensors, hidden.size, strict=True))
     for name, value, sigma in zip(found.sensors, found.amplitude, found.sigma, strict=True):
         assert abs(value - true[name]) < 4 * sigma
@@ -72,6 +73,13 @@ def test_time_constants_that_differ_clearly_are_not_one() -> None:
     constants = [shape["s"] for f in found for shape in f.nonlinear_each if f.cause == "warm-up"]
     assert len(constants) == 2
     assert max(constants) > 3 * min(constants)
+
+
+def test_time_constants_that_differ_little_are_one_in_doubt() -> None:
+    hidden = draw_settling_at(STAND, np.array([0.16, 0.2, 0.25]), 10.0, np.random.default_rng((55, 2)))
+    (found,) = found_in(hidden)
+    assert found.shared is not None
+    assert found.shared.shape_in_doubt
 
 
 @pytest.mark.parametrize("block", [0, 2])

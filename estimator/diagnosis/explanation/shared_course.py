@@ -62,6 +62,7 @@ def shared_finding(state: SearchState, members: Sequence[CourseMember], fitted: 
         course=tuple(course.tolist()),
         measured=tuple(measured.tolist()),
         band=tuple(band.tolist()),
+        shape_in_doubt=members[0].detection.shape_in_doubt,
     )
     strength = float(np.sqrt(sum(m.finding.strength**2 for m in members)))
     return replace(whole, shared=shared, strength=strength, nonlinear_each=(each,) * len(named))

@@ -21,7 +21,7 @@ from estimator.diagnosis.record.expected import (
     explained,
     in_orientations,
     on_stand,
-    unexplained_in_halves,
+    who_may_misfit,
 )
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -112,11 +112,11 @@ def clips_among(session: CalibrationSession, suspects: Sequence[Suspect], cause:
 def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
     """The sensor that is clipped in a single row, or in one on each side, where the readings do not fit together with
     it and do without: so much beyond its limit a row spoils the orientations that the linear search starts from."""
-    if explained(session) or unexplained_in_halves(session):
+    if explained(session):
         return []
     ends = [(UPPER, np.argmax), (LOWER, np.argmin)]
-    felt = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
-    each = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in felt]
+    alone = who_may_misfit(session)
+    each = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in alone]
     by_channel = [clips_among(session, suspects, cause) for suspects in each]
     return max(by_channel, key=lambda clips: sum(clip.strength**2 for clip in clips), default=[])
 

@@ -103,12 +103,21 @@ def explained(session: CalibrationSession) -> bool:
     return not felt.any() or fits(session, felt)
 
 
-def unexplained_in_halves(session: CalibrationSession) -> bool:
-    """Whether neither half of the accelerometers, every second triad, fits together: it is no single one of them then.
-    Sensors one by one would not do: every second one of a board of triads may lie in a plane."""
+def who_may_misfit(session: CalibrationSession) -> list[int]:
+    """Accelerometers one of which alone may be what does not fit: those of halves, and of these of triads, without
+    which the others fit together. Readings that do not fit without all of a group do not without one of it.
+
+    A half is every second triad. Sensors one by one would not do: every second one of a board of triads may lie in a
+    plane.
+    """
     felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
-    second = felt & ((np.cumsum(felt) - 1) // 3 % 2 == 1)
-    return felt.sum() >= HALVED and not fits(session, second) and not fits(session, felt & ~second)
+    if felt.sum() < HALVED:
+        return np.flatnonzero(felt).tolist()
+    triad, found = (np.cumsum(felt) - 1) // 3, list[int]()
+    for half in (felt & (triad % 2 == k) for k in range(2)):
+        groups = [half & (triad == k) for k in np.unique(triad[half])] if fits(session, felt & ~half) else []
+        found += [i for group in groups if fits(session, felt & ~group) for i in np.flatnonzero(group).tolist()]
+    return found
 
 
 def fits(session: CalibrationSession, felt: Array) -> bool:

@@ -10,6 +10,7 @@ from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without
 from estimator.diagnosis.selection.noise_beside import with_noise_beside_effects
 from estimator.diagnosis.selection.noise_claim import (
     doubted,
+    is_one_sensor,
     of_whole_kinds,
     sensors_of,
     with_quieter_kinds_whole,
@@ -27,24 +28,26 @@ def accepted(start: SearchState) -> SearchState:
     """The causes that hold, the stated noise believed or, where readings contradict it, known up to a factor only.
 
     An event of most sensors makes all of them scatter. It is one shape with a size of each, which cannot stand in for
-    noise: where it leaves readings that scatter as stated, the stated noise is right.
+    noise: where it leaves readings that scatter as stated, the stated noise is right; where not, what it leaves shows
+    whose noise is wrong. A search in errors stated far too small names structure without end.
     """
     start = with_noise_beside_effects(start)
     start = replace(start, apart=True) if is_apart(start) else start
-    claims, state = doubted(start), None
-    if not claims or leaves_stated_noise(start, shared_event(start)):
-        state = accepted_against_course(start)
-        claims = doubted(state) if not claims or explains_scatter(state) else claims
-    rival = under_free_scale(start, claims) if claims else None
-    return without_names_of_tails(
-        without_names_in_no_noise(confirmed(start, rival or state or accepted_against_course(start)))
-    )
+    claims, event = doubted(start), shared_event(start)
+    claims = () if claims and not event and is_one_sensor(start) else claims
+    left = left_claims(start, event) if event else claims
+    if claims and left:
+        found = under_free_scale(start, left) or accepted_against_course(start)
+    else:
+        found = accepted_against_course(start)
+        claims = doubted(found) if not claims or explains_scatter(found) else claims
+        found = (under_free_scale(start, claims) if claims else None) or found
+    return without_names_of_tails(without_names_in_no_noise(confirmed(start, found)))
 
 
-def leaves_stated_noise(start: SearchState, event: tuple[Detection, ...]) -> bool:
-    """Whether there is a course that sensors share, and what it leaves by itself may be the stated noise: a search in
-    errors stated far too small names structure without end."""
-    return bool(event) and not doubted(replace(start, detections=event))
+def left_claims(start: SearchState, event: tuple[Detection, ...]) -> tuple[NoiseClaim, ...]:
+    """Whose stated noise a course that sensors share leaves in doubt."""
+    return doubted(replace(start, detections=event))
 
 
 def explains_scatter(state: SearchState) -> bool:

@@ -57,14 +57,20 @@ def scatter_or_cause(
     state: SearchState, noisy: ExcessVariance
 ) -> tuple[tuple[ExcessVariance | Autocorrelation, ...], Detection | None]:
     """What a sensor's scatter is, or the cause that stands out of it; neither where it holds a pattern."""
-    doubting = with_unknown_noise(state, noisy.sensor)
+    doubting = in_own_scatter(state, noisy)
     best = strongest(doubting, doubting.traces)
-    course = excess_as_course(state, noisy)
+    course = excess_as_course(doubting, noisy)
     if best is None:
         return () if holds_pattern(state, doubting, noisy) else noise_or_course(noisy, course), None
     if course is not None and course.log_evidence > max(best.cause_log_evidence, log_evidence_of_two(doubting, best)):
         return (course,), None
     return (), best
+
+
+def in_own_scatter(state: SearchState, noisy: ExcessVariance) -> SearchState:
+    """The search without belief in a sensor's stated noise; where nothing is found yet, begun anew in what the sensor
+    scatters, since one that is believed too much pulls what all share of a row to its readings."""
+    return with_unknown_noise(state, noisy.sensor) if state.detections else restart_with_known_noise(state, (noisy,))
 
 
 def log_evidence_of_two(doubting: SearchState, first: Detection) -> float:

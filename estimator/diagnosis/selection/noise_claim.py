@@ -92,6 +92,17 @@ def doubted(state: SearchState) -> tuple[NoiseClaim, ...]:
     return tuple(claims)
 
 
+def is_one_sensor(state: SearchState) -> bool:
+    """Whether nothing of what scatters is left to be claimed once the noise of one sensor, that which scatters most, is
+    its own: it pulls what all share of a row to its readings, and the others then scatter too."""
+    energy, freedom = sensor_scatter(state)
+    unstated = state.baseline.unstated.copy()
+    noisiest = int(np.argmax(energy / np.maximum(freedom, 1.0)))
+    unstated[noisiest] = True
+    alone = refitted(with_residual_scatter(replace(state.baseline, unstated=unstated), [[noisiest]]))
+    return not doubted(replace(state, residuals=WhitenedResiduals.of(replace(alone, unstated=state.baseline.unstated))))
+
+
 def _claims(state: SearchState, kind: str, of_kind: Array) -> Iterator[NoiseClaim]:
     """Of the sensors (k,) int of one kind; in either sense at most one."""
     each = scatter_of(state, of_kind)

@@ -41,6 +41,8 @@ class Detection:
     """Sensors that share one course with this finding, its own among them: all of them are one misfortune."""
     follows: bool = False
     """Whether it is of a sensor that follows a shared course below what can be named alone."""
+    shape_in_doubt: bool = False
+    """Whether every sensor of its shared course may as well have a shape of its own."""
 
     @property
     def cause_log_evidence(self) -> float:

@@ -75,6 +75,8 @@ class Followed:
     """Sensors that can be named alone."""
     log_evidence: float
     """Against no effect, the choice of shape and sensors paid for."""
+    shape_in_doubt: bool
+    """Whether a shape of its own for every sensor may explain as much (`shared_shape.py`)."""
 
 
 def with_shared_event(
@@ -196,10 +198,12 @@ def without_departing(start: SearchState, course: EventCourse, members: CauseMem
     if len(kept.numbers) < 2:
         return None
     together = energies(start.residuals, others)[0]
-    if log_shared(together, energy_of(start.residuals, kept)[0], apart, own) < APART:
+    log_one_shape = log_shared(together, energy_of(start.residuals, kept)[0], apart, own)
+    if log_one_shape < APART:
         return None
     sure = {course.sensors[k] for k in members.sure} & set(kept.sensors)
-    return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)))
+    in_doubt = len(together) > 1 and log_one_shape < -APART
+    return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)), in_doubt)
 
 
 def powers_apart(
@@ -302,7 +306,16 @@ def ranked(start: SearchState, followed: Followed, event: Sequence[Scored]) -> t
         again = [(rescored(start.residuals, c.scored(c.on(member.sensors).numbers[0]), others), e) for c, e in rivals]
         ranking = sorted([(member, whole), *again, *common], key=lambda pair: -pair[1])
         follows = member.sensors[0] not in named
-        detections.append(Detection(member, p_family, tuple(ranking), event=tuple(sorted(sensors)), follows=follows))
+        detections.append(
+            Detection(
+                member,
+                p_family,
+                tuple(ranking),
+                event=tuple(sorted(sensors)),
+                follows=follows,
+                shape_in_doubt=followed.shape_in_doubt,
+            )
+        )
     return tuple(detections)
 
 

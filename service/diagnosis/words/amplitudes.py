@@ -182,7 +182,10 @@ def _shared_shape(cause: str, shared: Shared) -> str:
         spread, measure = COVERAGE * shared.shape_sigma.get(name, nan), amplitude_measure(cause, name, value)
         text.append(measured(value, spread, measure) if isfinite(spread) else _place(cause, name, value))
     words = known.shape_words if known else ""
-    return joined(" ", filter(None, (words, joined(" and ", text)))) if text else ""
+    one = joined(" ", filter(None, (words, joined(" and ", text)))) if text else ""
+    if not (one and shared.shape_in_doubt):
+        return one
+    return say("{shape}; whether each sensor has its own cannot be told from this session", shape=one)
 
 
 def more_of(finding: Finding) -> tuple[str, ...]:

@@ -25,3 +25,16 @@ def is_called_wrong(factor: float, seed: int) -> bool:
 @pytest.mark.parametrize("factor", [3.5, 5.0])
 def test_white_noise_of_unequal_sensors_is_no_structure(factor: float) -> None:
     assert not any(is_called_wrong(factor, seed) for seed in range(8))
+
+
+@pytest.mark.parametrize("factor", [3.5, 5.0])
+def test_one_sensor_noisier_than_stated_is_called_noisy(factor: float) -> None:
+    """By 24 orientations: its readings pull the directions that all share, so that others scatter too."""
+    for seed in range(4):
+        rng, true, noise = np.random.default_rng([10, seed]), truth(6, seed=seed), np.full(6, NOISE)
+        noise[seed] *= factor
+        quiet = session(true, sphere(24, rng), noise=0.0, stated=False, rng=rng)
+        noisy = quiet.readings + true.scale * noise * rng.standard_normal((24, 6))
+        errors = np.broadcast_to(NOISE * np.abs(true.scale), noisy.shape)
+        found = diagnose(replace(quiet, readings=noisy, standard_errors=errors, time=60.0 * np.arange(24)))
+        assert [(f.cause, f.sensors) for f in found.findings] == [("excess-noise", (quiet.sensors[seed].name,))]

@@ -41,6 +41,12 @@ def test_a_row_has_none() -> None:
     assert shape_of(jump) == "from row 14"
 
 
+def test_where_each_may_have_its_own_it_is_said() -> None:
+    assert WARM.shared is not None
+    doubtful = replace(WARM, cause="bias-jump", shared=replace(WARM.shared, shape={"row": 14.0}, shape_in_doubt=True))
+    assert shape_of(doubtful) == "from row 14; whether each sensor has its own cannot be told from this session"
+
+
 def test_who_follows_faintly_is_told_with_its_size() -> None:
     [size] = more_of(WARM)
     assert size.startswith("A4: 2.0")

@@ -7,7 +7,7 @@ from estimator import Diagnosis, diagnose, read_session
 from estimator.calibration.calibrate import averaged
 from estimator.causes import CATALOGUE
 from estimator.diagnosis.record.clipping import unclipped
-from estimator.diagnosis.record.expected import unexplained_in_halves
+from estimator.diagnosis.record.expected import who_may_misfit
 from tests.builders import Array, Document, TrueSensor, arbitrary_orientations, raw_log, true_sensors
 
 SCALE = 0.12
@@ -111,7 +111,7 @@ def test_of_many_sensors_one_clipped_far_beyond_is_still_found() -> None:
     document = measured(12, 3)
     clipped(document, "A2", 2, 1.0)
     session = read_session(document)
-    assert not unexplained_in_halves(session)
+    assert who_may_misfit(session) == [0, 1, 2]
     assert ("saturation", ("A2",)) in named(diagnose(session))
 
 
@@ -119,12 +119,12 @@ def test_where_neither_half_fits_no_single_sensor_is_at_fault() -> None:
     document = measured(12, 4)
     for sensor in ("A1", "A2", "A5", "A6"):  # two of each half
         document["table"][sensor] = [u + 0.02 * SCALE * k for k, u in enumerate(document["table"][sensor])]
-    assert unexplained_in_halves(read_session(document))
+    assert who_may_misfit(read_session(document)) == []
 
 
 @pytest.mark.parametrize("m", [6, 12])
-def test_sensors_that_fit_are_unexplained_in_no_half(m: int) -> None:
-    assert not unexplained_in_halves(read_session(measured(m, 5)))
+def test_of_sensors_that_fit_none_is_ruled_out(m: int) -> None:
+    assert sorted(who_may_misfit(read_session(measured(m, 5)))) == list(range(m))
 
 
 @pytest.mark.parametrize("second", ["yxz", "xyx"])
@@ -135,4 +135,4 @@ def test_a_board_of_triads_is_halved_whether_or_not_its_halves_span_space(second
     document = arbitrary_orientations(sensors=board)
     for sensor, true in zip(document["sensors"], board, strict=True):
         sensor["nominal_axis"] = list(true.axis)
-    assert not unexplained_in_halves(read_session(document))
+    assert sorted(who_may_misfit(read_session(document))) == list(range(12))

@@ -1,0 +1,109 @@
+"""Lines of tables on pages: which stand on the page of all targets, and which of them miss theirs, and why."""
+
+import re
+from collections.abc import Iterator
+
+from benchmarks.details import DOCS, RESULTS
+from benchmarks.shared_causes.unlike import Line
+from benchmarks.study.report import table
+
+PAGE = DOCS / "diagnosis" / "shared-causes.md"
+OTHERS = {"shared courses": "shared.md", "temperature": "temperature.md", "noise of means": "../methods/noise.md"}
+TITLES = {
+    "recordings": "Recordings",
+    "tails": "Errors with tails",
+    "noisier": "Unequal noise",
+    "gain": "Gain, told to a person",
+}
+RESTS = "block, tilt"
+"""Head of the table of `benchmarks.rests`."""
+WHY = {
+    "kth exp_1": "Its gyros settle with several time constants: beside one exponential for all, some scatter more than "
+    "stated, and biases that wander each by itself are as likely.",
+    "one shared course": "Slow rooms and ramps: biases that wander each by itself are about as likely.",
+    "the same, where an oracle": "As above; the oracle knows the course and lacks only the sizes.",
+    "sound, ": "Mostly `reading-outlier`: one reading far beyond what the session's others show of the tails. An "
+    "oracle that knows the law of the errors names none.",
+    "one sensor": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
+    "time of a diagnosis": "A course is weighed against each sensor's own, against wandering biases and in every fold.",
+    "seasons, line: units flagged": "One unit of twenty.",
+    "`bias-temperature-curve`, 5": "The line is named where the bend is the smaller part.",
+    "`scale-temperature-curve`, 5": "The line is named where the bend is the smaller part.",
+    "`scale-temperature`, 5": "One session of thirteen.",
+}
+"""Beginnings of lines, and why they miss their targets where they do."""
+
+
+def sections(text: str) -> dict[str, str]:
+    """The parts that a page holds, by their headings."""
+    found = re.findall(r"^## (\w+)\n\n(.*?)(?=^## |^<!-- end|\Z)", text, re.MULTILINE | re.DOTALL)
+    return {part: body.strip() for part, body in found}
+
+
+def read(text: str) -> Iterator[Line]:
+    """The lines of the tables with a target."""
+    for block in text.split("\n\n"):
+        rows = [[cell.strip() for cell in row.strip("|").split(" | ")] for row in block.strip().splitlines()]
+        if len(rows) > 1 and [cell.strip() for cell in rows[0]][-2:] == ["target", "measured"]:
+            yield from ((words, target, measured) for words, target, measured in rows[2:])
+
+
+def head(kept: dict[str, str]) -> str:
+    """The table of all targets."""
+    groups = {TITLES[part]: read(body) for part, body in kept.items() if part in TITLES}
+    for name, path in list(OTHERS.items())[:2]:
+        groups[name.capitalize()] = read((DOCS / "diagnosis" / path).read_text(encoding="utf-8"))
+    groups["Raw logs by hand"] = rests()
+    rows = [
+        (group, words, target, measured, *judged(words, target, measured))
+        for group, lines in groups.items()
+        for words, target, measured in lines
+        if target and ("at" not in target or target.split()[-1] in words.split())
+    ]
+    return table(("", "what", "target", "measured", "", "why"), rows)
+
+
+def rests() -> Iterator[Line]:
+    """Stated errors over true ones and what U covers, from the table that `benchmarks.rests` prints."""
+    tables = [p.read_text(encoding="utf-8") for p in sorted((RESULTS / "methods").glob("*.md"))]
+    found = [block for text in tables for block in text.split("\n\n") if block.startswith(f"| {RESTS}")]
+    if not found:
+        yield "stated errors over true ones, raw logs by hand", "0.7–1.4", "by `python -m benchmarks.rests`"
+    for block in found[:1]:
+        titles, _, *rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in block.splitlines()]
+        for row in rows:
+            yield f"stated errors over true ones, {row[0]}", "0.7–1.4", row[1]
+            yield f"{titles[-1]}, {row[0]}", "93–97 %", row[-1]
+
+
+def judged(words: str, target: str, measured: str) -> tuple[str, str]:
+    """*Missed* or *open* with the reason, or nothing."""
+    verdict = verdict_of(target, measured)
+    why = next((reason for begun, reason in WHY.items() if words.startswith(begun)), "")
+    return verdict, why if verdict else ""
+
+
+def verdict_of(target: str, measured: str) -> str:
+    """Whether what is measured misses its target; of a rate by its interval too."""
+    least, most = bounds(target)
+    rate = re.match(r"([\d.]+) % \(([\d.]+)[–a-z ]+([\d.]+)\)", measured)
+    if rate:
+        value, low, high = map(float, rate.groups())
+        return "missed" if low > most or high < least else "open" if not least <= value <= most else ""
+    bare = re.sub(r"\([^()]*\)", "", re.sub(r"\([^()]*\)", "", measured))
+    values = [float(x) for x in re.findall(r"\d+(?:\.\d+)?", bare)]
+    if measured.startswith("no course"):
+        return "missed"
+    return "missed" if values and not (least <= min(values) and max(values) <= most) else ""
+
+
+def bounds(target: str) -> tuple[float, float]:
+    """Least and most that a target allows."""
+    numbers = [float(x) for x in re.findall(r"\d+(?:\.\d+)?", target)]
+    if target.startswith("≤") or target == "0":
+        return float("-inf"), numbers[0]
+    if target == "all":
+        return 100.0, 100.0
+    if target.startswith("≥"):
+        return numbers[0], float("inf")
+    return (numbers[0], numbers[1]) if len(numbers) > 1 else (float("-inf"), float("inf"))
