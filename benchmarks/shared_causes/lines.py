@@ -22,8 +22,8 @@ WHY = {
     "stated, and biases that wander each by itself are as likely.",
     "one shared course": "Slow rooms and ramps: biases that wander each by itself are about as likely.",
     "the same, where an oracle": "As above; the oracle knows the course and lacks only the sizes.",
-    "sound, ": "Mostly `reading-outlier`: one reading far beyond what the session's others show of the tails. An "
-    "oracle that knows the law of the errors names none.",
+    "sound, ": "Large errors that fall together look like a step, or like one noisier sensor: the first is listed "
+    "beside single readings. An oracle that knows the law of the errors names none.",
     "one sensor": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
     "time of a diagnosis": "A course is weighed against each sensor's own, against wandering biases and in every fold.",
     "seasons, line: units flagged": "One unit of twenty.",
