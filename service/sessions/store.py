@@ -26,6 +26,7 @@ from estimator.session import CALIBRATIONS
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
 from service.kit.arriving_files import DEMONSTRATION
+from service.kit.copying import copied
 from service.sessions.decision import Decision, Verdict
 from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionQuery, StoredSession
 from service.sessions.reservation_document import reservations_from_list
@@ -41,8 +42,6 @@ from service.units.tables import ServiceRow, UnitRow
 
 NOT_JUDGED = ""
 """What the verdict rests on of a session that is still to be judged, or judged again."""
-ELSEWHERE = ("unit", "stand", "verdict", "state", "reservations")
-"""Fields of a session that are no plain column of its row."""
 
 
 def is_waiting(basis: InstrumentedAttribute[str | None]) -> ColumnElement[bool]:
@@ -281,18 +280,14 @@ _BY_HASH = session_rows().where(SessionRow.sha256 == bindparam("sha256"))
 _SAME = session_rows().where(
     (SessionRow.sha256 == bindparam("sha256")) | (SessionRow.content_digest == bindparam("digest"))
 )
-FIELDS = tuple(f.name for f in fields(StoredSession) if f.name not in ELSEWHERE)
-"""Plain columns of a session's row."""
 
 
 def session_record(
     row: SessionRow, unit: str, stand: str | None, diagnosed: str | None, reservations: list[Any] | None
 ) -> StoredSession:
     """A stored session, of a row of `session_rows`."""
-    own = {name: getattr(row, name) for name in FIELDS}
-    verdict, state = Verdict(row.verdict), RecordState(row.state)
     said_with = reservations_from_list(diagnosed, reservations)
-    return StoredSession(unit=unit, stand=stand, verdict=verdict, state=state, reservations=said_with, **own)
+    return copied(StoredSession, row, unit=unit, stand=stand, reservations=said_with)
 
 
 def decision_record(row: DecisionRow) -> Decision:

@@ -6,6 +6,7 @@ from sqlalchemy import ColumnElement, Select, String, cast, select
 
 from estimator.message import say
 from service.errors import NotFoundError
+from service.kit.copying import copied
 from service.sessions.states import RecordKind
 from service.sessions.states_store import state_change
 from service.sessions.tables import RecordStateRow
@@ -57,16 +58,11 @@ def _notes() -> Select[NoteRow, str, WithdrawalRow]:
 
 def note_record(row: NoteRow, serial: str, withdrawal: WithdrawalRow | None) -> Note:
     """A stored note."""
-    return Note(
-        id=row.id,
-        unit=serial,
-        at=row.at,
-        text=row.text,
-        who=row.who,
-        recorded_at=row.recorded_at,
-        session=row.session_id,
-        withdrawal=None if withdrawal is None else Withdrawal(withdrawal.at, withdrawal.who, withdrawal.why),
-    )
+    return copied(Note, row, unit=serial, session=row.session_id, withdrawal=_withdrawal(withdrawal))
+
+
+def _withdrawal(row: WithdrawalRow | AttachmentWithdrawalRow | None) -> Withdrawal | None:
+    return None if row is None else copied(Withdrawal, row)
 
 
 class Attachments(Queries):
@@ -114,18 +110,7 @@ def _attachments() -> Select[AttachmentRow, str, AttachmentWithdrawalRow]:
 
 def attachment_record(row: AttachmentRow, serial: str, withdrawal: AttachmentWithdrawalRow | None) -> Attachment:
     """A stored attachment."""
-    return Attachment(
-        id=row.id,
-        unit=serial,
-        session=row.session_id,
-        sha256=row.sha256,
-        filename=row.filename,
-        size=row.size,
-        text=row.text,
-        who=row.who,
-        at=row.at,
-        withdrawal=None if withdrawal is None else Withdrawal(withdrawal.at, withdrawal.who, withdrawal.why),
-    )
+    return copied(Attachment, row, unit=serial, session=row.session_id, withdrawal=_withdrawal(withdrawal))
 
 
 class SaidOf(Queries):

@@ -7,6 +7,7 @@ from sqlalchemy import Select, exists, select, update
 
 from estimator.message import say
 from service.errors import NotFoundError
+from service.kit.copying import copied
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import SessionRow
@@ -196,13 +197,4 @@ def _services() -> Select[ServiceRow, str]:
 
 def service_record(row: ServiceRow, serial: str) -> Service:
     """A stored break."""
-    return Service(
-        id=row.id,
-        unit=serial,
-        at=row.at,
-        kind=row.kind,
-        note=row.note,
-        who=row.who,
-        sensor=row.sensor,
-        state=RecordState(row.state),
-    )
+    return copied(Service, row, unit=serial)
