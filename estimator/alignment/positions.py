@@ -153,12 +153,8 @@ def require_turns(stationary: list[Stop], angle: Array, rate_z: Array, row: floa
         table = float(angle[last] - angle[first])
         gyro = float(rate_z[first + 1 : last + 1].sum() * row)
         if abs(gyro - table) > DISAGREEMENT[0] + DISAGREEMENT[1] * abs(table):
-            problem = say(
-                "the table turned {table}° between {rows_before} and {rows_after}",
-                table=f"{np.degrees(table):+.1f}",
-                rows_before=before.rows,
-                rows_after=after.rows,
-            )
+            parts = {"table": f"{np.degrees(table):+.1f}", "rows_before": before.rows, "rows_after": after.rows}
+            problem = say("the table turned {table}° between {rows_before} and {rows_after}", **parts)
             message = say(
                 "{problem}, the gyros {gyro}° about the block's Z axis",
                 problem=problem,

@@ -214,14 +214,11 @@ def gain_in_words(gain: GroupGain | None) -> str:
         if gain.log_score > 0
         else say("{log_score} less", log_score=number(-gain.log_score, 1))
     )
+    parts = {"fitted": gain.fitted, "held_out": gain.held_out, "before": before, "after": after, "likelier": likelier}
     return say(
         "Sizes estimated from the first {fitted} sessions, tested on the {held_out} later ones: χ² per degree of "
         "freedom {before} → {after}, log score {likelier}.",
-        fitted=gain.fitted,
-        held_out=gain.held_out,
-        before=before,
-        after=after,
-        likelier=likelier,
+        **parts,
     )
 
 

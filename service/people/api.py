@@ -166,14 +166,8 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
     if not person.login:
         raise ConflictError(NO_ACCOUNT)
     if not person.may(new.role):
-        raise ForbiddenError(
-            say(
-                "{account} is {role} and cannot make a token for {wanted_role}.",
-                account=person.account,
-                role=person.role,
-                wanted_role=new.role,
-            )
-        )
+        parts = {"account": person.account, "role": person.role, "wanted_role": new.role}
+        raise ForbiddenError(say("{account} is {role} and cannot make a token for {wanted_role}.", **parts))
     lasts = timedelta(days=new.days)
     token, secret = make_token(storage, person.login, new.label, new.role, now, lifetime=lasts, who=person.name)
     return MadeToken(**vars(token), secret=secret)

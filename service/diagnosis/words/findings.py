@@ -191,12 +191,8 @@ def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) 
     ``by_stated_noise``: the file says what noise is, and nothing has put that to the test.
     """
     condition = ", if the noise is as stated" if by_stated_noise and isfinite(p_value) else ""
-    return say(
-        "{strength}; {p_value}{condition}",
-        strength=standard_errors(strength),
-        p_value=_chance(p_value),
-        condition=condition,
-    )
+    parts = {"strength": standard_errors(strength), "p_value": _chance(p_value), "condition": condition}
+    return say("{strength}; {p_value}{condition}", **parts)
 
 
 def evidence_together(strength: float, over: OverSessions) -> str:
