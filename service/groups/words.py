@@ -87,11 +87,8 @@ def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = Non
 def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
     """``The sessions on stand ODG-1 show together: The angle scale of the head is off centre.``"""
     if scope is Scope.STAND:
-        return say(
-            "The sessions on stand {subject} show together: {finding}",
-            subject=finding.subject,
-            finding=statement(finding),
-        )
+        parts = {"subject": finding.subject, "finding": statement(finding)}
+        return say("The sessions on stand {subject} show together: {finding}", **parts)
     if scope is Scope.UNIT_TYPE:
         return say(
             "The sessions of unit type {subject} show together: {finding}",
