@@ -14,15 +14,13 @@ from service.sessions.records import HistoryPoint
 from service.sessions.schemas import SaidSession, said_session
 from service.types.records import UnitType
 from service.units.records import Service
-from service.web.fields import Bound, Paged, Text, Window
+from service.web.fields import Body, Bound, Paged, Text, Window
 
 Tolerance = Annotated[float, Field(ge=1e-15, le=1e6, allow_inf_nan=False)]
 
 
-class TolerancesSchema(BaseModel):
+class TolerancesSchema(Body, from_attributes=True):
     """Largest allowed deviations from the reference; null where a parameter is not judged."""
-
-    model_config = ConfigDict(from_attributes=True, extra="forbid")
 
     scale: Tolerance | None = Field(description="Relative: 1e-6 is 1 ppm.", examples=[1e-4])
     bias: Tolerance | None = Field(description="m/s² (rad/s).", examples=[4.9e-4])
@@ -30,10 +28,8 @@ class TolerancesSchema(BaseModel):
     axis: Tolerance | None = Field(description="rad.", examples=[9.7e-5])
 
 
-class NewTolerances(BaseModel):
+class NewTolerances(Body):
     """Other tolerances for a unit type, from the next session on."""
-
-    model_config = ConfigDict(extra="forbid")
 
     tolerances: TolerancesSchema = Field(description="Of the sensors of the block's own kind.")
     gyro_tolerances: TolerancesSchema | None = Field(
@@ -50,10 +46,8 @@ class NewTolerances(BaseModel):
     )
 
 
-class NewLot(BaseModel):
+class NewLot(Body):
     """The production lot of a unit."""
-
-    model_config = ConfigDict(extra="forbid")
 
     lot: Text | None = Field(description="Name of the lot; null where it is not known.", examples=["2024-07"])
 
