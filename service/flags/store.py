@@ -223,20 +223,8 @@ class Flags(Queries):
 
     def add(self, unit: int, concern: Concern, session: str | None, at: datetime) -> int:
         """Stores a raised flag and returns its number."""
-        row = FlagRow(
-            unit_id=unit,
-            matter=concern.matter,
-            place=concern.place,
-            state=FlagState.RAISED,
-            severity=concern.severity,
-            summary=concern.summary,
-            proposal="",
-            session_id=session,
-            scope=concern.scope,
-            subject=concern.subject,
-            raised_at=at,
-            changed_at=at,
-        )
+        raised = {"state": FlagState.RAISED, "proposal": "", "raised_at": at, "changed_at": at}
+        row = FlagRow(unit_id=unit, session_id=session, **vars(concern), **raised)
         self._session.add(row)
         self._session.flush()
         return row.id

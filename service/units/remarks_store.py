@@ -70,8 +70,8 @@ class Attachments(Queries):
 
     def add(self, unit: int, new: NewAttachment) -> int:
         """Stores what is known of an attached file and returns its number."""
-        row = AttachmentRow(unit_id=unit, session_id=new.session, sha256=new.sha256, filename=new.filename,
-                            size=new.size, text=new.text, who=new.who, at=new.at)  # fmt: skip
+        values = dict(vars(new))
+        row = AttachmentRow(unit_id=unit, session_id=values.pop("session"), **values)
         self._session.add(row)
         self._session.flush()
         return row.id

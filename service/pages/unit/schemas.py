@@ -9,6 +9,7 @@ from service.fleet.condition import UnitSummary
 from service.judging.covered import CoveredTemperatures
 from service.judging.records import SaidVerdict, said
 from service.kit.answer import answer
+from service.kit.copying import copied
 from service.sessions.history_store import HistoryQuery
 from service.sessions.records import HistoryPoint
 from service.sessions.schemas import SaidSession, said_session
@@ -129,17 +130,7 @@ class HistoryAsked(BaseModel):
     @property
     def query(self) -> HistoryQuery:
         """The same for the store."""
-        return HistoryQuery(
-            parameter=self.parameter,
-            sensor=self.sensor,
-            since=self.since,
-            until=self.until,
-            offset=self.window.offset,
-            limit=self.limit,
-            revision=self.revision,
-            raw=self.raw,
-            noise=True,
-        )
+        return copied(HistoryQuery, self, offset=self.window.offset, newest=False, noise=True)
 
 
 class HistoryPage(Paged):
