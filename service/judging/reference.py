@@ -112,7 +112,7 @@ class EpochReference:
 
 def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> EpochReference:
     """The reference for a session of a block of the unit, by what was measured and when."""
-    since, _ = Services(store).around(unit, at)
+    since = Services(store).began(unit, at)
     return EpochReference(Sessions(store).reference(unit, block, at, alike(programme)), since)
 
 

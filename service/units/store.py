@@ -180,9 +180,9 @@ class Services(Queries):
         query = select(ServiceRow.at).where(ServiceRow.unit_id == unit, IS_BREAK)
         return tuple(sorted(set(self._session.scalars(query))))
 
-    def around(self, unit: int, at: datetime) -> tuple[datetime | None, datetime | None]:
-        """The last break at or before a time and the first one after it: the epoch that the time is in."""
-        return epoch(self.breaks(unit), at)
+    def began(self, unit: int, at: datetime) -> datetime | None:
+        """The last break at or before a time, with which the epoch that the time is in began."""
+        return epoch(self.breaks(unit), at)[0]
 
 
 def epoch(breaks: tuple[datetime, ...], at: datetime) -> tuple[datetime | None, datetime | None]:
