@@ -16,7 +16,7 @@ from service.diagnosis.words.causes import cause_name, cause_on, percent
 from service.diagnosis.words.diagnosis import size_of
 from service.diagnosis.words.findings import standard_errors
 from service.diagnosis.words.gain import errors_in_words
-from service.groups.records import Group, GroupAnswer, GroupShown
+from service.groups.records import Group, GroupShown
 from service.kit.measures import COVERAGE, HARD, day_of, measured, number
 from service.models.records import SCOPES, ModelRevision, Scope
 
@@ -291,7 +291,7 @@ class GroupView:
     """Cause, the smallest size that the pool would find, and that one session would."""
 
 
-def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
+def group_view(shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
     """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
     return GroupView(
         heading=say("Diagnosis {sessions}", sessions=uncapitalised(over(shown.sessions))),
