@@ -13,7 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
@@ -26,7 +28,7 @@ from estimator.groups.statistics import HARMONIC
 from estimator.least_squares import given as conditional
 from estimator.least_squares import inverse, orthonormal
 from estimator.message import joined
-from estimator.session import Array
+from estimator.session import Array, CalibrationSession
 
 HELD_OUT = 3
 """Every third session takes no part in the fit: enough are left to fit, and both parts reach over the group's life."""
@@ -108,6 +110,11 @@ class Learned:
                 found = found + of.columns[..., own] @ self.value[start : start + len(key)]
             start += len(key)
         return found
+
+
+def libraries(sessions: Sequence[CalibrationSession], sensor: str) -> list[Library]:
+    """The library of one place in every session, no cause named."""
+    return [Library.of(with_its_flip(averaged(s)), sensor, ()) for s in sessions]
 
 
 def learn(sensor: str, whole: Sequence[Library]) -> Learned | None:

@@ -4,18 +4,10 @@ import numpy as np
 import pytest
 
 from estimator import diagnose_group
-from estimator.calibration.calibrate import averaged
-from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.groups.joint_fit import predictive
-from estimator.groups.terms import Library, learn
-from estimator.session import CalibrationSession
+from estimator.groups.terms import learn, libraries
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
-
-
-def libraries(sessions: list[CalibrationSession], sensor: str) -> list[Library]:
-    """The library of one place in every session."""
-    return [Library.of(with_its_flip(averaged(session)), sensor, ()) for session in sessions]
 
 
 def third_harmonic(size: float) -> list[Effect]:
