@@ -85,7 +85,7 @@ class Reader:
             raise PendingError(STILL_MADE)
         return diagnosis
 
-    def until_dated(self, serial: str) -> bool:
+    def until_dated(self, serial: str, patience: float = PATIENCE) -> bool:
         """Waits for the outlook of a unit whose history has changed, or makes it where no process does; whether it is
         up to date."""
         if not self._is_undated(serial):
@@ -95,7 +95,7 @@ class Reader:
         if not self._places.acquire(blocking=False):
             return False
         try:
-            return bool(_awaited(self.bell, lambda: not self._is_undated(serial) or None, PATIENCE))
+            return bool(_awaited(self.bell, lambda: not self._is_undated(serial) or None, patience))
         finally:
             self._places.release()
 
