@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.orientations import GRAVITY, NOISE, Case, case, one_degree_off, sphere, two_axis_turns
+from benchmarks.papers.descent import descend, levenberg_marquardt
 from benchmarks.papers.markdown import section, table
+from benchmarks.papers.triples import triples_of
 from estimator import CalibrationSession, calibrate
 from estimator.arrays import tangents
 from estimator.calibration.free import accelerometer_rows
 from estimator.calibration.free.information import information
 from estimator.calibration.free.model import Unknowns
 from estimator.parameters import SensorParameters
-from estimator.published.descent import descend, levenberg_marquardt
-from estimator.published.triples import triples_of
 from estimator.session import Array
 
 ACCURACY = 1e-5

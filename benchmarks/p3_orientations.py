@@ -15,13 +15,13 @@ from scipy.optimize import least_squares
 
 from benchmarks.figures import Figure, side_by_side
 from benchmarks.orientations import case, sphere
+from benchmarks.papers.descent import descend, levenberg_marquardt
+from benchmarks.papers.triples import Triples, triples_of
 from estimator import calibrate
 from estimator.arrays import tangents, unit
 from estimator.calibration.free import accelerometer_rows
 from estimator.calibration.free.model import ModelRows, Unknowns, predicted
 from estimator.calibration.free.solve import held_frame
-from estimator.published.descent import descend, levenberg_marquardt
-from estimator.published.triples import Triples, triples_of
 from estimator.session import Array
 
 SETS = ((4, 12), (4, 36), (4, 100), (6, 12), (6, 36), (6, 100))

@@ -208,12 +208,11 @@ def orientation_schedule(
     site: Site,
     directions: Array,
     *,
-    direction_sigma: float | None = None,
     unit_name: str = "simulated",
 ) -> CalibrationSession:
     """Still orientations to be measured: directions (R, 3) of the specific force, any length, block axes.
 
-    The directions serve the simulation; the simulated session states them only with a ``direction_sigma`` (rad).
+    The directions serve the simulation; the session does not state them.
     """
     empty = np.zeros((len(directions), len(sensors)))
     return CalibrationSession(
@@ -225,7 +224,6 @@ def orientation_schedule(
         standard_errors=empty,
         site=site,
         directions=unit(directions),
-        direction_sigma=direction_sigma,
     )
 
 

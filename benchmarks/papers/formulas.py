@@ -6,8 +6,8 @@ import numpy as np
 
 from benchmarks.papers.half_sums import simulated
 from benchmarks.papers.markdown import section, table
+from benchmarks.papers.printed import Accuracy, Conditions, checked, printed
 from benchmarks.papers.published import ACCELEROMETERS, AXES, STAND
-from estimator.published.printed import Accuracy, Conditions, checked, printed
 from estimator.results import ARCSEC
 from estimator.session import StandErrors
 
@@ -60,7 +60,7 @@ def instrument_only() -> list[tuple[object, ...]]:
 
 
 WORDS = """One sigma, root mean square over the six sensors of the cone, N = 12, α = 40°; the estimator is that of
-(22)–(24) with c = 0. *Checked* is the propagation at the head of `estimator/published/printed.py`."""
+(22)–(24) with c = 0. *Checked* is the propagation at the head of `benchmarks/papers/printed.py`."""
 
 AGREED = """The checked formulas agree with simulation to 1 %; those in print are 0.93 to 2.65 times as large, leave
 out the variation of the zero in scale and axis, and give 21″ of axis error for a θ_y of 20″ where there is none."""

@@ -5,7 +5,7 @@ Half sums and half differences of the two runs, (18), (20), (22)–(24), c = 0 a
 
 import numpy as np
 
-from estimator.published.printed import Accuracy, Conditions
+from benchmarks.papers.printed import Accuracy, Conditions
 from estimator.session import Array
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmarks.papers.printed import Conditions, gyro_conditions
 from estimator.applied_vector import EARTH_RATE
-from estimator.published.printed import Conditions, gyro_conditions
 from estimator.results import ARCSEC
 from estimator.session import StandErrors
 from estimator.simulate import cone

@@ -6,13 +6,13 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from benchmarks.papers.markdown import section, table
+from benchmarks.papers.printed import Accuracy, Conditions, checked, printed
 from benchmarks.papers.published import ACCELEROMETERS, AXES, COUNT_TIME, GYRO_STAND, GYROS, LATITUDE, PULSE, Published
 from estimator import Sensor, Site, Stand
 from estimator.calibration.analytic import coefficients, solve
 from estimator.calibration.stand import solved
 from estimator.forward import measured
 from estimator.parameters import nominal
-from estimator.published.printed import Accuracy, Conditions, checked, printed
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession
 from estimator.simulate import simulate, stand_schedule
 

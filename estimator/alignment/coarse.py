@@ -83,11 +83,8 @@ def _require_heading(north: Array, inverse: Array, density: Array, shortest: flo
     size = float(np.hypot(*north))
     if spread > MOST_HEADING * size:
         hours = 180 / np.pi * 3600
-        message = say(
-            "the gyros read {size} ± {spread} °/h of the Earth's horizontal rotation",
-            size=f"{size * hours:.2g}",
-            spread=f"{spread * hours:.2g}",
-        )
+        parts = {"size": f"{size * hours:.2g}", "spread": f"{spread * hours:.2g}"}
+        message = say("the gyros read {size} ± {spread} °/h of the Earth's horizontal rotation", **parts)
         advice = "rest longer at each angle, or use less noisy gyros"
         raise ScheduleError(
             [Problem("table", say("{message}: too uncertain for a heading; {advice}", message=message, advice=advice))]

@@ -66,11 +66,8 @@ def interval(session: CalibrationSession) -> float:
     uneven = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
     if usual <= 0 or len(uneven):
         row = int(uneven[0]) + 2 if len(uneven) else 2
-        message = say(
-            "is {steps} s after the row before, where rows are {interval} s apart",
-            steps=f"{steps[row - 2]:.6g}",
-            interval=f"{usual:.6g}",
-        )
+        parts = {"steps": f"{steps[row - 2]:.6g}", "interval": f"{usual:.6g}"}
+        message = say("is {steps} s after the row before, where rows are {interval} s apart", **parts)
         raise ScheduleError(
             [
                 Problem(
@@ -130,11 +127,8 @@ def require_rest(stationary: list[Stop], rates: Array, row: float) -> None:
         whole = samples[: len(samples) // block * block].reshape(-1, block, 3).mean(axis=1)
         fastest = float(np.linalg.norm(whole, axis=1).max())
         if fastest > MOVING:
-            problem = say(
-                "the table is at rest in {rows}, but the gyros read {fastest} °/s",
-                rows=stop.rows,
-                fastest=f"{np.degrees(fastest):.3g}",
-            )
+            parts = {"rows": stop.rows, "fastest": f"{np.degrees(fastest):.3g}"}
+            problem = say("the table is at rest in {rows}, but the gyros read {fastest} °/s", **parts)
             problems.append(
                 Problem(
                     "turn_angle_deg",
@@ -153,12 +147,8 @@ def require_turns(stationary: list[Stop], angle: Array, rate_z: Array, row: floa
         table = float(angle[last] - angle[first])
         gyro = float(rate_z[first + 1 : last + 1].sum() * row)
         if abs(gyro - table) > DISAGREEMENT[0] + DISAGREEMENT[1] * abs(table):
-            problem = say(
-                "the table turned {table}° between {rows_before} and {rows_after}",
-                table=f"{np.degrees(table):+.1f}",
-                rows_before=before.rows,
-                rows_after=after.rows,
-            )
+            parts = {"table": f"{np.degrees(table):+.1f}", "rows_before": before.rows, "rows_after": after.rows}
+            problem = say("the table turned {table}° between {rows_before} and {rows_after}", **parts)
             message = say(
                 "{problem}, the gyros {gyro}° about the block's Z axis",
                 problem=problem,
@@ -178,11 +168,8 @@ def require_level(force: Array, g: float) -> None:
     """ScheduleError unless the mean specific force (3,) at rest, m/s², is gravity, along the turn axis."""
     size = float(np.linalg.norm(force))
     if abs(size - g) > GRAVITY_MISMATCH * g:
-        message = say(
-            "at rest the accelerometers read {size} m/s² where gravity is {gravity}",
-            size=f"{size:.4g}",
-            gravity=f"{g:.4g}",
-        )
+        parts = {"size": f"{size:.4g}", "gravity": f"{g:.4g}"}
+        message = say("at rest the accelerometers read {size} m/s² where gravity is {gravity}", **parts)
         raise ScheduleError([Problem("sensors", f"{message}; check nominal_scale and nominal_offset")])
     tilt = float(np.arccos(np.clip(force[2] / size, -1, 1)))
     if tilt > STEEPEST:

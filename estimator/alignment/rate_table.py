@@ -141,11 +141,8 @@ def _require_both_directions(turns: WholeTurns) -> None:
             raise ScheduleError([Problem("turn_rate_deg_s", message)])
     if len(turns.rates) < FEWEST_TURNS:
         held = counted(len(turns.rates), "whole turn")
-        message = say(
-            "contains {held}; at least {fewest_turns} are needed to know their scatter",
-            held=held,
-            fewest_turns=FEWEST_TURNS,
-        )
+        parts = {"held": held, "fewest_turns": FEWEST_TURNS}
+        message = say("contains {held}; at least {fewest_turns} are needed to know their scatter", **parts)
         raise ScheduleError([Problem("turn_rate_deg_s", message)])
 
 
@@ -154,11 +151,8 @@ def _require_following(turns: WholeTurns) -> None:
     if disagrees.any():
         worst = int(np.argmax(disagrees))
         problem = say("the table turns at {rate} °/s", rate=f"{np.degrees(turns.rates[worst]):+g}")
-        message = say(
-            "{problem}, the gyros at {rate} °/s about the block's Z axis",
-            problem=problem,
-            rate=f"{np.degrees(turns.means[worst, 2]):+.4g}",
-        )
+        parts = {"problem": problem, "rate": f"{np.degrees(turns.means[worst, 2]):+.4g}"}
+        message = say("{problem}, the gyros at {rate} °/s about the block's Z axis", **parts)
         advice = "check the sign and unit of turn_rate_deg_s, the gyros' scale and range, and Z, the table's axis"
         raise ScheduleError([Problem("turn_rate_deg_s", say("{message}; {advice}", message=message, advice=advice))])
 

@@ -59,11 +59,9 @@ def expected(session: CalibrationSession, i: int) -> Array | None:
 def cut_off(end: float, rows: Array, change: float) -> str:
     """What happened in ``rows`` (k,), numbers from 0, and what to do; ``end`` in reading units, ``change`` in m/s²."""
     named = joined(", ", (str(row + 1) for row in rows[:SHOWN])) + (", …" if len(rows) > SHOWN else "")
+    parts = {"end": f"{end:g}", "rows": len(rows), "row_names": named, "change": f"{change:.2g}"}
     return say(
         "reads exactly {end} in {rows} rows ({row_names}) although its input changes by {change} m/s² according to the "
         "other sensors: the channel is at the end of its range; use a wider range, or remove these rows",
-        end=f"{end:g}",
-        rows=len(rows),
-        row_names=named,
-        change=f"{change:.2g}",
+        **parts,
     )

@@ -139,13 +139,8 @@ class Setting:
             case "history" | "nominal or history":
                 return True  # not of the session: judged where the history is
             case _:
-                raise ValueError(
-                    say(
-                        "no session can provide {unknown}: causes may need {known}",
-                        unknown=repr(need),
-                        known=", ".join(sorted(NEEDS)),
-                    )
-                )
+                parts = {"unknown": repr(need), "known": ", ".join(sorted(NEEDS))}
+                raise ValueError(say("no session can provide {unknown}: causes may need {known}", **parts))
 
 
 @dataclass(frozen=True, eq=False)

@@ -195,11 +195,8 @@ def _error_without(without: AlignmentResult, result: AlignmentResult) -> str:
     moved = {name: _value(without, name) - _value(result, name) for name in ("nabla_x", "nabla_y", "E_xz", "E_yz")}
     zeros = max(abs(moved["nabla_x"]), abs(moved["nabla_y"])) / MICRO_G
     mounting = max(abs(moved["E_xz"]), abs(moved["E_yz"])) / ARCSEC
-    return say(
-        "a bias would be wrong by {zeros} µg and a mounting error by {mounting}″",
-        zeros=f"{zeros:.1f}",
-        mounting=f"{mounting:.1f}",
-    )
+    parts = {"zeros": f"{zeros:.1f}", "mounting": f"{mounting:.1f}"}
+    return say("a bias would be wrong by {zeros} µg and a mounting error by {mounting}″", **parts)
 
 
 def _value(result: AlignmentResult, name: str) -> float:

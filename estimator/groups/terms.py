@@ -112,11 +112,9 @@ class Learned:
         return found
 
 
-def libraries(
-    sessions: Sequence[CalibrationSession], sensor: str, named: Sequence[tuple[str, str, float | None]] = ()
-) -> list[Library]:
-    """The library of one place in every session."""
-    return [Library.of(with_its_flip(averaged(s)), sensor, named) for s in sessions]
+def libraries(sessions: Sequence[CalibrationSession], sensor: str) -> list[Library]:
+    """The library of one place in every session, no cause named."""
+    return [Library.of(with_its_flip(averaged(s)), sensor, ()) for s in sessions]
 
 
 def learn(sensor: str, whole: Sequence[Library]) -> Learned | None:

@@ -160,9 +160,5 @@ def words_of_end(one: Lasting) -> str:
     """That the session lacks what the earlier ones have."""
     known = cause(one.finding.cause).name.capitalize()
     where = say(" on {sensors}", sensors=one.finding.sensors[0]) if one.finding.sensors else ""
-    return say(
-        "{known}{place}: {sessions} earlier sessions together show it; this one does not.",
-        known=known,
-        place=where,
-        sessions=one.sessions - 1,
-    )
+    parts = {"known": known, "place": where, "sessions": one.sessions - 1}
+    return say("{known}{place}: {sessions} earlier sessions together show it; this one does not.", **parts)

@@ -191,11 +191,8 @@ def grouped(blocks: Blocks, still: Mask) -> NDArray[np.intp]:
 def too_short(total: int, ledger: Ledger) -> str:
     """What is missing."""
     if ledger.averaged:
-        return say(
-            "{total} to know their noise; give {fewest_groups} or more",
-            total=few(total, "row"),
-            fewest_groups=FEWEST_GROUPS,
-        )
+        parts = {"total": few(total, "row"), "fewest_groups": FEWEST_GROUPS}
+        return say("{total} to know their noise; give {fewest_groups} or more", **parts)
     held = counted(total, "block")
     return say(
         "the recording holds {groups} of one second; parity needs {fewest_groups} or more: record longer",

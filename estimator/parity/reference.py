@@ -107,13 +107,11 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
 def too_few(used: int, present: int, kind: str) -> str:
     """Why there is no parity."""
     if present >= FEWEST:
+        parts = {"used": used, "present": present, "kind": kind, "fewest": FEWEST}
         return say(
             "the reference calibration has scale factor, bias and axis of {used} of {present} {kind}s; parity needs "
             "{fewest}: first calibrate the block with a programme that observes all three",
-            used=used,
-            present=present,
-            kind=kind,
-            fewest=FEWEST,
+            **parts,
         )
     return say_count(
         "{n} {kind} leaves no redundancy; parity needs {fewest} or more, otherwise calibrate instead",

@@ -22,6 +22,8 @@ from estimator.errors import Problem, ScheduleError
 from estimator.parameters import names
 from estimator.session import ACCELEROMETER, Array, Sensor
 
+NOISE = 1e-5
+"""g, one sigma of a reading that orientations are weighed by, unless another is stated."""
 LEADS = 0.35
 """Part of the leading element's share of an open direction that another must have to be named beside it: a third, so
 that two or three are named and not a dozen."""
@@ -74,7 +76,7 @@ def rank_of_orientations(
     sensors: tuple[Sensor, ...],
     directions: Array,
     *,
-    noise: float = 1e-5,
+    noise: float = NOISE,
     quadratic: bool = False,
     direction_sigma: float | None = None,
 ) -> OrientationRank:
@@ -127,16 +129,14 @@ def axes_of(sensors: tuple[Sensor, ...]) -> Array:
     return np.stack([s.nominal_axis for s in sensors])
 
 
-def proposed_orientations(
-    sensors: tuple[Sensor, ...], count: int = LEAST, *, noise: float = 1e-5, quadratic: bool = False
-) -> Array:
+def proposed_orientations(sensors: tuple[Sensor, ...], count: int = LEAST, *, quadratic: bool = False) -> Array:
     """(count, 3) unit vectors or more, chosen from scratch: the first is up, the rest tell most; of full rank.
 
-    noise : one sigma of a reading, g. ScheduleError for fewer than three accelerometers.
+    ScheduleError for fewer than three accelerometers.
     """
     felt, first = usable(sensors, np.array([[0.0, 0.0, 1.0]]))
     return np.concatenate(
-        [first, completion(axes_of(felt), first, noise=noise, quadratic=quadratic, at_least=count - 1)]
+        [first, completion(axes_of(felt), first, noise=NOISE, quadratic=quadratic, at_least=count - 1)]
     )
 
 

@@ -43,7 +43,7 @@ def readiness(session: CalibrationSession, question: Question, rng: np.random.Ge
     allowed, limits = allowances(session, series, question)
     faults = content_faults(session, series, allowed)
     if any(fault.blocks for fault in faults):
-        return _with_record(_unread(session, question, faults), session, series)
+        return _with_record(_unread(session, question, faults), series)
     return _judged(session, question, (series, allowed, limits), faults, rng)
 
 
@@ -101,7 +101,7 @@ def _judged(
         temperature=thermal,
         warmed=None if rest.temperature is None else float(rest.temperature[-1] - rest.temperature[0]),
     )
-    return _stated(base, _creep(session, rest, question, drawings, allowed))
+    return _stated(base, _creep(session, rest, question, drawings))
 
 
 def _persisting(
@@ -181,7 +181,7 @@ def _thermal(
 
 
 def _creep(
-    session: CalibrationSession, series: Series, question: Question, drawings: list[DrawnDrift], allowed: Array
+    session: CalibrationSession, series: Series, question: Question, drawings: list[DrawnDrift]
 ) -> Disturbance | None:
     """A turn that explains what all accelerometers are going to do."""
     felt = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
@@ -231,6 +231,6 @@ def _unread(session: CalibrationSession, question: Question, faults: tuple[Recor
     return Readiness(*fields)
 
 
-def _with_record(base: Readiness, session: CalibrationSession, series: Series) -> Readiness:
+def _with_record(base: Readiness, series: Series) -> Readiness:
     """With what was recorded."""
     return replace(base, recorded=float(series.edges[-1, 1]), time=series.time, change=series.change)

@@ -37,11 +37,8 @@ class Interval:
         if isinstance(value, float) and math.isnan(value):
             return "is nan, which is no number; write the number, or leave it out"
         if self.low <= value <= self.high:
-            return say(
-                "is {value}; must be 0 or at least {smallest} in size; write 0 for none",
-                value=shown(value),
-                smallest=f"{self.smallest:g}",
-            )
+            parts = {"value": shown(value), "smallest": f"{self.smallest:g}"}
+            return say("is {value}; must be 0 or at least {smallest} in size; write 0 for none", **parts)
         if value <= 0 < self.low:
             return say("is {value}; must be above 0, {interval}", value=shown(value), interval=self)
         return say("is {value}; must be {interval}; check the number and its unit", value=shown(value), interval=self)

@@ -121,11 +121,8 @@ def course_of(session: CalibrationSession) -> TemperatureCourse:
         raise ScheduleError([Problem("temperature_c", missing)])
     spread = float(np.ptp(T))
     if spread < NARROWEST:
-        problem = say(
-            "the readings span {spread} °C; a curve over temperature needs {least} °C or more",
-            spread=f"{spread:.3g}",
-            least=f"{NARROWEST:g}",
-        )
+        parts = {"spread": f"{spread:.3g}", "least": f"{NARROWEST:g}"}
+        problem = say("the readings span {spread} °C; a curve over temperature needs {least} °C or more", **parts)
         raise ScheduleError([Problem("temperature_c", problem)])
     return TemperatureCourse(T, session.time, levels_of(T))
 

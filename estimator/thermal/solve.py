@@ -4,7 +4,7 @@ Gauss and Newton with the step halved while χ² rises: the start is good to a f
 each sensor's is found as in `estimator.calibration.free.noise`: restricted likelihood, sensors of one block alike.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -121,14 +121,14 @@ def search_with_noise(rows: ThermalRows, state: State, free: Array, *, stated: b
     solved = search(rows, state, free)
     if stated or solved.redundancy.sum() < 1:
         return solved
-    rows = replace_sigma(rows, rows.sigma * np.sqrt(of_kind(solved)))
+    rows = replace(rows, sigma=rows.sigma * np.sqrt(of_kind(solved)))
     noise = FreeNoise(np.ones(rows.y.shape[1]), np.ones(rows.y.shape[1], dtype=bool))
     solved = search(rows, solved.state, free)
     for _ in range(MOST_ROUNDS):
         noise = noise.improved(solved.energy, np.maximum(solved.redundancy, 0.0))
         sigma = rows.sigma * np.sqrt(noise.factor)
         change = np.abs(sigma / solved.rows.sigma - 1).max()
-        solved = search(replace_sigma(rows, sigma), solved.state, free)
+        solved = search(replace(rows, sigma=sigma), solved.state, free)
         if change < SETTLED:
             break
     return solved
@@ -141,8 +141,3 @@ def of_kind(solved: ThermalFit) -> Array:
         if kind.any():
             ratio[kind] = solved.energy[kind].sum() / max(float(solved.redundancy[kind].sum()), 1.0)
     return np.maximum(ratio, np.finfo(float).tiny)
-
-
-def replace_sigma(rows: ThermalRows, sigma: Array) -> ThermalRows:
-    """The same readings under another noise (R, m), in their unit."""
-    return ThermalRows(**(vars(rows) | {"sigma": sigma}))

@@ -1,7 +1,6 @@
 """JSON of the service as the types of `answers`: unknown fields are ignored; a missing field, or one of another type,
 is an error that names it."""
 
-from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from datetime import datetime
 from functools import cache
@@ -22,11 +21,6 @@ def read(kind: type[T], document: Any) -> T:
         return _object(kind, document)
     except (KeyError, TypeError, ValueError) as fault:
         raise ServiceError(f"The service's answer cannot be read as {kind.__name__}: {fault!r}.") from fault
-
-
-def read_all(kind: type[T], documents: Sequence[Any]) -> tuple[T, ...]:
-    """A list of them."""
-    return tuple(read(kind, document) for document in documents)
 
 
 @cache

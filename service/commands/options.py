@@ -1,13 +1,14 @@
 """Options shared by several commands, and the settings made from them."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import typer
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from service.settings import Settings
 
+Model = TypeVar("Model", bound=BaseModel)
 DatabaseUrl = Annotated[
     str | None,
     typer.Option(help="sqlite:///path or postgresql://user:password@host/name.", show_default="SQLite, data folder"),
@@ -20,8 +21,13 @@ DataFolder = Annotated[
 
 def settings_from(**options: Any) -> Settings:
     """The environment's settings, overridden by the given options."""
+    return checked(Settings, **options)
+
+
+def checked(model: type[Model], /, **options: Any) -> Model:
+    """What the given options make; a usage error that names each invalid one."""
     try:
-        return Settings(**{name: value for name, value in options.items() if value is not None})
+        return model(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as fault:
         faults = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in fault.errors())
         raise typer.BadParameter(faults) from fault

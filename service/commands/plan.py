@@ -3,12 +3,11 @@ during it, and whether its unit is warm and still enough."""
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated
 from urllib.parse import urlencode
 
 import numpy as np
 import typer
-from pydantic import BaseModel, ValidationError
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.table import Table
@@ -29,6 +28,7 @@ from estimator.thermal.simulate import thermal_schedule
 from service.client import connect
 from service.commands.calibrate import temperature_view
 from service.commands.console import AsJson, print_json, screen, usable
+from service.commands.options import checked
 from service.commands.speech import FAILED, output_language
 from service.ingest import read_file
 from service.kit.measures import number
@@ -47,7 +47,6 @@ from service.planning.words import (
     unobserved,
 )
 
-Question = TypeVar("Question", bound=BaseModel)
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """In the order of the table."""
 MOST_ORIENTATIONS = 200
@@ -144,15 +143,6 @@ def _show(result: Plan | OrientationRank | Calibration, as_json: bool) -> None:
         screen().print(Group(*temperature_view(result)))
     else:
         screen().print(plan_view(result) if isinstance(result, Plan) else orientation_view(result))
-
-
-def checked(model: type[Question], /, **options: object) -> Question:
-    """The given options as a question; a usage error that names each invalid one."""
-    try:
-        return model.model_validate({name: value for name, value in options.items() if value is not None})
-    except ValidationError as fault:
-        faults = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in fault.errors())
-        raise typer.BadParameter(faults) from fault
 
 
 def amount(text: str) -> tuple[str, str]:

@@ -10,6 +10,7 @@ from estimator.json_object import Json
 from service.diagnosis.records import Diagnosed, StoredDiagnosis
 from service.diagnosis.tables import DiagnosisRow
 from service.diagnosis.words.diagnosis import NOT_APPLICABLE
+from service.kit.copying import copied
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservation
 from service.sessions.records import DiagnosisState, DiagnosisSummary
@@ -71,16 +72,13 @@ class Diagnoses(Queries):
         if row is None:
             return None
         document = None if row.document is None else zlib.decompress(row.document).decode()
-        return StoredDiagnosis(
+        return copied(
+            StoredDiagnosis,
+            row,
             session=row.session_id,
-            model_revision=row.model_revision,
-            state=DiagnosisState(row.state),
-            summary=row.summary,
             found=None if document is None else read_diagnosis(document),
             document=document,
             verdict_after=None if row.verdict_after is None else Verdict(row.verdict_after),
-            estimator_version=row.estimator_version,
-            created_at=row.created_at,
             reservations=reservations_from_list(row.session_id, row.reservations) or (),
             gain_in_words=row.gain_in_words or "",
         )

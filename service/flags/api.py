@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, resolve_flag
 from service.flags.records import Flag, FlagState
@@ -17,7 +17,7 @@ from service.people.dependencies import StorageOf
 from service.storage.queries import Store
 from service.units.store import Units
 from service.web.dependencies import Now, Reading
-from service.web.fields import LongText, Name, Number, Paged, Reason, Text, Window, WindowOf
+from service.web.fields import Body, LongText, Name, Number, Paged, Reason, Text, Window, WindowOf
 from service.web.problem_document import errors
 
 FlagNumber = Annotated[int, Field(ge=1, le=2_000_000_000)]
@@ -29,12 +29,8 @@ class FlagPage(Paged):
     flags: tuple[Flag, ...] = Field(description="The flags of this page.")
 
 
-class Assigning(BaseModel):
+class Assigning(Body, json_schema_extra={"example": {"to": "k.ito", "by": "K. Ito", "why": "knows the stand"}}):
     """Who is to look after a flag."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"to": "k.ito", "by": "K. Ito", "why": "knows the stand"}}
-    )
 
     to: Text = Field(description="Login or name of an account, any name where there are none; empty for nobody.")
     by: Name = Field(description="Who says so.")
@@ -53,12 +49,8 @@ class Assigned(BaseModel):
     changed: int = Field(description="How many have another assignee now; resolved ones are left alone.")
 
 
-class Handling(BaseModel):
+class Handling(Body, json_schema_extra={"example": {"by": "K. Ito", "why": "replacement sensor ordered"}}):
     """Who does something, and why."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"by": "K. Ito", "why": "replacement sensor ordered"}}
-    )
 
     by: Name = Field(description="Who does it.")
     why: Reason = Field(description="Why; what was found or done.")

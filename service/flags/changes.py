@@ -140,14 +140,8 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
         unit = Units(store).hold(Flags(store).unit_of(id))
         flag = Flags(store).get(id)
         if flag.state not in POSSIBLE[state]:
-            raise ConflictError(
-                say(
-                    "Flag {id} is already {state}: it cannot be {new_state} now.",
-                    id=id,
-                    state=flag.state.value,
-                    new_state=state.value,
-                )
-            )
+            parts = {"id": id, "state": flag.state.value, "new_state": state.value}
+            raise ConflictError(say("Flag {id} is already {state}: it cannot be {new_state} now.", **parts))
         return _keep(store, FlagHandling(id, unit, state, who=who, why=why, at=now))
 
 

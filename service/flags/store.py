@@ -25,6 +25,7 @@ from estimator.message import say
 from service.errors import NotFoundError
 from service.flags.records import AT_FAULT, Assignee, Concern, Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.tables import DeliveryRow, FlagRow, NoticeRow, WebhookRow
+from service.kit.copying import copied
 from service.kit.listing import ListQuery
 from service.models.records import Scope
 from service.queue.records import WorkKind
@@ -71,16 +72,7 @@ class Notices(Queries):
 
 def notice_of(row: NoticeRow, serial: str) -> Notice:
     """The record of a row."""
-    return Notice(
-        id=row.id,
-        unit=serial,
-        flag=row.flag_id,
-        kind=NoticeKind(row.kind),
-        at=row.at,
-        who=row.who,
-        text=row.text,
-        session=row.session_id,
-    )
+    return copied(Notice, row, unit=serial, flag=row.flag_id, session=row.session_id)
 
 
 @dataclass(frozen=True)
@@ -231,20 +223,8 @@ class Flags(Queries):
 
     def add(self, unit: int, concern: Concern, session: str | None, at: datetime) -> int:
         """Stores a raised flag and returns its number."""
-        row = FlagRow(
-            unit_id=unit,
-            matter=concern.matter,
-            place=concern.place,
-            state=FlagState.RAISED,
-            severity=concern.severity,
-            summary=concern.summary,
-            proposal="",
-            session_id=session,
-            scope=concern.scope,
-            subject=concern.subject,
-            raised_at=at,
-            changed_at=at,
-        )
+        raised = {"state": FlagState.RAISED, "proposal": "", "raised_at": at, "changed_at": at}
+        row = FlagRow(unit_id=unit, session_id=session, **vars(concern), **raised)
         self._session.add(row)
         self._session.flush()
         return row.id
@@ -272,20 +252,4 @@ def _grouped(rows: list[Row[FlagRow, str, NoticeRow]]) -> Flag:
 
 
 def _flag(row: FlagRow, serial: str, changes: tuple[Notice, ...] = ()) -> Flag:
-    return Flag(
-        id=row.id,
-        unit=serial,
-        matter=Matter(row.matter),
-        place=row.place,
-        state=FlagState(row.state),
-        severity=row.severity,
-        summary=row.summary,
-        proposal=row.proposal,
-        session=row.session_id,
-        raised_at=row.raised_at,
-        changed_at=row.changed_at,
-        assignee=row.assignee,
-        scope=Scope(row.scope),
-        subject=row.subject,
-        changes=changes,
-    )
+    return copied(Flag, row, unit=serial, session=row.session_id, changes=changes)

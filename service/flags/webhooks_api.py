@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, Field, StringConstraints
 
 from service.flags.changes import register_webhook as register
 from service.flags.changes import remove_webhook
@@ -12,22 +12,20 @@ from service.flags.webhooks_store import Webhooks
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.web.dependencies import Now, Reading, SettingsOf
-from service.web.fields import Limit, Name, Number
+from service.web.fields import Body, Limit, Name, Number
 from service.web.problem_document import errors
 
 Url = Annotated[str, StringConstraints(pattern=r"^[!-~]+$", max_length=2000)]
 Secret = Annotated[str, StringConstraints(pattern=r"^[ -~]+$", min_length=16, max_length=200)]
 
 
-class NewWebhook(BaseModel):
+class NewWebhook(
+    Body,
+    json_schema_extra={
+        "example": {"url": "https://example.org/hook", "secret": "sixteen or more letters", "by": "K. Ito"}
+    },
+):
     """An address to notify."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {"url": "https://example.org/hook", "secret": "sixteen or more letters", "by": "K. Ito"}
-        },
-    )
 
     url: Url = Field(
         description="Where messages are sent; its host must be among those that the operator allows.",

@@ -11,6 +11,7 @@ from service.errors import NotFoundError
 from service.flags.records import Delivery, DeliveryState, Matter, Outgoing, Webhook
 from service.flags.store import notice_of
 from service.flags.tables import DeliveryRow, FlagRow, NoticeRow, WebhookRow
+from service.kit.copying import copied
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue, is_due, work_of
 from service.queue.tables import WorkRow
@@ -130,4 +131,4 @@ def _due(now: datetime, but: Collection[int]) -> tuple[ColumnElement[bool], ...]
 
 
 def _webhook(row: WebhookRow) -> Webhook:
-    return Webhook(id=row.id, url=row.url, secret=row.secret, who=row.who, created_at=row.created_at)
+    return copied(Webhook, row)

@@ -13,7 +13,6 @@ from sqlalchemy import (
     delete,
     func,
     literal,
-    or_,
     select,
     union_all,
     update,
@@ -37,8 +36,8 @@ from service.sessions.doubt import Reservations
 from service.sessions.records import DiagnosisState, StoredSession
 from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
-from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
-from service.sessions.store import is_waiting, session_record, session_rows
+from service.sessions.states_store import IS_ACCEPTED
+from service.sessions.store import is_waiting, reference_query, session_record, session_rows
 from service.sessions.tables import DecisionRow, SessionRow
 from service.stands.tables import StandRow
 from service.storage.columns import RESOLVED
@@ -47,7 +46,7 @@ from service.types.store import unit_type_of
 from service.types.tables import ToleranceRow, UnitTypeRow
 from service.units.records import Customer
 from service.units.register_store import register_entry
-from service.units.tables import ServiceRow, UnitRow
+from service.units.tables import UnitRow
 
 Other = aliased(SessionRow)
 """A session of the unit, beside its latest one."""
@@ -160,7 +159,8 @@ class Fleet(Queries):
     def unit_known(self, serial: str, now: datetime) -> UnitKnown | None:
         """One unit with what its page begins with, in one query."""
         in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
-        query = _summaries().add_columns(_waiting(), _reference(now), OutlookRow, UnitTypeRow, ToleranceRow)
+        reference = reference_query(UnitRow.id, UnitTypeRow.block, now, PROGRAMMES).scalar_subquery()
+        query = _summaries().add_columns(_waiting(), reference, OutlookRow, UnitTypeRow, ToleranceRow)
         row = self._session.execute(query.join(ToleranceRow, in_force).where(UnitRow.serial == serial)).one_or_none()
         if row is None:
             return None
@@ -281,24 +281,6 @@ def _waiting() -> ScalarSelect[int]:
     """How many accepted sessions of a unit are to be judged or weighed."""
     conditions = (Other.unit_id == UnitRow.id, is_waiting(Other.basis), Other.state == RecordState.ACCEPTED)
     return select(func.count()).select_from(Other).where(*conditions).scalar_subquery()
-
-
-def _reference(now: datetime) -> ScalarSelect[str]:
-    """The session that a unit's next one will be judged against: of the epoch that now is in."""
-    known = (ServiceRow.unit_id == UnitRow.id, IS_BREAK)
-    since, until = (
-        select(bound).where(*known, side).correlate(UnitRow).scalar_subquery()
-        for bound, side in (
-            (func.max(ServiceRow.at), ServiceRow.at <= now),
-            (func.min(ServiceRow.at), ServiceRow.at > now),
-        )
-    )
-    conditions = (
-        Other.unit_id == UnitRow.id, Other.block == UnitTypeRow.block, Other.programme.in_(PROGRAMMES),
-        Other.is_reference, Other.state == RecordState.ACCEPTED,
-        or_(since.is_(None), Other.started_at >= since), or_(until.is_(None), Other.started_at < until),
-    )  # fmt: skip
-    return select(Other.id).where(*conditions).order_by(Other.started_at, Other.id).limit(1).scalar_subquery()
 
 
 def _summary(row: Sequence[Any]) -> UnitSummary:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Response
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from estimator.json_object import Json
 from estimator.message import with_messages
@@ -21,7 +21,7 @@ from service.records.dependencies import ReceptionOf
 from service.records.models import accept_lasting
 from service.records.recalibrate import recompute_beside
 from service.web.dependencies import Now
-from service.web.fields import LongText, Name, Serial, StandName, TypeName
+from service.web.fields import Body, LongText, Name, Serial, StandName, TypeName
 from service.web.problem_document import errors
 from service.work.dependencies import GroupReaderOf
 
@@ -69,12 +69,10 @@ class GroupDocument(BaseModel):
     created_at: datetime = Field(description="When, UTC.")
 
 
-class NewLastingSchema(BaseModel):
+class NewLastingSchema(
+    Body, json_schema_extra={"example": {"cause": "beta-eccentricity", "by": "K. Ito", "note": "encoder"}}
+):
     """A lasting effect that an engineer accepts into the model of the unit, the unit type or the stand that has it."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"cause": "beta-eccentricity", "by": "K. Ito", "note": "encoder"}}
-    )
 
     cause: Name = Field(description="Identifier of a cause that the sessions show together.")
     sensors: list[Name] = Field(

@@ -83,7 +83,7 @@ def kept_before(store: Store, session: StoredSession) -> dict[str, SessionStatis
     if session.programme not in CALIBRATIONS:
         return {}
     unit = Units(store).key(session.unit)
-    since, _ = Services(store).around(unit, session.started_at)
+    since = Services(store).began(unit, session.started_at)
     members = Groups(store).members(Group(Level.UNIT, unit, session.unit), since).pooled
     earlier = {m.session: m.started_at for m in members if m.started_at < session.started_at}
     found = Statistics(store).of(earlier)

@@ -99,7 +99,7 @@ def group_section(store: Store, level: Level, name: str) -> GroupSection:
     accepted = in_force(Models(store).page(ModelQuery(limit=MOST_REVISIONS))) if shown.findings or shown.terms else ()
     return GroupSection(
         group,
-        group_view(answer, shown, accepted),
+        group_view(shown, accepted),
         "",
         effects=tuple(_drawn_effect(f, f"effect-{k}") for k, f in enumerate(shown.findings, 1)),
         terms=tuple(_drawn(None, t.picture, t.units[0], f"term-{k}") for k, t in enumerate(shown.terms, 1)),

@@ -16,7 +16,7 @@ from service.diagnosis.words.causes import cause_name, cause_on, percent
 from service.diagnosis.words.diagnosis import size_of
 from service.diagnosis.words.findings import standard_errors
 from service.diagnosis.words.gain import errors_in_words
-from service.groups.records import Group, GroupAnswer, GroupShown
+from service.groups.records import Group, GroupShown
 from service.kit.measures import COVERAGE, HARD, day_of, measured, number
 from service.models.records import SCOPES, ModelRevision, Scope
 
@@ -87,11 +87,8 @@ def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = Non
 def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
     """``The sessions on stand ODG-1 show together: The angle scale of the head is off centre.``"""
     if scope is Scope.STAND:
-        return say(
-            "The sessions on stand {subject} show together: {finding}",
-            subject=finding.subject,
-            finding=statement(finding),
-        )
+        parts = {"subject": finding.subject, "finding": statement(finding)}
+        return say("The sessions on stand {subject} show together: {finding}", **parts)
     if scope is Scope.UNIT_TYPE:
         return say(
             "The sessions of unit type {subject} show together: {finding}",
@@ -214,14 +211,11 @@ def gain_in_words(gain: GroupGain | None) -> str:
         if gain.log_score > 0
         else say("{log_score} less", log_score=number(-gain.log_score, 1))
     )
+    parts = {"fitted": gain.fitted, "held_out": gain.held_out, "before": before, "after": after, "likelier": likelier}
     return say(
         "Sizes estimated from the first {fitted} sessions, tested on the {held_out} later ones: χ² per degree of "
         "freedom {before} → {after}, log score {likelier}.",
-        fitted=gain.fitted,
-        held_out=gain.held_out,
-        before=before,
-        after=after,
-        likelier=likelier,
+        **parts,
     )
 
 
@@ -297,7 +291,7 @@ class GroupView:
     """Cause, the smallest size that the pool would find, and that one session would."""
 
 
-def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
+def group_view(shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
     """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
     return GroupView(
         heading=say("Diagnosis {sessions}", sessions=uncapitalised(over(shown.sessions))),

@@ -105,11 +105,8 @@ def _text_problems(session: CalibrationSession) -> list[Problem]:
 
 def _fault(text: str) -> str | None:
     if len(text) > LONGEST_NOTES:
-        return say(
-            "is {length} characters long; at most {longest_notes} are kept",
-            length=len(text),
-            longest_notes=LONGEST_NOTES,
-        )
+        parts = {"length": len(text), "longest_notes": LONGEST_NOTES}
+        return say("is {length} characters long; at most {longest_notes} are kept", **parts)
     if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
         return "contains characters that are not text (NUL or half of a surrogate pair); remove them"
     return None

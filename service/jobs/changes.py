@@ -23,8 +23,6 @@ from service.storage.waiting import drop_waiting
 MOST_OPEN = 100
 """Jobs that are waiting or running: more than a crew requests in a day."""
 STORING = "The file is read and is being stored. Withdraw its session instead, once it is there."
-REPORTS = ("xlsx", "pdf")
-"""Forms of a report that takes long."""
 
 
 def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:

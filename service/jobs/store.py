@@ -17,6 +17,7 @@ from service.flags.tables import DeliveryRow
 from service.groups.tables import GroupDiagnosisRow
 from service.jobs.records import Job, JobFailure, JobKind, JobState, Made, NewJob, RecalibrationPiece
 from service.jobs.tables import JobRow
+from service.kit.copying import copied
 from service.kit.failure import Failed, FailedKind
 from service.models.records import Scope, task_of
 from service.models.store import Recomputations, concerned
@@ -226,19 +227,16 @@ _JOBS = select(JobRow, WorkRow.failed, WorkRow.lease_until).outerjoin(WorkRow, _
 
 def _record(row: JobRow, held_up: str = "", *, is_leased: bool = False) -> Job:
     kept_until = row.kept_until
-    return Job(
-        id=row.id, kind=JobKind(row.kind), scope=Scope(row.scope) if row.scope else None, subject=row.subject,
-        form=row.form, language=row.language, revision=row.revision, who=row.who, account=row.account,
-        state=JobState(row.state),
-        asked_at=row.asked_at, begun_at=row.begun_at, ended_at=row.ended_at, cancelled_by=row.cancelled_by,
-        done=row.done, total=row.total, cursor=row.cursor, recomputed=row.recomputed, verdicts=row.verdicts,
-        failed=row.failed, failures=tuple(JobFailure(**one) for one in row.failures),
+    return copied(
+        Job,
+        row,
+        scope=Scope(row.scope) if row.scope else None,
+        failures=tuple(JobFailure(**failure) for failure in row.failures),
         held_up=held_up[:LONGEST_REASON],
         made=None if kept_until is None else Made(row.filename, row.size, row.sha256, kept_until),
-        sent=None if row.sent is None else _sent(row.sent), is_storing=row.is_storing and is_leased,
-        session=row.session,
-        refusal=row.refusal,
-    )  # fmt: skip
+        sent=None if row.sent is None else _sent(row.sent),
+        is_storing=row.is_storing and is_leased,
+    )
 
 
 def _sent(document: Json) -> Sent:

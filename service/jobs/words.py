@@ -69,12 +69,8 @@ def _upload_progress(job: Job) -> str:
     if not job.cursor:
         return say("Read: {done} of {total} MB.", done=done, total=total)
     times = counted(job.cursor, "time")
-    return say(
-        "Read again: {done} of {total} MB; all of it was read {times} already. A log takes several.",
-        done=done,
-        total=total,
-        times=times,
-    )
+    parts = {"done": done, "total": total, "times": times}
+    return say("Read again: {done} of {total} MB; all of it was read {times} already. A log takes several.", **parts)
 
 
 def outcome_of(job: Job) -> str:

@@ -4,11 +4,10 @@ tolerance of it since."""
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from estimator.health.temperature_law import NO_STEPS, Steps
+from estimator.health.temperature_law import TemperatureStep
 from estimator.results import Residuals
 from service.kit.answer import answer
 from service.sessions.decision import Verdict
-from service.sessions.records import StoredSession
 
 WITHIN = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts by which temperature did not do much."""
@@ -29,13 +28,14 @@ class CoveredTemperatures:
 
 
 def covered(
-    reference: Residuals, sessions: Iterable[StoredSession], steps: Steps = NO_STEPS
+    reference: Residuals, measured: Iterable[tuple[float | None, Verdict]], steps: Iterable[TemperatureStep] = ()
 ) -> CoveredTemperatures | None:
-    """By a reference, sessions since and the law of the last of them; None where the reference's is not known."""
+    """By a reference, temperatures and verdicts of sessions since, and the law of the last of them; None where the
+    reference's is not known."""
     if reference.temperature is None:
         return None
-    own = [float(one) for one in reference.temperature]
-    within = [s.temperature for s in sessions if s.temperature is not None and s.verdict in WITHIN]
-    laws = [end for step in steps.values() for end in (step.lowest, step.highest) if end is not None]
+    own = [float(celsius) for celsius in reference.temperature]
+    within = [celsius for celsius, verdict in measured if celsius is not None and verdict in WITHIN]
+    laws = [end for step in steps for end in (step.lowest, step.highest) if end is not None]
     every = (*own, *within, *laws)
     return CoveredTemperatures(min(every), max(every), sum(own) / len(own))

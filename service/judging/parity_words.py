@@ -41,12 +41,8 @@ def agreement_in_words(result: ParityResult) -> FitWords:
 
 def _warnings(result: ParityResult) -> Iterator[str]:
     can = PER_SENSOR * len(result.sensors)
-    yield say(
-        "Parity observes {dof} of {total} parameters. It cannot observe {common}.",
-        dof=result.dof,
-        total=can,
-        common=COMMON,
-    )
+    parts = {"dof": result.dof, "total": can, "common": COMMON}
+    yield say("Parity observes {dof} of {total} parameters. It cannot observe {common}.", **parts)
     if not result.complete:
         yield ONE_ORIENTATION
     if result.moving:

@@ -11,15 +11,15 @@ from datetime import datetime
 
 from estimator.codec import UnreadableError
 from estimator.errors import Problem, ScheduleError
-from estimator.health.temperature_law import NO_STEPS
 from estimator.message import say
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
 from service.ingest.checked import Checked
 from service.judging.covered import CoveredTemperatures, covered
+from service.judging.covered_store import Covering
 from service.judging.records import Counted, UnitRecords
 from service.judging.store import Derivations
-from service.sessions.calibrations_store import Calibrations
+from service.sessions.calibrations_store import Calibrations, calibration_of
 from service.sessions.records import PARAMETERS, StoredSession
 from service.sessions.store import Sessions
 from service.sessions.words.advice import too_few
@@ -112,23 +112,21 @@ class EpochReference:
 
 def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> EpochReference:
     """The reference for a session of a block of the unit, by what was measured and when."""
-    since, until = Services(store).around(unit, at)
-    return EpochReference(Sessions(store).reference(unit, block, since, until, alike(programme)), since)
+    since = Services(store).began(unit, at)
+    return EpochReference(Sessions(store).reference(unit, block, at, alike(programme)), since)
 
 
 def covered_at(store: Store, session: StoredSession) -> CoveredTemperatures | None:
     """By the unit's calibrations up to a session; None where there is no reference, or where its is not known."""
-    unit, block = Units(store).key(session.unit), Sessions(store).block(session.id)
-    found = reference_of(store, unit, block, session.programme, session.started_at)
-    if found.session is None:
+    found = Covering(store).up_to(session, alike(session.programme), MOST_EARLIER)
+    if found.reference is None:
         return None
-    earlier = Sessions(store).before(session, found.since, MOST_EARLIER)
-    steps = Sessions(store).temperature_steps((session.id,)).get(session.id, NO_STEPS)
     try:
-        residuals = Calibrations(store).get(found.session).residuals
+        residuals = calibration_of(found.reference).residuals
     except UnreadableError:  # a damaged document costs the session's page this range, not the page
         return None
-    return covered(residuals, (*earlier, session), steps)
+    own = session.temperature, session.verdict
+    return covered(residuals, (*found.measured, own), found.steps)
 
 
 def alike(programme: str) -> tuple[str, ...]:

@@ -83,7 +83,7 @@ def covered_by(
     session: StoredSession, reference: Residuals, earlier: Iterable[StoredSession], steps: Steps = NO_STEPS
 ) -> Covered | None:
     """The temperatures that a reference, earlier sessions and the session's law cover; None where nothing says them."""
-    known = covered(reference, earlier, steps)
+    known = covered(reference, ((s.temperature, s.verdict) for s in earlier), steps.values())
     if session.temperature is None or known is None:
         return None
     return Covered(known.lowest, known.highest, known.reference, session.temperature)

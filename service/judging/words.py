@@ -86,12 +86,8 @@ def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], t
     """``51 ± 4 µg, tolerance 50 µg``, with U at k = 2; SI in."""
     value, sigma = size
     measure = deviation_measure(kind, parameter, max(value, tolerance))
-    allowed = say(
-        "tolerance {tolerance}{thin_space}{label}",
-        tolerance=number(in_measure(tolerance, measure)),
-        thin_space=THIN,
-        label=measure.label,
-    )
+    parts = {"tolerance": number(in_measure(tolerance, measure)), "thin_space": THIN, "label": measure.label}
+    allowed = say("tolerance {tolerance}{thin_space}{label}", **parts)
     if sigma is None:
         return say(
             "about {value}{thin_space}{label}, {tolerance}",
@@ -156,70 +152,47 @@ def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
         return _unseen(worst, decisions)
     moved = _words(worst, worst.deviation, signed=worst.parameter != "axis")
     spread, allowed = _words(worst, worst.expanded), _words(worst, worst.tolerance)
-    if worst.verdict is Verdict.PASS:
-        return say(
-            ALL_PASS,
-            closest=say(
-                "{place}, changed by {change} (U {spread}), tolerance ±{tolerance}",
-                place=place,
-                change=moved,
-                spread=spread,
-                tolerance=allowed,
-            ),
-        )
-    if worst.verdict is Verdict.FAIL:
-        return say(
-            "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}.",
-            place=place,
-            change=moved,
-            spread=spread,
-            tolerance=allowed,
-        )
-    if worst.verdict is Verdict.CONDITIONAL_FAIL:
-        return say(
-            "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance} by less than U.",
-            place=place,
-            change=moved,
-            spread=spread,
-            tolerance=allowed,
-        )
-    if worst.verdict is Verdict.CONDITIONAL_PASS:
-        return say(
-            "{place} changed by {change} (U {spread}), within the tolerance of ±{tolerance} by less than U.",
-            place=place,
-            change=moved,
-            spread=spread,
-            tolerance=allowed,
-        )
-    return _too_uncertain(place, moved, spread, allowed, worst)
+    parts = {"place": place, "change": moved, "spread": spread, "tolerance": allowed}
+    match worst.verdict:
+        case Verdict.PASS:
+            closest = say("{place}, changed by {change} (U {spread}), tolerance ±{tolerance}", **parts)
+            return say(ALL_PASS, closest=closest)
+        case Verdict.FAIL:
+            return say("{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}.", **parts)
+        case Verdict.CONDITIONAL_FAIL:
+            return say(
+                "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance} by less than U.",
+                **parts,
+            )
+        case Verdict.CONDITIONAL_PASS:
+            return say(
+                "{place} changed by {change} (U {spread}), within the tolerance of ±{tolerance} by less than U.",
+                **parts,
+            )
+    return _too_uncertain(worst, **parts)
 
 
-def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
+def _too_uncertain(worst: Decision, *, change: str, **known: str) -> str:
+    """``known``: its place, U and tolerance."""
     step = worst.temperature_correction
     if step is not None and worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
             "{place} has U {spread} at {reference}, more than its tolerance of ±{tolerance}: {again}.",
-            place=place,
-            spread=spread,
+            **known,
             reference=in_degrees(step.reference_temperature),
-            tolerance=allowed,
             again=at_about(step.reference_temperature),
         )
     if worst.expanded is not None and worst.expanded > worst.tolerance:
         return say(
             "{place} has U {spread}, more than its tolerance of ±{tolerance}: measure more positions, average longer, "
             "or set a wider tolerance.",
-            place=place,
-            spread=spread,
-            tolerance=allowed,
+            **known,
         )
     return say(
         "{place} changed by {change} (U {spread}), beyond the tolerance of ±{tolerance}, but noise alone can do this "
         "to one of so many parameters: measure again.",
-        place=place,
-        change=moved,
-        spread=spread,
-        tolerance=allowed,
+        **known,
+        change=change,
     )
 
 
@@ -296,12 +269,8 @@ def found_in_words(result: ParityResult) -> str:
     if result.isolated is not None:
         moved = joined(" or ", (_moved(c, result.kind) for c in result.candidates))
         said = clipped_in_words(result, best.sensor)
-        return say(
-            "{sensor} has changed since the calibration: {change}; the others agree{notes}",
-            sensor=best.sensor,
-            change=moved,
-            notes=said and say("; {notes}", notes=said),
-        )
+        parts = {"sensor": best.sensor, "change": moved, "notes": said and say("; {notes}", notes=said)}
+        return say("{sensor} has changed since the calibration: {change}; the others agree{notes}", **parts)
     listed = joined(
         " or ",
         (

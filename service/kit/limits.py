@@ -119,10 +119,8 @@ def check_table(filename: str, rows: int, columns: int) -> None:
             "table",
         )
     if rows * columns > most.cells:
+        parts = {"rows": rows, "columns": columns, "cells": most.cells}
         text = say(
-            "has {rows} rows × {columns} columns; at most {cells} cells can be read, so average or split it",
-            rows=rows,
-            columns=columns,
-            cells=most.cells,
+            "has {rows} rows × {columns} columns; at most {cells} cells can be read, so average or split it", **parts
         )
         raise refusal(filename, text, "table")

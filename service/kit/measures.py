@@ -178,11 +178,8 @@ def coverage_in_words(calibration: Calibration, k: float) -> str:
     most, least = (coverage_factor(k, dof) for dof in (min(dofs), max(dofs)))
     count = _range(min(dofs), max(dofs), 0)
     degrees = "one effective degree" if count == "1" else say("{number} effective degrees", number=count)
-    return say(
-        "k = {least}, by Student's t: the noise is estimated with {degrees} of freedom",
-        least=_range(least, most, 2),
-        degrees=degrees,
-    )
+    parts = {"least": _range(least, most, 2), "degrees": degrees}
+    return say("k = {least}, by Student's t: the noise is estimated with {degrees} of freedom", **parts)
 
 
 def noise_is_estimated(calibration: Calibration) -> bool:

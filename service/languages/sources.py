@@ -81,7 +81,6 @@ IGNORED = (
     "estimator/on_demand.py",
     "estimator/reading/bounds.py",
     "estimator/wording.py",
-    "estimator/published",
 )
 """Texts for programs, for the operator, or fixed by a standard."""
 

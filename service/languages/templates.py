@@ -22,9 +22,9 @@ Forms = Callable[[MessageEntry], Sequence[str]]
 """Translations of a message: a text, or one for every plural form; empty where there is none."""
 
 
-def in_language(source: str, forms: Forms, name: str = "") -> str:
+def in_language(source: str, forms: Forms) -> str:
     """The template in another language; untranslated messages stay."""
-    template = Template(source, name)
+    template = Template(source)
     output, position = list[str](), 0
     for occurrence in template.messages():
         translations = forms(occurrence.message)

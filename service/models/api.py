@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, Field
 
 from estimator.json_object import Json
 from service.flags.api import Handling
@@ -20,7 +20,7 @@ from service.records.recalibrate import recompute_beside
 from service.sessions.decision import Verdict
 from service.sessions.records import DiagnosisState
 from service.web.dependencies import Now, Reading
-from service.web.fields import LongText, Name, Number, Paged, Text, WindowOf
+from service.web.fields import Body, LongText, Name, Number, Paged, Text, WindowOf
 from service.web.problem_document import errors
 
 
@@ -83,15 +83,13 @@ class PendingDiagnosis(BaseModel):
     status: str = Field(description="`pending`: ask again after the seconds in Retry-After.")
 
 
-class NewModelSchema(BaseModel):
+class NewModelSchema(
+    Body,
+    json_schema_extra={
+        "example": {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen in three sessions"}
+    },
+):
     """A named cause that an engineer accepts into a model."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen in three sessions"}
-        },
-    )
 
     cause: Name = Field(
         description="Identifier of a cause of the catalogue that the session's diagnosis names or lists as alternative."

@@ -120,13 +120,8 @@ def _evidence(strength: float, pooled: Pooled | None) -> str:
     fitted = (
         "estimated from all sessions together" if pooled.form == "varying" else "not estimated again in single sessions"
     )
-    return say(
-        "{sessions}, {since}: {strength}. Size from these sessions: {fitted}.",
-        sessions=over(pooled.sessions),
-        since=since,
-        strength=standard_errors(strength),
-        fitted=fitted,
-    )
+    parts = {"sessions": over(pooled.sessions), "since": since, "strength": standard_errors(strength), "fitted": fitted}
+    return say("{sessions}, {since}: {strength}. Size from these sessions: {fitted}.", **parts)
 
 
 def _moved(recomputations: Sequence[Recomputation]) -> Iterator[MovedRow]:

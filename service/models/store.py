@@ -9,6 +9,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
+from service.kit.copying import copied
 from service.models.records import (
     AcceptedFinding,
     ModelRevision,
@@ -67,18 +68,9 @@ class Models(Queries):
 
     def add(self, new: ModelRevision) -> ModelRevision:
         """Stores a revision under the next number."""
-        row = ModelRow(
-            scope=new.scope,
-            subject=new.subject,
-            cause=new.cause,
-            sensors=list(new.sensors),
-            session_id=new.session,
-            evidence=evidence_to_dict(new.evidence),
-            accepted_by=new.accepted_by,
-            note=new.note,
-            accepted_at=new.accepted_at,
-            withdraws=new.withdraws,
-        )
+        values = {**vars(new), "sensors": list(new.sensors), "evidence": evidence_to_dict(new.evidence)}
+        del values["id"]
+        row = ModelRow(session_id=values.pop("session"), **values)
         self._session.add(row)
         self._session.flush()
         return _revision(row)
@@ -183,19 +175,8 @@ def _is_behind() -> ColumnElement[bool]:
 
 
 def _revision(row: ModelRow) -> ModelRevision:
-    return ModelRevision(
-        id=row.id,
-        scope=Scope(row.scope),
-        subject=row.subject,
-        cause=row.cause,
-        sensors=tuple(row.sensors),
-        session=row.session_id,
-        evidence=evidence_from_dict(row.evidence),
-        accepted_by=row.accepted_by,
-        note=row.note,
-        accepted_at=row.accepted_at,
-        withdraws=row.withdraws,
-    )
+    evidence = evidence_from_dict(row.evidence)
+    return copied(ModelRevision, row, sensors=tuple(row.sensors), session=row.session_id, evidence=evidence)
 
 
 class Recomputations(Queries):

@@ -30,13 +30,8 @@ def progress_of(recomputations: Sequence[Recomputation]) -> str:
         say("verdict changed: {sessions}", sessions=_counted(changed, "session")) if changed else "no verdict changed"
     )
     remaining = say(" {waiting} still to come.", waiting=_counted(waiting, "unit")) if waiting else ""
-    return say(
-        "{sessions} of {units} computed again: {verdicts}.{progress}",
-        sessions=_counted(sessions, "session"),
-        units=units,
-        verdicts=verdicts,
-        progress=remaining,
-    )
+    parts = {"sessions": _counted(sessions, "session"), "units": units, "verdicts": verdicts, "progress": remaining}
+    return say("{sessions} of {units} computed again: {verdicts}.{progress}", **parts)
 
 
 def left_in_words(recomputation: Recomputation) -> str:

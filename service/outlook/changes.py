@@ -46,7 +46,7 @@ class Sources:
 def known_of(store: Store, serial: str) -> Histories:
     """The histories of a unit since its last break."""
     unit = Units(store).key(serial)
-    since, _ = Services(store).around(unit, END_OF_TIME)
+    since = Services(store).began(unit, END_OF_TIME)
     changes, references = Outlooks(store).changes(unit, since), Outlooks(store).references(unit, since)
     return histories(changes, references, left_of(store, serial, changes, references))
 
@@ -54,7 +54,7 @@ def known_of(store: Store, serial: str) -> Histories:
 def gathered(store: Store, serial: str, known: Histories) -> Sources:
     """Everything that a unit's outlook is worked out from; what the unit contributes to its type is kept already."""
     unit = Units(store).key(serial)
-    since, _ = Services(store).around(unit, END_OF_TIME)
+    since = Services(store).began(unit, END_OF_TIME)
     last, shown = Outlooks(store).last_calibration(unit), Outlooks(store).last_session(unit)
     past = Past(
         serial=serial,

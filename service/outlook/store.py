@@ -14,6 +14,7 @@ from estimator.health.shapes import Kind
 from estimator.health.temperature_law import FOLLOW
 from estimator.json_object import Json
 from estimator.session import IN_SERVICE
+from service.kit.copying import copied
 from service.outlook.populations import Placed, Population
 from service.outlook.records import DueDate, ParameterTrend, Rate, UnitOutlook
 from service.outlook.tables import HistoryRow, OutlookRow, PopulationRow
@@ -384,14 +385,10 @@ def _row(unit_type: int, one: Population, at: datetime) -> PopulationRow:
 def _population(found: Row[PopulationRow, str] | Sequence[object]) -> Population:
     row, unit_type = found
     assert isinstance(row, PopulationRow)
-    return Population(
+    return copied(
+        Population,
+        row,
         unit_type=str(unit_type),
-        kind=row.kind,
-        parameter=row.parameter,
-        centre=row.centre,
-        spread=row.spread,
-        rates=row.rates,
-        lots=row.lots,
         fast=tuple(Placed(**placed) for placed in row.far["fast"]),
         evident=tuple(Placed(**placed) for placed in row.far["evident"]),
         far_lots=tuple((name, z) for name, z in row.far["lots"]),

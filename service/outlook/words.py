@@ -46,12 +46,8 @@ def drift_stands_out(sensor: str, parameter: str, value: float) -> str:
 
 def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:
     """Of one parameter of a lot."""
-    return say(
-        "Lot {lot} of {unit_type}: {parameter_names} drifts unlike in the other units.",
-        lot=lot,
-        unit_type=unit_type,
-        parameter_names=PARAMETER_NAMES[parameter],
-    )
+    parts = {"lot": lot, "unit_type": unit_type, "parameter_names": PARAMETER_NAMES[parameter]}
+    return say("Lot {lot} of {unit_type}: {parameter_names} drifts unlike in the other units.", **parts)
 
 
 CHANGED = {
@@ -184,12 +180,8 @@ def foreseen(outlook: UnitOutlook) -> str:
         return "No parameter is expected to reach its tolerance within twelve years."
     name = say("{sensor} {parameter_names}", sensor=outlook.sensor, parameter_names=PARAMETER_NAMES[outlook.parameter])
     later = say(" and as likely as not by {reach_50}", reach_50=month_of(outlook.reach_50)) if outlook.reach_50 else ""
-    return say(
-        "{name} reaches its tolerance with 10 % probability before {reach_90}{later}.",
-        name=name,
-        reach_90=month_of(outlook.reach_90),
-        later=later,
-    )
+    parts = {"name": name, "reach_90": month_of(outlook.reach_90), "later": later}
+    return say("{name} reaches its tolerance with 10 % probability before {reach_90}{later}.", **parts)
 
 
 def calibrated(session: StoredSession) -> str:
@@ -257,12 +249,8 @@ def _wandered(trend: ParameterTrend) -> str:
     measure = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
     moved = signed(trend.level, COVERAGE * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
-    return say(
-        "{trend} has changed by {change}, at no steady rate; tolerance ±{tolerance}.",
-        trend=place_of(trend),
-        change=moved,
-        tolerance=allowed,
-    )
+    parts = {"trend": place_of(trend), "change": moved, "tolerance": allowed}
+    return say("{trend} has changed by {change}, at no steady rate; tolerance ±{tolerance}.", **parts)
 
 
 def _waits(outlook: UnitOutlook, now: datetime) -> tuple[Wait, ...]:

@@ -116,7 +116,7 @@ def show_unit(
             raw=raw,
             flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,
-            pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
+            pair=found_and_left(store, report.unit_type, report.sessions, settings.coverage_factor),
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
             follow=SOONEST if is_judged_later or (is_pending and settings.diagnosis_workers) else None,

@@ -200,6 +200,5 @@ def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:
         return None
     sessions = (*Sessions(store).before(stored, None, MOST_EARLIER), stored)
     k = nominal_factor_of(report.decisions)
-    services = Services(store).of_unit(stored.unit)
-    pair = found_and_left(store, UnitTypes(store).of_unit(stored.unit), sessions, services, k)
+    pair = found_and_left(store, UnitTypes(store).of_unit(stored.unit), sessions, k)
     return pair if pair is not None and pair.left == stored else None

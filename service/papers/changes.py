@@ -105,14 +105,8 @@ def require_signer(storage: Storage, signing: Signing) -> str:
     if not is_password(stored, signing.password):
         raise SignInError(WRONG)
     if not account.role.may(NEEDED_ROLE):
-        raise ForbiddenError(
-            say(
-                "To sign a certificate needs the role {needed_role}; {login} is {role}.",
-                needed_role=NEEDED_ROLE,
-                login=account.login,
-                role=account.role,
-            )
-        )
+        parts = {"needed_role": NEEDED_ROLE, "login": account.login, "role": account.role}
+        raise ForbiddenError(say("To sign a certificate needs the role {needed_role}; {login} is {role}.", **parts))
     return account.name
 
 

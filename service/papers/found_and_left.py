@@ -13,12 +13,11 @@ from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import Decision
 from service.sessions.records import StoredSession
 from service.sessions.states import RecordState
-from service.sessions.store import Sessions, reference_query
+from service.sessions.store import reference_query
 from service.sessions.words.conditions import Condition, condition_of
 from service.storage.queries import Store
 from service.types.records import UnitType
-from service.units.records import Service
-from service.units.store import Units, epoch
+from service.units.store import Units
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,6 @@ def found_and_left(
     store: Store,
     unit_type: UnitType,
     sessions: Sequence[StoredSession],
-    services: Sequence[Service],
     coverage_factor: float,
 ) -> FoundAndLeft | None:
     """The latest as-found session among some, and the first as-left one after it; None without an as-found session."""
@@ -77,19 +75,17 @@ def found_and_left(
         if s.stage == AS_LEFT and _started_at(s) > _started_at(found) and s.programme in CALIBRATIONS
     )
     left = min(later, key=_started_at, default=None)
-    since, until = epoch(tuple(service.at for service in services), found.started_at)
     unit = Units(store).key(found.unit)
     pair = (found.id,) if left is None else (found.id, left.id)
-    reference, calibrations = Calibrations(store).beside_reference(
-        pair, reference_query(unit, unit_type.block, since, until)
+    reference, calibrations, steps = Calibrations(store).beside_reference(
+        pair, reference_query(unit, unit_type.block, found.started_at)
     )
-    steps = Sessions(store).temperature_steps((found.id,))
 
     def judged(session: StoredSession | None) -> tuple[Decision, ...]:
         """By the current tolerances; as found at the reference's temperature where a law is known."""
         if session is None or reference is None:
             return ()
-        step = steps.get(session.id, NO_STEPS) if session is found else NO_STEPS
+        step = steps[session.id] if session is found else NO_STEPS
         return decisions_of(calibrations[session.id], calibrations[reference], unit_type, coverage_factor, step)
 
     return FoundAndLeft(None if reference == found.id else reference, found, left, _paired(judged(found), judged(left)))

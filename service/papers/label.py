@@ -82,13 +82,8 @@ def _why(use: Usable) -> str:
 
 def _held(day: datetime) -> str:
     """The day on one line."""
-    return say(
-        "{day}{nbsp}{month}{nbsp}{year}",
-        day=day.day,
-        month=f"{day:%b}",
-        year=day.year,
-        nbsp=HARD,
-    )
+    parts = {"day": day.day, "month": f"{day:%b}", "year": day.year, "nbsp": HARD}
+    return say("{day}{nbsp}{month}{nbsp}{year}", **parts)
 
 
 def label_pdf(label: Label, now: datetime, language: Language = Language.ENGLISH) -> bytes:

@@ -2,13 +2,13 @@
 
 from datetime import datetime
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from estimator.json_object import Json
 from service.judging.covered import CoveredTemperatures
 from service.papers.records import Meaning
 from service.sessions.decision import Verdict
-from service.web.fields import TEXT, LongText, NonBlankName, Text
+from service.web.fields import TEXT, Body, LongText, NonBlankName, Text
 
 
 class BlockCorrectionSchema(BaseModel):
@@ -59,20 +59,16 @@ class CorrectionDocument(BaseModel):
     )
 
 
-class NewCustomer(BaseModel):
+class NewCustomer(Body):
     """For whom a unit is calibrated, and who says so."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: Text = Field(default="", description="Empty where it is not stated.", examples=["Aero Works Ltd"])
     address: LongText = Field(default="", description="Where they can be reached.", examples=["1 Hangar Road, Derby"])
     by: Text = Field(default="crew", description="Your name.")
 
 
-class NewSignature(BaseModel):
+class NewSignature(Body):
     """A name that is to stand under a certificate."""
-
-    model_config = ConfigDict(extra="forbid")
 
     number: NonBlankName = Field(description="Of the certificate that you read; one that is not the latest is refused.")
     meaning: Meaning = Field(description="A certificate is reviewed first, and approved by somebody else.")

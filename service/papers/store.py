@@ -101,13 +101,8 @@ class Signatures(Queries):
             "content_hash": signature.content_hash,
         }
         if not self.insert_once(SignatureRow, **values):
-            raise ConflictError(
-                say(
-                    "Certificate {certificate} is {meaning} already.",
-                    certificate=signature.certificate,
-                    meaning=signature.meaning,
-                )
-            )
+            parts = {"certificate": signature.certificate, "meaning": signature.meaning}
+            raise ConflictError(say("Certificate {certificate} is {meaning} already.", **parts))
 
     def keep(self, number: str, files: Sequence[CertificateFile]) -> None:
         """Stores the files of an approved issue."""

@@ -132,9 +132,6 @@ def uncertainty_in_words(calibration: Calibration, k: float) -> str:
     """With the coverage factor of the decisions."""
     percent = number(100 * (2.0 * chance(k, None) - 1.0), 0)
     if noise_is_estimated(calibration):
-        return say(
-            "{coverage} {source}",
-            coverage=say(STUDENT, k=coverage_in_words(calibration, k), percent=percent),
-            source=BY,
-        )
+        parts = {"coverage": say(STUDENT, k=coverage_in_words(calibration, k), percent=percent), "source": BY}
+        return say("{coverage} {source}", **parts)
     return say("{coverage} {source}", coverage=say(NORMAL, k=number(k), percent=percent), source=BY)

@@ -194,12 +194,8 @@ async def _admitted(request: Request, person: PersonOf) -> None:
 
 
 def _lacking(person: Person, needed_role: Role) -> str:
-    return say(
-        "This needs the role {needed_role}; {account} is {role}. Ask an administrator.",
-        needed_role=needed_role,
-        account=person.account,
-        role=person.role,
-    )
+    parts = {"needed_role": needed_role, "account": person.account, "role": person.role}
+    return say("This needs the role {needed_role}; {account} is {role}. Ask an administrator.", **parts)
 
 
 async def _proof(request: Request) -> str:

@@ -26,7 +26,7 @@ from service.people.dependencies import StorageOf
 from service.people.store import Accounts, Tokens
 from service.storage.audit import Audit, AuditCheck, AuditLine
 from service.web.dependencies import Now, Reading
-from service.web.fields import TEXT, Limit, NonBlankName, Number, Text
+from service.web.fields import TEXT, Body, Limit, NonBlankName, Number, Text
 from service.web.problem_document import errors
 
 Login = Annotated[str, Path(pattern=TEXT, max_length=60, description="The account's login.", examples=["k.ito"])]
@@ -49,12 +49,8 @@ class AccountList(BaseModel):
     accounts: tuple[Account, ...] = Field(description="By login.")
 
 
-class NewAccount(BaseModel):
+class NewAccount(Body, json_schema_extra={"example": {"login": "k.ito", "name": "K. Ito", "role": "crew"}}):
     """Somebody who is to sign in."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"login": "k.ito", "name": "K. Ito", "role": "crew"}}
-    )
 
     login: NonBlankName = Field(
         description="Letters a to z, digits and . _ @ -; at most 60. Capitals are made small.",
@@ -64,10 +60,8 @@ class NewAccount(BaseModel):
     role: Role = Field(description="What the person may do.")
 
 
-class AccountChanges(BaseModel):
+class AccountChanges(Body, json_schema_extra={"example": {"role": "engineer"}}):
     """What is to be otherwise."""
-
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"role": "engineer"}})
 
     name: Text | None = Field(default=None, description="As papers name the person.")
     role: Role | None = Field(default=None, description="What the person may do.")
@@ -86,12 +80,8 @@ class TokenList(BaseModel):
     tokens: tuple[Token, ...] = Field(description="Newest first.")
 
 
-class NewToken(BaseModel):
+class NewToken(Body, json_schema_extra={"example": {"label": "bench 3", "role": "crew", "days": 90}}):
     """A token that is to be made for the one who asks."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"label": "bench 3", "role": "crew", "days": 90}}
-    )
 
     label: NonBlankName = Field(description="What it is for.")
     role: Role = Field(description="What it may do; at most what its account may.")
@@ -166,14 +156,8 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
     if not person.login:
         raise ConflictError(NO_ACCOUNT)
     if not person.may(new.role):
-        raise ForbiddenError(
-            say(
-                "{account} is {role} and cannot make a token for {wanted_role}.",
-                account=person.account,
-                role=person.role,
-                wanted_role=new.role,
-            )
-        )
+        parts = {"account": person.account, "role": person.role, "wanted_role": new.role}
+        raise ForbiddenError(say("{account} is {role} and cannot make a token for {wanted_role}.", **parts))
     lasts = timedelta(days=new.days)
     token, secret = make_token(storage, person.login, new.label, new.role, now, lifetime=lasts, who=person.name)
     return MadeToken(**vars(token), secret=secret)

@@ -345,14 +345,8 @@ def make_token(
     with storage.database.writing() as store:
         account = Accounts(store).get(login)
         if not account.is_active or not account.role.may(role):
-            raise ConflictError(
-                say(
-                    "{login} is {role} and cannot have a token for {wanted_role}.",
-                    login=account.login,
-                    role=account.role,
-                    wanted_role=role,
-                )
-            )
+            parts = {"login": account.login, "role": account.role, "wanted_role": role}
+            raise ConflictError(say("{login} is {role} and cannot have a token for {wanted_role}.", **parts))
         new = Token(0, account.login, label.strip() or "token", role, now, now + lifetime, None, None)
         token = Tokens(store).add(account, new, stored_hash(secret))
         details = {"token": token.id, "label": token.label, "role": role, "until": token.expires_at.isoformat()}

@@ -7,6 +7,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 
 from estimator.message import say
 from service.errors import NotFoundError
+from service.kit.copying import copied
 from service.kit.person import Account, Role, Token
 from service.people.tables import AccountRow, AttemptRow, IdentityRow, SignInLinkRow, SignInRow, TokenRow
 from service.storage.queries import Queries
@@ -68,15 +69,7 @@ class Accounts(Queries):
 
 def account_of(row: AccountRow) -> Account:
     """The record, without the password hash."""
-    return Account(
-        id=row.id,
-        login=row.login,
-        name=row.name,
-        role=Role(row.role),
-        is_active=row.is_active,
-        created_at=row.created_at,
-        has_password=row.password_hash is not None,
-    )
+    return copied(Account, row, has_password=row.password_hash is not None)
 
 
 RETENTION = timedelta(days=2)
@@ -252,13 +245,4 @@ def _tokens() -> Select[TokenRow, AccountRow]:
 
 
 def _token(row: TokenRow, login: str) -> Token:
-    return Token(
-        id=row.id,
-        login=login,
-        label=row.label,
-        role=Role(row.role),
-        created_at=row.created_at,
-        expires_at=row.expires_at,
-        revoked_at=row.revoked_at,
-        last_used_at=row.last_used_at,
-    )
+    return copied(Token, row, login=login)

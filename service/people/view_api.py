@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, Field, StringConstraints
 
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
@@ -11,22 +11,20 @@ from service.people.keep_view import remove_view, save_view
 from service.people.view_store import SavedViews
 from service.people.views import ListPage, NewView, SavedView
 from service.web.dependencies import Now, Reading
-from service.web.fields import Name, Number
+from service.web.fields import Body, Name, Number
 from service.web.problem_document import errors
 
 ViewName = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=100)]
 ViewQuery = Annotated[str, StringConstraints(pattern=r"^[^\x00?#\s]*$", max_length=20_000)]
 
 
-class NewViewSchema(BaseModel):
+class NewViewSchema(
+    Body,
+    json_schema_extra={
+        "example": {"page": "fleet", "name": "overdue on ODG-1", "query": "due=overdue&stand=ODG-1", "by": "K. Ito"}
+    },
+):
     """A view to keep."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {"page": "fleet", "name": "overdue on ODG-1", "query": "due=overdue&stand=ODG-1", "by": "K. Ito"}
-        },
-    )
 
     page: ListPage = Field(description="Of which list.")
     name: ViewName = Field(description="Its name.")

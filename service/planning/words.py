@@ -109,12 +109,8 @@ def tolerance_in_words(judged: JudgedParameter) -> str:
     if judged.tolerance is None:
         return ""
     measure = MEASURES[judged.kind, judged.parameter]
-    return say(
-        "of {tolerance}{thin_space}{label}",
-        tolerance=number(in_measure(judged.tolerance, measure)),
-        thin_space=THIN,
-        label=measure.label,
-    )
+    parts = {"tolerance": number(in_measure(judged.tolerance, measure)), "thin_space": THIN, "label": measure.label}
+    return say("of {tolerance}{thin_space}{label}", **parts)
 
 
 def duration(seconds: float) -> str:
@@ -137,12 +133,8 @@ def headline(plan: Plan) -> str:
         return say("{size}, {seconds}, reach every tolerance.", size=size, seconds=duration(plan.seconds))
     short = [j for j in plan.judged if j.verdict in ("usable", "undecidable")]
     names = joined(", ", dict.fromkeys(j.parameter for j in short))
-    return say(
-        "{size}, {seconds}, do not reach the tolerance of {names}.",
-        size=size,
-        seconds=duration(plan.seconds),
-        names=names,
-    )
+    parts = {"size": size, "seconds": duration(plan.seconds), "names": names}
+    return say("{size}, {seconds}, do not reach the tolerance of {names}.", **parts)
 
 
 MINUTE = 60.0
@@ -209,27 +201,20 @@ def _drift_sentences(found: Readiness, worst: DriftOutlook) -> list[str]:
         if worst.limit == "scale"
         else "a quarter of the tolerance of its bias"
     )
+    parts = {"length": length, "bound": bound, "name": worst.name, "tolerance": allowed, "source": source}
     if found.state is ReadinessState.READY:
         return [
             say(
                 "No sensor exceeds its drift limit in the {length} minutes of the programme: the largest is {bound} "
                 "of {name}, with 95 % probability; limit {tolerance}, {source}.",
-                length=length,
-                bound=bound,
-                name=worst.name,
-                tolerance=allowed,
-                source=source,
+                **parts,
             )
         ]
     sentences: list[str] = [
         say(
             "{name} may still drift by {bound} in the {length} minutes of the programme (95 %); "
             "limit {tolerance}, {source}.",
-            name=worst.name,
-            bound=bound,
-            length=length,
-            tolerance=allowed,
-            source=source,
+            **parts,
         )
     ]
     if found.state is ReadinessState.NOT_WARM:
@@ -297,25 +282,16 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
     """What happened, when, to whom, and what to do."""
     sensors, size = named(one.sensors), amount(kind, one.size)
     consequence = "; only the record after it is judged." if one.passed else ". Do not touch it, and record again."
+    parts = {"size": size, "start": clock(one.start), "stop": clock(one.stop), "consequence": consequence}
     match one.kind:
         case DisturbanceKind.STEP:
             return say(
                 "{sensors} changed by {size} between {start} and {stop}: somebody touched it{consequence}",
                 sensors=sensors,
-                size=size,
-                start=clock(one.start),
-                stop=clock(one.stop),
-                consequence=consequence,
+                **parts,
             )
         case DisturbanceKind.BURST:
-            return say(
-                "{who} vibrated by {size} rms from {start} to {stop}{consequence}",
-                who=sensors,
-                size=size,
-                start=clock(one.start),
-                stop=clock(one.stop),
-                consequence=consequence,
-            )
+            return say("{who} vibrated by {size} rms from {start} to {stop}{consequence}", who=sensors, **parts)
         case DisturbanceKind.SHAKING:
             return say(
                 "{who}: continuous vibration of {size} rms. With a quadratic term within its tolerance it shifts the "
@@ -365,10 +341,7 @@ def fault_in_words(fault: RecordFault) -> str:
                 amount=f"{fault.amount:.0f}",
             )
         case FaultKind.STUCK:
-            return say(
-                "Constant reading: {who}. The channel is dead; check power and cables.",
-                who=sensors,
-            )
+            return say("Constant reading: {who}. The channel is dead; check power and cables.", who=sensors)
         case FaultKind.COARSE:
             return say(
                 "The resolution of the readings is coarser than the drift limit: {who}. Average more samples, with "

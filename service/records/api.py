@@ -1,7 +1,7 @@
 """States of records over HTTP."""
 
 from fastapi import APIRouter, Request
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from estimator.message import say
 from service.errors import ConflictError
@@ -22,7 +22,7 @@ from service.units.store import Units
 from service.uploads.correct import correct_session
 from service.uploads.receive import deriving
 from service.web.dependencies import Now, Reading
-from service.web.fields import Name, Number, Reason, Serial, SessionId, Text
+from service.web.fields import Body, Name, Number, Reason, Serial, SessionId, Text
 from service.web.problem_document import errors
 
 
@@ -34,23 +34,17 @@ class StateList(BaseModel):
     states: tuple[StateChange, ...] = Field(description="Oldest first; empty where it was accepted and remained so.")
 
 
-class Correcting(BaseModel):
+class Correcting(Body, json_schema_extra={"example": {"by": "K. Ito"}}):
     """Who is to have a questioned session's file corrected."""
-
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"by": "K. Ito"}})
 
     by: Name = Field(description="Who says so.")
 
 
-class Superseding(BaseModel):
+class Superseding(
+    Body,
+    json_schema_extra={"example": {"by": "K. Ito", "why": "alpha mistyped", "superseded_by": "3f9a0c5be1d24786aa10"}},
+):
     """Which session supersedes another, who says so and why."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {"by": "K. Ito", "why": "alpha mistyped", "superseded_by": "3f9a0c5be1d24786aa10"}
-        },
-    )
 
     by: Name = Field(description="Who says so.")
     why: Reason = Field(description="Why; what was wrong.")
@@ -61,15 +55,13 @@ class Superseding(BaseModel):
     )
 
 
-class NewReference(BaseModel):
+class NewReference(
+    Body,
+    json_schema_extra={
+        "example": {"session": "3f9a0c5be1d24786aa10", "by": "K. Ito", "why": "the first one was measured warm"}
+    },
+):
     """The session that an engineer chooses as the reference of its epoch."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {"session": "3f9a0c5be1d24786aa10", "by": "K. Ito", "why": "the first one was measured warm"}
-        },
-    )
 
     session: Text = Field(description="Its id; it must be accepted and give an uncertainty.")
     by: Name = Field(description="Who chooses and approves it.")

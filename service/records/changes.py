@@ -114,12 +114,9 @@ def _require_possible(store: Store, session: StoredSession) -> None:
         return
     stands_for_it = Sessions(store).get(session.superseded_by)
     if stands_for_it.state in (RecordState.ACCEPTED, RecordState.QUESTIONED):
+        parts = {"id": stands_for_it.id, "id2": session.id}
         raise ConflictError(
-            say(
-                "Session {id} replaces session {id2}: withdraw it first, or both would count.",
-                id=stands_for_it.id,
-                id2=session.id,
-            )
+            say("Session {id} replaces session {id2}: withdraw it first, or both would count.", **parts)
         )
 
 
@@ -157,13 +154,8 @@ def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tu
 
 def _require_choice(store: Store, session: StoredSession) -> None:
     if session.state is not RecordState.ACCEPTED:
-        raise ConflictError(
-            say(
-                "Session {id} is {state}: only an accepted session can be a reference.",
-                id=session.id,
-                state=session.state,
-            )
-        )
+        parts = {"id": session.id, "state": session.state}
+        raise ConflictError(say("Session {id} is {state}: only an accepted session can be a reference.", **parts))
     if session.programme == IN_SERVICE:
         raise ConflictError("A recording in service is compared with a calibration and is no reference itself.")
     if blind := too_few(Calibrations(store).get(session.id)):

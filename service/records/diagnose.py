@@ -61,7 +61,7 @@ class DiagnosisTask:
 def task_of(store: Store, id: str) -> DiagnosisTask:
     """What the diagnosis of a session looks at."""
     session = Sessions(store).get(id)
-    since, _ = Services(store).around(Units(store).key(session.unit), session.started_at)
+    since = Services(store).began(Units(store).key(session.unit), session.started_at)
     revisions = Models(store).of_session(id)
     return DiagnosisTask(
         session, Sessions(store).before(session, since, MOST_EARLIER), max((r.id for r in revisions), default=0)

@@ -2,31 +2,29 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from service.sessions.schemas import DecisionSchema, SaidSession
 from service.units.records import Note
-from service.web.fields import LongText, Moment, Name, Reason, Text
+from service.web.fields import Body, LongText, Moment, Name, Reason, Text
 
 ServiceKind = Literal["adjustment", "repair", "sensor-swap", "reference", "service"]
 Stage = Literal["as-found", "as-left"]
 
 
-class NewServiceSchema(BaseModel):
+class NewServiceSchema(
+    Body,
+    json_schema_extra={
+        "example": {
+            "kind": "sensor-swap",
+            "at": "2026-02-10T12:00:00Z",
+            "sensor": "A3",
+            "by": "K. Ito",
+            "note": "A3 replaced after a fall",
+        }
+    },
+):
     """A known break in a unit's history; the next session measured after it is the new reference."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {
-                "kind": "sensor-swap",
-                "at": "2026-02-10T12:00:00Z",
-                "sensor": "A3",
-                "by": "K. Ito",
-                "note": "A3 replaced after a fall",
-            }
-        },
-    )
 
     kind: ServiceKind = Field(description="What was done; `reference` is a new reference set, `service` anything else.")
     at: Moment | None = Field(default=None, description="When; now if not given. Without a zone it is UTC.")
@@ -35,13 +33,10 @@ class NewServiceSchema(BaseModel):
     sensor: Text = Field(default="", description="The sensor that it concerns; empty for the whole unit.")
 
 
-class NewNote(BaseModel):
+class NewNote(
+    Body, json_schema_extra={"example": {"text": "moved by road", "at": "2026-02-10T12:00:00Z", "by": "K. Ito"}}
+):
     """A remark on a unit's history."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={"example": {"text": "moved by road", "at": "2026-02-10T12:00:00Z", "by": "K. Ito"}},
-    )
 
     text: Reason = Field(description="What is worth knowing.")
     by: Name = Field(description="Who says it.")
@@ -55,10 +50,8 @@ class NoteList(BaseModel):
     notes: tuple[Note, ...] = Field(description="The notes, withdrawn ones too.")
 
 
-class NewStage(BaseModel):
+class NewStage(Body, json_schema_extra={"example": {"stage": "as-found", "by": "K. Ito"}}):
     """How a session shows its unit."""
-
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"stage": "as-found", "by": "K. Ito"}})
 
     stage: Stage | None = Field(description="Before or after the unit was worked on; null for neither.")
     by: Name = Field(description="Who says so.")

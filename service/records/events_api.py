@@ -61,7 +61,7 @@ def write_note(serial: Serial, new: NewNote, storage: StorageOf, now: Now, perso
 def read_found_and_left(serial: Serial, store: Reading, settings: SettingsOf, now: Now) -> FoundAndLeftSchema:
     """The unit as it was found and as it was left, both against the reference that held when it was found."""
     unit = unit_report(store, serial, now)
-    pair = found_and_left(store, unit.unit_type, unit.sessions, unit.services, settings.coverage_factor)
+    pair = found_and_left(store, unit.unit_type, unit.sessions, settings.coverage_factor)
     if pair is None:
         return FoundAndLeftSchema(reference=None, found=None, left=None, parameters=[])
     lines = [

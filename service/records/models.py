@@ -25,6 +25,7 @@ from service.groups.records import Group, GroupShown
 from service.groups.store import read_group
 from service.groups.words import equation_of
 from service.jobs.changes import add_model_job
+from service.kit.copying import copied
 from service.models.records import SCOPES, AcceptedFinding, ModelRevision, NewLasting, NewModel, Pooled, Scope
 from service.models.rules import in_force, pooled_of
 from service.models.store import Models, Recomputations
@@ -113,17 +114,7 @@ def _as_alternative(finding: Finding, wanted: str) -> Finding:
 
 
 def _evidence(finding: Finding, gain: Gain) -> AcceptedFinding:
-    return AcceptedFinding(
-        p_value=finding.p_value,
-        strength=finding.strength,
-        amplitude=finding.amplitude,
-        sigma=finding.sigma,
-        units=finding.units,
-        nonlinear=finding.nonlinear,
-        alternatives=finding.alternatives,
-        sentence=finding.sentence,
-        gain=gain,
-    )
+    return copied(AcceptedFinding, finding, gain=gain, pooled=None)
 
 
 def _subject(new: NewModel, session: StoredSession, unit_type: str, sensors: tuple[str, ...]) -> str:
@@ -210,29 +201,23 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
 def evidence_of(finding: GroupFinding, shown: GroupShown) -> AcceptedFinding:
     """The finding as a revision keeps it; 1/e bounds the probability of such evidence without an effect (Markov)."""
     gain = shown.gain
-    return AcceptedFinding(
+    return copied(
+        AcceptedFinding,
+        finding,
         p_value=min(1.0, 1 / finding.e_value),
-        strength=finding.strength,
-        amplitude=finding.amplitude,
         sigma=tuple(float("nan") if sigma is None else sigma for sigma in finding.sigma),
-        units=finding.units,
         nonlinear={} if finding.shape is None else {"s": finding.shape},
-        alternatives=finding.alternatives,
-        sentence=finding.sentence,
         gain=None,
-        pooled=Pooled(
+        pooled=copied(
+            Pooled,
+            finding,
             sessions=shown.sessions,
             first=shown.first,
             last=shown.last,
-            form=finding.form,
-            since=finding.since,
-            kind=finding.kind,
-            shape=finding.shape,
-            spread=finding.spread,
-            e_value=finding.e_value,
             fitted=0 if gain is None else gain.fitted,
             held_out=0 if gain is None else gain.held_out,
             log_score=None if gain is None else gain.log_score,
+            words=(),
         ),
     )
 

@@ -140,20 +140,20 @@ def add_service(
             return render(request, "service_preview.html", ForeseenPage(new, service_in_words(new), foreseen))
     record_service(reception.storage, serial, new, now, coverage_factor=k)
     reception.ring()
-    return _unit(serial, "events")
+    return _events(serial)
 
 
 @router.post("/units/{serial:path}/notes")
 def write_note(serial: Key, text: Why, by: By, storage: StorageOf, now: Now, *, at: At = None) -> RedirectResponse:
     """Keeps a remark."""
     add_note(storage, serial, text, at=at or now, who=by, now=now)
-    return _unit(serial, "events")
+    return _events(serial)
 
 
 @router.post("/notes/{id}/withdraw")
 def withdraw_note_form(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
     """A remark no longer holds."""
-    return _unit(withdraw_note(storage, id, by, why, now).unit, "events")
+    return _events(withdraw_note(storage, id, by, why, now).unit)
 
 
 @router.post("/sessions/{id}/stage")
@@ -165,5 +165,5 @@ def mark_session(
     return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
 
 
-def _unit(serial: str, place: str) -> RedirectResponse:
-    return RedirectResponse(f"/units/{quote(serial)}#{place}", SEE_OTHER)
+def _events(serial: str) -> RedirectResponse:
+    return RedirectResponse(f"/units/{quote(serial)}#events", SEE_OTHER)

@@ -41,7 +41,7 @@ RULE = b"4"
 
 def members_of(store: Store, group: Group) -> Members:
     """The sessions that a group's answer rests on: of a unit those since its last service."""
-    since = Services(store).around(group.key, END_OF_TIME)[0] if group.level is Level.UNIT else None
+    since = Services(store).began(group.key, END_OF_TIME) if group.level is Level.UNIT else None
     return Groups(store).members(group, since)
 
 

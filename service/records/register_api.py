@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 import polars as pl
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from estimator.json_object import Json
 from estimator.message import say
@@ -21,7 +21,7 @@ from service.units.register_file import read_register
 from service.units.register_store import Register
 from service.uploads.received import SentOf
 from service.web.dependencies import Now, Reading
-from service.web.fields import LongText, Moment, Name, Reason, Serial, Text
+from service.web.fields import Body, LongText, Moment, Name, Reason, Serial, Text
 from service.web.files import BINARY, BY_HEADER, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 
@@ -32,15 +32,13 @@ COLUMNS = {
 }  # fmt: skip
 
 
-class NewEntrySchema(BaseModel):
+class NewEntrySchema(
+    Body,
+    json_schema_extra={
+        "example": {"unit_type": "RA-6", "location": "Hangar 2", "custodian": "K. Ito", "by": "M. Sato"}
+    },
+):
     """What the register says of a unit."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {"unit_type": "RA-6", "location": "Hangar 2", "custodian": "K. Ito", "by": "M. Sato"}
-        },
-    )
 
     unit_type: Text | None = Field(None, description="Name of its type; needed of a unit that is not known yet.")
     owner: Text | None = Field(None, description="To whom it belongs; null leaves it as it is.")
@@ -50,12 +48,8 @@ class NewEntrySchema(BaseModel):
     by: Name = Field(description="Who enters it.")
 
 
-class NewMove(BaseModel):
+class NewMove(Body, json_schema_extra={"example": {"location": "Hangar 3", "custodian": "M. Sato", "by": "K. Ito"}}):
     """Where a unit goes, or who gets it."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"location": "Hangar 3", "custodian": "M. Sato", "by": "K. Ito"}}
-    )
 
     location: Text | None = Field(None, description="Where it is from then on; null where it stays.")
     custodian: Text | None = Field(None, description="Who has it from then on; null where that stays.")
@@ -64,10 +58,8 @@ class NewMove(BaseModel):
     by: Name = Field(description="Who records it.")
 
 
-class NewRetirement(BaseModel):
+class NewRetirement(Body, json_schema_extra={"example": {"why": "scrapped", "by": "K. Ito"}}):
     """Why a unit is retired, or put back into use."""
-
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"why": "scrapped", "by": "K. Ito"}})
 
     why: Reason = Field(description="Why.")
     at: Moment | None = Field(None, description="Since when; now if not given. Without a zone it is UTC.")

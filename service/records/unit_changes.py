@@ -89,14 +89,8 @@ def given_out(store: Store, id: int) -> Attachment:
     """An attachment that may be downloaded; NotFoundError with the reason where it was withdrawn."""
     attachment = Attachments(store).get(id)
     if attachment.withdrawal is not None:
-        raise NotFoundError(
-            say(
-                "Attachment {id} was withdrawn by {who}: {reason}",
-                id=id,
-                who=attachment.withdrawal.who,
-                reason=attachment.withdrawal.why,
-            )
-        )
+        parts = {"id": id, "who": attachment.withdrawal.who, "reason": attachment.withdrawal.why}
+        raise NotFoundError(say("Attachment {id} was withdrawn by {who}: {reason}", **parts))
     return attachment
 
 

@@ -10,18 +10,19 @@ from functools import lru_cache
 from sqlalchemy import Select, bindparam, select, update
 
 from estimator.allan.results import TERMS, BlockNoise
+from estimator.health.temperature_law import Steps
 from estimator.message import say
 from estimator.results import Calibration
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
 from service.queue.records import WorkKind
 from service.queue.tables import WorkRow
-from service.sessions.decision import Verdict
+from service.sessions.decision import Verdict, steps_in
 from service.sessions.records import DiagnosisState, DiagnosisSummary, StoredSession
-from service.sessions.store import session_record, session_rows, worst_columns
-from service.sessions.tables import CalibrationRow, ParameterRow, SessionNoiseRow, SessionRow
+from service.sessions.store import decision_record, session_record, session_rows, worst_columns
+from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionNoiseRow, SessionRow
 from service.storage.json_text import STORED, json_text
-from service.storage.queries import Queries
+from service.storage.queries import Queries, lists
 
 LEVEL = 4
 """Of deflate: 4 % more bytes than the usual 6, in 40 % of the time; an upload waits for it."""
@@ -103,16 +104,23 @@ class Calibrations(Queries):
 
     def beside_reference(
         self, sessions: Iterable[str], reference: Select[str]
-    ) -> tuple[str | None, dict[str, Calibration]]:
-        """The reference that a query names, and the calibrations in force of it and of some sessions; in one query."""
-        against = reference.scalar_subquery()
+    ) -> tuple[str | None, dict[str, Calibration], dict[str, Steps]]:
+        """The reference that a query names, and of it and of some sessions the calibrations in force and what was
+        taken off for temperature; in one query."""
+        of, against, row = lists("calibrations", "laws"), reference.scalar_subquery(), DecisionRow
+        calibrated = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
+        decided = (row.session_id == SessionRow.id) & (row.revision == SessionRow.revision)
         rows = self._session.execute(
-            select(against, CalibrationRow.session_id, CalibrationRow.document)
-            .join(SessionRow, SessionRow.id == CalibrationRow.session_id)
-            .where(CalibrationRow.revision == SessionRow.revision)
-            .where(SessionRow.id.in_(tuple(sessions)) | (SessionRow.id == against))
+            select(against, SessionRow.id, CalibrationRow.document, row)
+            .select_from(of)
+            .join(SessionRow, SessionRow.id.in_(tuple(sessions)) | (SessionRow.id == against))
+            .outerjoin(CalibrationRow, (of.c.list == "calibrations") & calibrated)
+            .outerjoin(row, (of.c.list == "laws") & decided & row.temperature_correction.is_not(None))
         ).all()
-        return rows[0][0] if rows else None, {id: calibration_of(document) for _, id, document in rows}
+        calibrations = {id: calibration_of(document) for _, id, document, _ in rows if document is not None}
+        corrected = [(id, decision_record(decision)) for _, id, _, decision in rows if decision is not None]
+        steps = {id: steps_in(tuple(decision for of_id, decision in corrected if of_id == id)) for id in calibrations}
+        return rows[0][0] if rows else None, calibrations, steps
 
     def get(self, session: str, revision: int | None = None) -> Calibration:
         """The calibration of a session, as it was computed."""

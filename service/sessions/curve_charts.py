@@ -32,8 +32,6 @@ from service.sessions.words.curves import change
 
 POINTS = 56
 """Temperatures that a curve is drawn at."""
-Named = tuple[str, str, Curve]
-"""Sensor, its kind, its curve."""
 
 
 def curve_charts(calibration: Calibration) -> tuple[ChartSet, ...]:

@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 from sqlalchemy import select, update
 
+from service.kit.copying import copied
 from service.sessions.doubt import Remedies
 from service.sessions.states import RecordKind, RecordState, ReferenceChoice, StateChange, Step
 from service.sessions.tables import RecordStateRow, ReferenceChoiceRow, SessionRow
@@ -63,16 +64,7 @@ class States(Queries):
 
 def state_change(row: RecordStateRow) -> StateChange:
     """A stored line of a record's life."""
-    return StateChange(
-        kind=RecordKind(row.kind),
-        record=row.record,
-        state=RecordState(row.state),
-        who=row.who,
-        at=row.at,
-        why=row.why,
-        superseded_by=row.superseded_by,
-        remedies=None if row.remedies is None else Remedies(**row.remedies),
-    )
+    return copied(StateChange, row, remedies=None if row.remedies is None else Remedies(**row.remedies))
 
 
 IS_ACCEPTED = SessionRow.state == RecordState.ACCEPTED

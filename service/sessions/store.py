@@ -5,8 +5,19 @@ from dataclasses import asdict, fields
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, and_, bindparam, or_, select, update
-from sqlalchemy.orm import InstrumentedAttribute
+from sqlalchemy import (
+    ColumnElement,
+    ScalarSelect,
+    Select,
+    SQLColumnExpression,
+    and_,
+    bindparam,
+    func,
+    or_,
+    select,
+    update,
+)
+from sqlalchemy.orm import InstrumentedAttribute, aliased
 
 from estimator.health.common_motion import CommonMotion
 from estimator.health.temperature_law import Steps, TemperatureCorrection
@@ -15,23 +26,22 @@ from estimator.session import CALIBRATIONS
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
 from service.kit.arriving_files import DEMONSTRATION
+from service.kit.copying import copied
 from service.sessions.decision import Decision, Verdict
 from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionQuery, StoredSession
 from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
-from service.sessions.states_store import IS_ACCEPTED
+from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow
 from service.sessions.wanted_store import SESSIONS
 from service.stands.tables import StandRow
 from service.storage.audit import AuditRow
 from service.storage.queries import Queries, lists
 from service.types.tables import UnitTypeRow
-from service.units.tables import UnitRow
+from service.units.tables import ServiceRow, UnitRow
 
 NOT_JUDGED = ""
 """What the verdict rests on of a session that is still to be judged, or judged again."""
-ELSEWHERE = ("unit", "stand", "verdict", "state", "reservations")
-"""Fields of a session that are no plain column of its row."""
 
 
 def is_waiting(basis: InstrumentedAttribute[str | None]) -> ColumnElement[bool]:
@@ -83,16 +93,9 @@ class Sessions(Queries):
         """What a session measured: the block's kind."""
         return self._session.execute(select(SessionRow.block).where(SessionRow.id == id)).scalar_one()
 
-    def reference(
-        self,
-        unit: int,
-        block: str,
-        since: datetime | None,
-        until: datetime | None,
-        programmes: tuple[str, ...] = CALIBRATIONS,
-    ) -> str | None:
-        """The session that others of the block, epoch and programmes are judged against."""
-        return self._session.scalar(reference_query(unit, block, since, until, programmes))
+    def reference(self, unit: int, block: str, at: datetime, programmes: tuple[str, ...] = CALIBRATIONS) -> str | None:
+        """The session that others of the block and programmes, in the epoch of a time, are judged against."""
+        return self._session.scalar(reference_query(unit, block, at, programmes))
 
     def of_readings(self, digest: str, but_unit: int, but: Collection[str]) -> StoredSession | None:
         """The first session of another unit that counts and has the same readings, other than ``but``."""
@@ -222,22 +225,37 @@ class Sessions(Queries):
         return decisions, tuple(motion_record(row) for _, row in rows if row is not None)
 
 
+_Reference = aliased(SessionRow)
+"""A session that others are judged against."""
+
+
 def reference_query(
-    unit: int,
-    block: str,
-    since: datetime | None,
-    until: datetime | None,
+    unit: int | SQLColumnExpression[int],
+    block: str | SQLColumnExpression[str],
+    at: datetime,
     programmes: tuple[str, ...] = CALIBRATIONS,
 ) -> Select[str]:
-    """The id of the session that others of the block, epoch and programmes are judged against."""
-    row = SessionRow
-    own = (row.unit_id == unit, row.block == block, row.programme.in_(programmes), row.is_reference, IS_ACCEPTED)
-    query = select(row.id).where(*own)
-    if since is not None:
-        query = query.where(row.started_at >= since)
-    if until is not None:
-        query = query.where(row.started_at < until)
+    """The id of the session that others of the block and programmes, in the epoch of a time, are judged against."""
+    since, until = epoch_bounds(unit, at)
+    row = _Reference
+    own = (row.unit_id == unit, row.block == block, row.programme.in_(programmes), row.is_reference)
+    query = select(row.id).where(
+        *own,
+        row.state == RecordState.ACCEPTED,
+        or_(since.is_(None), row.started_at >= since),
+        or_(until.is_(None), row.started_at < until),
+    )
     return query.order_by(row.started_at, row.id).limit(1)
+
+
+def epoch_bounds(
+    unit: int | SQLColumnExpression[int], at: datetime
+) -> tuple[ScalarSelect[datetime], ScalarSelect[datetime]]:
+    """The last break of a unit at or before a time and the first one after it, null where there is none."""
+    first, last, known = func.min(ServiceRow.at), func.max(ServiceRow.at), (ServiceRow.unit_id == unit, IS_BREAK)
+    since = select(last).where(*known, ServiceRow.at <= at)
+    until = select(first).where(*known, ServiceRow.at > at)
+    return since.correlate(UnitRow).scalar_subquery(), until.correlate(UnitRow).scalar_subquery()
 
 
 def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:
@@ -262,18 +280,14 @@ _BY_HASH = session_rows().where(SessionRow.sha256 == bindparam("sha256"))
 _SAME = session_rows().where(
     (SessionRow.sha256 == bindparam("sha256")) | (SessionRow.content_digest == bindparam("digest"))
 )
-FIELDS = tuple(f.name for f in fields(StoredSession) if f.name not in ELSEWHERE)
-"""Plain columns of a session's row."""
 
 
 def session_record(
     row: SessionRow, unit: str, stand: str | None, diagnosed: str | None, reservations: list[Any] | None
 ) -> StoredSession:
     """A stored session, of a row of `session_rows`."""
-    own = {name: getattr(row, name) for name in FIELDS}
-    verdict, state = Verdict(row.verdict), RecordState(row.state)
     said_with = reservations_from_list(diagnosed, reservations)
-    return StoredSession(unit=unit, stand=stand, verdict=verdict, state=state, reservations=said_with, **own)
+    return copied(StoredSession, row, unit=unit, stand=stand, reservations=said_with)
 
 
 def decision_record(row: DecisionRow) -> Decision:

@@ -25,7 +25,8 @@ def record_stand_certificate(
         raise RefusedError("The certificate cannot be used.", (fault,))
     with storage.database.writing() as store:
         kept = StandCertificates(store)
-        if new not in kept.of_stand(new.stand) or errors not in ((), kept.errors_of(new)):
+        known = kept.with_errors(new.stand)
+        if new not in known or errors not in ((), known[new]):
             kept.add(new, who, now, errors)
             details = {"number": new.number, "valid_until": new.valid_until.isoformat()}
             Audit(store).write(now, who, "stand-certificate", new.stand, details)

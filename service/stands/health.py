@@ -9,6 +9,7 @@ import numpy as np
 
 from estimator.health.common_motion import sigma_of, size_of
 from estimator.health.stands import StandMotion, StandShift, StandState, stand_states
+from service.kit.copying import copied
 from service.kit.measures import YEAR
 from service.stands.records import MotionOnStand, StandCondition, StandEvidence, StandSeating
 from service.stands.store import Stands
@@ -50,18 +51,15 @@ class _Found:
         return [self._evidence(shift) for shift in self.state.shifts]
 
     def _evidence(self, shift: StandShift) -> StandEvidence:
-        return StandEvidence(
+        return copied(
+            StandEvidence,
+            shift,
             kind=self.kind,
             quantity=self.quantity,
             since=self.start + shift.since * YEAR,
             until=None if shift.until is None else self.start + shift.until * YEAR,
-            value=shift.value,
             size=size_of(self.quantity, shift.value),
             sigma=sigma_of(shift.value, shift.covariance),
-            chi2=shift.chi2,
-            p_value=shift.p_value,
-            units=shift.units,
-            agreeing=shift.agreeing,
             has_shifted=bool(self.state.shifts),
         )
 

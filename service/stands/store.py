@@ -162,13 +162,23 @@ class StandCertificates(Queries):
 
     def of_stand(self, stand: str) -> tuple[StandCertificate, ...]:
         """The certificates of one stand as they were last recorded, oldest issue first."""
+        return tuple(self.with_errors(stand))
+
+    def with_errors(self, stand: str) -> dict[StandCertificate, tuple[StandError, ...]]:
+        """The same, each with what it states of the stand's errors: nothing where it was recorded by hand."""
         query = (
             select(StandCertificateRow)
             .join(StandRow, StandRow.id == StandCertificateRow.stand_id)
             .where(StandRow.name == stand)
             .order_by(StandCertificateRow.id)
         )
-        return _by_issue([certificate_record(stand, row) for row in self._session.scalars(query)])
+        rows = self._session.scalars(query).all()
+        recorded = [certificate_record(stand, row) for row in rows]
+        errors = {
+            certificate: tuple(StandError(name, sigma) for name, sigma in (row.errors or {}).items())
+            for certificate, row in zip(recorded, rows, strict=True)
+        }
+        return {certificate: errors[certificate] for certificate in _by_issue(recorded)}
 
     def known(self, stand: str) -> tuple[StandCertificate, ...]:
         """The same of a stand that must be known."""
@@ -182,19 +192,8 @@ class StandCertificates(Queries):
 
     def errors_on(self, stand: str, day: date) -> tuple[StandError, ...]:
         """What the certificate of a day states of the stand's errors."""
-        held = self.on(stand, day)
-        return () if held is None else self.errors_of(held)
-
-    def errors_of(self, certificate: StandCertificate) -> tuple[StandError, ...]:
-        """The same of a certificate; none where it was recorded by hand."""
-        query = (
-            select(StandCertificateRow.errors)
-            .join(StandRow, StandRow.id == StandCertificateRow.stand_id)
-            .where(StandRow.name == certificate.stand, StandCertificateRow.number == certificate.number)
-            .order_by(StandCertificateRow.id.desc())
-        )
-        stored = self._session.scalars(query.limit(1)).first()
-        return tuple(StandError(name, sigma) for name, sigma in (stored or {}).items())
+        issued = [errors for certificate, errors in self.with_errors(stand).items() if certificate.issued_on <= day]
+        return issued[-1] if issued else ()
 
     def add(self, new: StandCertificate, who: str, now: datetime, errors: Sequence[StandError] = ()) -> None:
         """Stores a certificate of a stand that is known, with the errors that its document states."""

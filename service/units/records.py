@@ -7,9 +7,6 @@ from enum import StrEnum
 from service.kit.answer import answer
 from service.sessions.states import RecordState, StateChange
 
-SERVICES = ("adjustment", "repair", "sensor-swap", "reference", "service")
-"""Services of a unit: each is a break, after which the next session is the new reference."""
-
 
 @answer
 @dataclass(frozen=True)
@@ -39,7 +36,7 @@ class NewService:
     """Something done to a unit that is a known break in its history."""
 
     kind: str
-    """One of `SERVICES`."""
+    """`adjustment`, `repair`, `sensor-swap`, `reference` or `service`."""
     at: datetime
     note: str = ""
     who: str = ""

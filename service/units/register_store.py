@@ -7,6 +7,7 @@ from sqlalchemy import Select, select, update
 
 from estimator.message import say
 from service.errors import NotFoundError
+from service.kit.copying import copied
 from service.storage.queries import Queries
 from service.types.tables import UnitTypeRow
 from service.units.records import Custody, CustodyStep, Move, NewEntry, Registered
@@ -85,16 +86,7 @@ def _entries() -> Select[UnitRow, str]:
 
 def register_entry(row: UnitRow, unit_type: str) -> Registered:
     """What a unit's row says."""
-    return Registered(
-        unit=row.serial,
-        unit_type=unit_type,
-        owner=row.owner,
-        location=row.location,
-        custodian=row.custodian,
-        note=row.remark,
-        registered_at=row.registered_at,
-        retired_at=row.retired_at,
-    )
+    return copied(Registered, row, unit=row.serial, unit_type=unit_type, note=row.remark)
 
 
 def _line(row: CustodyRow, serial: str) -> Custody:

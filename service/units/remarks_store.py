@@ -6,6 +6,7 @@ from sqlalchemy import ColumnElement, Select, String, cast, select
 
 from estimator.message import say
 from service.errors import NotFoundError
+from service.kit.copying import copied
 from service.sessions.states import RecordKind
 from service.sessions.states_store import state_change
 from service.sessions.tables import RecordStateRow
@@ -57,16 +58,11 @@ def _notes() -> Select[NoteRow, str, WithdrawalRow]:
 
 def note_record(row: NoteRow, serial: str, withdrawal: WithdrawalRow | None) -> Note:
     """A stored note."""
-    return Note(
-        id=row.id,
-        unit=serial,
-        at=row.at,
-        text=row.text,
-        who=row.who,
-        recorded_at=row.recorded_at,
-        session=row.session_id,
-        withdrawal=None if withdrawal is None else Withdrawal(withdrawal.at, withdrawal.who, withdrawal.why),
-    )
+    return copied(Note, row, unit=serial, session=row.session_id, withdrawal=_withdrawal(withdrawal))
+
+
+def _withdrawal(row: WithdrawalRow | AttachmentWithdrawalRow | None) -> Withdrawal | None:
+    return None if row is None else copied(Withdrawal, row)
 
 
 class Attachments(Queries):
@@ -74,8 +70,8 @@ class Attachments(Queries):
 
     def add(self, unit: int, new: NewAttachment) -> int:
         """Stores what is known of an attached file and returns its number."""
-        row = AttachmentRow(unit_id=unit, session_id=new.session, sha256=new.sha256, filename=new.filename,
-                            size=new.size, text=new.text, who=new.who, at=new.at)  # fmt: skip
+        values = dict(vars(new))
+        row = AttachmentRow(unit_id=unit, session_id=values.pop("session"), **values)
         self._session.add(row)
         self._session.flush()
         return row.id
@@ -114,18 +110,7 @@ def _attachments() -> Select[AttachmentRow, str, AttachmentWithdrawalRow]:
 
 def attachment_record(row: AttachmentRow, serial: str, withdrawal: AttachmentWithdrawalRow | None) -> Attachment:
     """A stored attachment."""
-    return Attachment(
-        id=row.id,
-        unit=serial,
-        session=row.session_id,
-        sha256=row.sha256,
-        filename=row.filename,
-        size=row.size,
-        text=row.text,
-        who=row.who,
-        at=row.at,
-        withdrawal=None if withdrawal is None else Withdrawal(withdrawal.at, withdrawal.who, withdrawal.why),
-    )
+    return copied(Attachment, row, unit=serial, session=row.session_id, withdrawal=_withdrawal(withdrawal))
 
 
 class SaidOf(Queries):

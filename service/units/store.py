@@ -7,6 +7,7 @@ from sqlalchemy import Select, exists, select, update
 
 from estimator.message import say
 from service.errors import NotFoundError
+from service.kit.copying import copied
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import SessionRow
@@ -179,9 +180,9 @@ class Services(Queries):
         query = select(ServiceRow.at).where(ServiceRow.unit_id == unit, IS_BREAK)
         return tuple(sorted(set(self._session.scalars(query))))
 
-    def around(self, unit: int, at: datetime) -> tuple[datetime | None, datetime | None]:
-        """The last break at or before a time and the first one after it: the epoch that the time is in."""
-        return epoch(self.breaks(unit), at)
+    def began(self, unit: int, at: datetime) -> datetime | None:
+        """The last break at or before a time, with which the epoch that the time is in began."""
+        return epoch(self.breaks(unit), at)[0]
 
 
 def epoch(breaks: tuple[datetime, ...], at: datetime) -> tuple[datetime | None, datetime | None]:
@@ -196,13 +197,4 @@ def _services() -> Select[ServiceRow, str]:
 
 def service_record(row: ServiceRow, serial: str) -> Service:
     """A stored break."""
-    return Service(
-        id=row.id,
-        unit=serial,
-        at=row.at,
-        kind=row.kind,
-        note=row.note,
-        who=row.who,
-        sensor=row.sensor,
-        state=RecordState(row.state),
-    )
+    return copied(Service, row, unit=serial)

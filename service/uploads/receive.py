@@ -25,6 +25,7 @@ from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.reference import KnownUnit, known_unit
 from service.kit.arriving_files import Content, held, where
+from service.kit.copying import copied
 from service.models.rules import model_for
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
@@ -310,17 +311,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
 
 def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
     """The receipt of a session."""
-    return Receipt(
-        id=record.id,
-        unit=record.unit,
-        verdict=record.verdict,
-        reason=record.reason,
-        created=created,
-        is_reference=record.is_reference,
-        reservations=record.reservations,
-        state=record.state,
-        **record.marks,
-    )
+    return copied(Receipt, record, created=created, remark="")
 
 
 NO_TABLE = "is given with a session file, which needs none; send it without a mapping"

@@ -114,6 +114,10 @@ class Window:
         return {"page": self.page, "limit": self.limit, "next_page": self.next_after(count)}
 
 
+class Body(BaseModel, extra="forbid"):
+    """What is sent: a field that nobody knows is refused."""
+
+
 class Paged(BaseModel):
     """One page of a list."""
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from estimator.errors import Problem
 from estimator.json_object import Json
@@ -19,16 +19,15 @@ from service.people.admission import PersonOf
 from service.people.dependencies import CREW, StorageOf
 from service.uploads.store import Arrivals
 from service.web.dependencies import LanguageOf, Now, Reading
-from service.web.fields import Number, Text
+from service.web.fields import Body, Number, Text
 from service.web.files import BINARY, PDF, XLSX, as_file
 from service.web.problem_document import Fault, errors, faults
 from service.work.dependencies import JobDeskOf
 
 
-class NewRecalibration(BaseModel):
+class NewRecalibration(Body):
     """Stored sessions that are to be computed again under the models in force."""
 
-    model_config = ConfigDict(extra="forbid")
     scope: Scope | None = Field(None, description="One unit, one unit type or one stand; none for the whole fleet.")
     subject: Text = Field("", description="Its serial number or name; empty for the whole fleet.")
     by: Text = Field("", description="Who asks, where nobody signs in.")
@@ -47,18 +46,16 @@ class RetriedSchema(BaseModel):
     retried: int = Field(description="How many pieces of work.")
 
 
-class NewReport(BaseModel):
+class NewReport(Body):
     """A report of the whole fleet that is to be made."""
 
-    model_config = ConfigDict(extra="forbid")
     format: Literal["xlsx", "pdf"] = Field(description="Workbook or paper.")
     by: Text = Field("", description="Who asks, where nobody signs in.")
 
 
-class Cancelling(BaseModel):
+class Cancelling(Body):
     """Who cancels."""
 
-    model_config = ConfigDict(extra="forbid")
     by: Text = Field("", description="Who cancels, where nobody signs in.")
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from benchmarks.papers.printed import Conditions, checked, printed
 from benchmarks.papers.published import ACCELEROMETERS, AXES, GYROS
 from benchmarks.papers.tables import fitted_noise, two_sigma
 from estimator.applied_vector import gravity, stand_vector
 from estimator.planning import conditioning, optimal_elevation, rank_of_orientations
-from estimator.published.printed import Conditions, checked, printed
 from estimator.session import Array, Site, StandErrors
 from tests.builders import ARCSEC, GRAVITY
 from tests.estimator.calibration.cases import accelerometers, block

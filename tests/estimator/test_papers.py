@@ -11,11 +11,11 @@ from benchmarks.papers.analytic import PLACES
 from benchmarks.papers.formulas import instrument_only
 from benchmarks.papers.markdown import table
 from benchmarks.papers.planning import conditionings, orientation_sets
+from benchmarks.papers.printed import checked
 from benchmarks.papers.published import ACCELEROMETERS, AXES, GYROS, Published
 from benchmarks.papers.schematics import stand
 from benchmarks.papers.tables import by_half_sums, fitted_noise, sessions, two_sigma
 from estimator.planning import optimal_elevation
-from estimator.published.printed import checked
 
 PAGE = (RESULTS / "papers.md").read_text(encoding="utf-8")
 

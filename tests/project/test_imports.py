@@ -42,7 +42,6 @@ ESTIMATOR_LAYERS = (
     {"thermal"},
     {"correction", "diagnosis", "health", "programmes", "readiness"},
     {"groups", "hiding", "nominal_vector", "planning"},
-    {"published"},
 )
 HOMES = {
     "sqlalchemy": r"service\.storage\b|service\.\w+\.(\w+_)?(store|tables)$|migrations\b",
@@ -103,17 +102,6 @@ def test_the_service_s_imports_run_one_way() -> None:
 
 def test_the_estimator_s_imports_run_one_way() -> None:
     assert upward("estimator", ESTIMATOR_LAYERS) == []
-
-
-def test_the_product_needs_nothing_that_only_the_papers_need() -> None:
-    papers = "estimator.published"
-    found = [
-        f"{module.name} imports {name}"
-        for module in ALL
-        for name in module.imports
-        if name.startswith(papers) and not module.name.startswith(papers)
-    ]
-    assert found == []
 
 
 MOMENTS = "estimator.moments"

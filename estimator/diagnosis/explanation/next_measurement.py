@@ -140,11 +140,8 @@ def other_elevation(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     for degrees in (20.0, 60.0):
         stand = replace(session.stand, alpha=np.radians(degrees), chi=np.radians(degrees))
         planned = replace(schedule(session, *full_turns(positions)), stand=stand)
-        words = say(
-            "repeat with the head at {degrees}°, {positions} positions in both runs",
-            degrees=f"{degrees:.0f}",
-            positions=positions,
-        )
+        parts = {"degrees": f"{degrees:.0f}", "positions": positions}
+        words = say("repeat with the head at {degrees}°, {positions} positions in both runs", **parts)
         yield words, planned_on_stand(planned, baseline)
 
 

@@ -116,9 +116,6 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
         return ()
     names = tuple(session.sensors[i].name for i in axes.sensors)
     who = "input axes" if names else "the whole block"
-    where = say(
-        "{who} {angle}° wrong: columns, runs or angles of the record are mixed up",
-        who=who,
-        angle=f"{np.degrees(axes.angle):.0f}",
-    )
+    parts = {"who": who, "angle": f"{np.degrees(axes.angle):.0f}"}
+    where = say("{who} {angle}° wrong: columns, runs or angles of the record are mixed up", **parts)
     return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST)), of_record=True),)

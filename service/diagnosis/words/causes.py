@@ -65,13 +65,8 @@ def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
     at_once = at_once_with(finding, findings)
     if at_once:
         count, names = "Two" if len(at_once) == 2 else "Several", joined(" and ", map(cause_name, at_once))
-        return say(
-            "{count} causes at once, or {one_not_known}{sensors}: {names}.",
-            count=count,
-            one_not_known=ONE_NOT_KNOWN,
-            sensors=_on(finding.sensors),
-            names=names,
-        )
+        parts = {"count": count, "one_not_known": ONE_NOT_KNOWN, "sensors": _on(finding.sensors), "names": names}
+        return say("{count} causes at once, or {one_not_known}{sensors}: {names}.", **parts)
     likely, unlikely = by_share(finding)
     if len(likely) > 1 or not unlikely:
         less = say("; {unlikely}", unlikely=_less(unlikely, finding)) if unlikely else ""
@@ -99,12 +94,8 @@ def choice_of(finding: Finding) -> str:
     likely, unlikely = by_share(finding)
     on = say(" on {sensors}", sensors=joined(" and ", dict.fromkeys(finding.sensors))) if finding.sensors else ""
     less = say(" (less likely {unlikely})", unlikely=_listed(unlikely)) if unlikely else ""
-    return say(
-        "{likely}{less_likely} acts{places}",
-        likely=_listed(_with_unknown(likely, finding)),
-        less_likely=less,
-        places=on,
-    )
+    parts = {"likely": _listed(_with_unknown(likely, finding)), "less_likely": less, "places": on}
+    return say("{likely}{less_likely} acts{places}", **parts)
 
 
 def by_share(finding: Finding) -> tuple[tuple[str, ...], tuple[str, ...]]:

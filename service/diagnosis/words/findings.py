@@ -191,21 +191,15 @@ def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) 
     ``by_stated_noise``: the file says what noise is, and nothing has put that to the test.
     """
     condition = ", if the noise is as stated" if by_stated_noise and isfinite(p_value) else ""
-    return say(
-        "{strength}; {p_value}{condition}",
-        strength=standard_errors(strength),
-        p_value=_chance(p_value),
-        condition=condition,
-    )
+    parts = {"strength": standard_errors(strength), "p_value": _chance(p_value), "condition": condition}
+    return say("{strength}; {p_value}{condition}", **parts)
 
 
 def evidence_together(strength: float, over: OverSessions) -> str:
     """How strong an effect is that no session shows alone, and how likely this one has it."""
+    parts = {"strength": standard_errors(strength), "sessions": over.sessions, "probability": percent(over.here)}
     return say(
-        "{strength} over {sessions} sessions of the unit; probability that this one has it too: {probability}",
-        strength=standard_errors(strength),
-        sessions=over.sessions,
-        probability=percent(over.here),
+        "{strength} over {sessions} sessions of the unit; probability that this one has it too: {probability}", **parts
     )
 
 
@@ -244,13 +238,11 @@ def _parity(split: ParitySplit | None) -> str:
     if before == after:
         return ""
     seen, left = number(split.range_before, 0), number(split.range_after, 0)
+    parts = {"before": before, "after": after, "axes": seen, "remaining_axes": left}
     return say(
         "χ² in parity space {before} → {after}, along the axes {axes} → {remaining_axes}. A fault of one sensor shows "
         "in parity space; an error of the stand does not.",
-        before=before,
-        after=after,
-        axes=seen,
-        remaining_axes=left,
+        **parts,
     )
 
 

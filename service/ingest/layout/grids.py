@@ -74,12 +74,8 @@ class Grid:
         """Place of a cell in the file; rows count from 1."""
         line = row + int(self.taken.get("first_row", 1)) - 1
         if self.kind == "xlsx":
-            return say(
-                "cell {column}{line} of the sheet {taken}",
-                column=letters_of(column + 1),
-                line=line,
-                taken=self.taken["sheet"],
-            )
+            parts = {"column": letters_of(column + 1), "line": line, "taken": self.taken["sheet"]}
+            return say("cell {column}{line} of the sheet {taken}", **parts)
         return say("line {line} of the file", line=line) if self.kind == "text" else ""
 
 

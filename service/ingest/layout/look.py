@@ -62,11 +62,8 @@ def look(content: bytes, filename: str) -> object:
         return {"session": True}
     grid = grid_of(table, filename, stated)
     if len(grid.headings) > MOST_COLUMNS:
-        text = say(
-            "has {headings} columns; a mapping takes at most {most_columns}; remove those not needed",
-            headings=len(grid.headings),
-            most_columns=MOST_COLUMNS,
-        )
+        parts = {"headings": len(grid.headings), "most_columns": MOST_COLUMNS}
+        text = say("has {headings} columns; a mapping takes at most {most_columns}; remove those not needed", **parts)
         raise refusal(filename, text, "table")
     return {
         "session": False,

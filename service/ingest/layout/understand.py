@@ -105,18 +105,18 @@ def _meaning(name: str, unit: str, column: SeenColumn, names: Mapping[str, str])
         return BY_WORD.get(whole) or BY_WORD[plain]
     for word in ERROR_WORDS:
         rest = plain.removesuffix(word) if plain.endswith(word) else plain.removeprefix(word)
-        if rest != plain and (sensor := _sensor(_plain(rest), name, names)):
+        if rest != plain and (sensor := _sensor(_plain(rest), names)):
             return f"{sensor}_se"
     if plain in ASIDE or not column.numeric:
         return next((BY_WORD[w] for w in map(_plain, re.split(r"[\s,]+", name)) if w in BY_WORD), None)
-    return _sensor(plain, name, names) or _by_its_end(name, names) or _by_a_word(name)
+    return _sensor(plain, names) or _by_its_end(name, names) or _by_a_word(name)
 
 
 def _by_its_end(name: str, names: Mapping[str, str]) -> str | None:
     """A sensor at the end of a longer heading: *Readings Channel 1*."""
     words = name.split()
     ends = (_plain(" ".join(words[k:])) for k in range(1, len(words)))
-    return next((sensor for end in ends if (sensor := _sensor(end, name, names))), None)
+    return next((sensor for end in ends if (sensor := _sensor(end, names))), None)
 
 
 def _by_a_word(name: str) -> str | None:
@@ -124,7 +124,7 @@ def _by_a_word(name: str) -> str | None:
     return next((BY_WORD[word] for word in map(_plain, re.split(r"[\s,_]+", name)) if word in BY_WORD), None)
 
 
-def _sensor(plain: str, name: str, names: Mapping[str, str]) -> str | None:
+def _sensor(plain: str, names: Mapping[str, str]) -> str | None:
     """The sensor of a number or axis: a known one, or else its plain name."""
     if plain in names:
         return names[plain]

@@ -9,6 +9,7 @@ from service.fleet.condition import UnitSummary
 from service.judging.records import Usable
 from service.judging.use import Use, in_words
 from service.kit.answer import answer
+from service.kit.copying import copied
 from service.kit.measures import month_of
 from service.pages.due.view import OVERDUE, UNKNOWN, month_after, month_begin
 from service.sessions.words.conditions import condition_of
@@ -87,12 +88,10 @@ def due_lines(units: Sequence[UnitSummary], uses: dict[str, Usable]) -> tuple[Du
 
 
 def _line(unit: UnitSummary, use: Usable) -> DueLine:
-    return DueLine(
+    return copied(
+        DueLine,
+        unit,
         unit=unit.serial,
-        unit_type=unit.unit_type,
-        location=unit.location,
-        custodian=unit.custodian,
-        owner=unit.owner,
         due=use.until,
         days=None if use.until is None else (use.until - use.as_of).days,
         condition=condition_of(unit.verdict, is_reference=unit.is_reference).word,

@@ -10,6 +10,7 @@ from service.fleet.records import FleetChoices
 from service.groups.sections import FoundLine
 from service.judging.records import Usable
 from service.judging.use import Use, in_words
+from service.kit.copying import copied
 from service.outlook.rules.populations import Standout
 from service.pages.fleet.view import DUE, RETIRED, FleetView
 from service.pages.saved import Saved
@@ -188,18 +189,12 @@ def worst_in_words(unit: UnitSummary) -> str:
 def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
     """One unit of a list."""
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
-    return FleetRow(
-        serial=unit.serial,
-        unit_type=unit.unit_type,
+    return copied(
+        FleetRow,
+        unit,
         condition=condition,
-        reservations=unit.reservations,
-        reason=unit.reason,
         worst=worst_in_words(unit),
         margin=None if unit.used is None else margin_of(unit.used),
-        last_at=unit.last_at,
-        last_session=unit.last_session,
-        sessions=unit.sessions,
-        simulated=unit.simulated,
         flags=flags_in_words(unit.flags),
         due=usable.due,
         use=usable.use,

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from estimator.message import say
 from service.errors import NotFoundError
@@ -38,7 +38,7 @@ from service.uploads.api import LaterOf
 from service.uploads.receive import deriving, receive, receive_mapped
 from service.uploads.received import REQUEST_BODY, FileOf
 from service.web.dependencies import Now, Reading
-from service.web.fields import Bound, Name, Reason, Revision, SessionId, Text, WindowOf
+from service.web.fields import Body, Bound, Name, Reason, Revision, SessionId, Text, WindowOf
 from service.web.problem_document import errors
 from service.work.api import JobAnswer
 
@@ -149,12 +149,8 @@ def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, per
     return said_session(set_stage(storage, id, new.stage, person.signs(new.by), now))
 
 
-class NewCheck(BaseModel):
+class NewCheck(Body, json_schema_extra={"example": {"is_check": True, "by": "K. Ito", "why": "after transport"}}):
     """Whether a session is only a check."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"is_check": True, "by": "K. Ito", "why": "after transport"}}
-    )
 
     is_check: bool = Field(description="A check is judged and kept, and moves no due date.")
     by: Name = Field(description="Who says so.")

@@ -4,7 +4,7 @@ from datetime import date
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from service.papers.records import RestingCertificate
 from service.papers.store import Certificates
@@ -16,7 +16,7 @@ from service.stands.dcc import ReadCertificate, read_dcc
 from service.stands.records import StandCertificate, StandCondition
 from service.stands.store import StandCertificates
 from service.web.dependencies import Now, Reading
-from service.web.fields import Day, NonBlankName, StandName
+from service.web.fields import Body, Day, NonBlankName, StandName
 from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
 
@@ -27,10 +27,8 @@ class StandList(BaseModel):
     stands: tuple[StandCondition, ...] = Field(description="The stands.")
 
 
-class NewStandCertificate(BaseModel):
+class NewStandCertificate(Body):
     """The certificate of a stand's own calibration."""
-
-    model_config = ConfigDict(extra="forbid")
 
     number: NonBlankName = Field(description="As printed on it; one of a number that is there takes its place.")
     issued_by: NonBlankName = Field(description="The laboratory that calibrated the stand.")

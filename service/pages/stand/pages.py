@@ -112,11 +112,13 @@ def stand_report(store: Store, name: str, now: datetime) -> StandReport:
     flags = Flags(store).page(FlagQuery(unresolved=True, stand=name, limit=MOST + 1))
     units = Fleet(store).units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1))
     at_fault = sum(flag.matter in AT_FAULT for flag in flags)
+    certificates = StandCertificates(store).with_errors(name)
+    valid = held(tuple(certificates), now.date())
     return StandReport(
         line=StandLine(
             known.use,
             known.condition,
-            StandCertificates(store).of_stand(name),
+            tuple(certificates),
             at_fault,
             WorkQueue(store, WorkKind.SUMMARY).count() > 0,
         ),
@@ -125,7 +127,7 @@ def stand_report(store: Store, name: str, now: datetime) -> StandReport:
         uses=usable_of(store, units, now),
         sessions=Sessions(store).wanted(SessionQuery(stand=name, limit=MOST + 1)),
         models=in_force(Models(store).of_subject(Scope.STAND, name)),
-        errors=StandCertificates(store).errors_on(name, now.date()),
+        errors=() if valid is None else certificates[valid],
     )
 
 

@@ -3,7 +3,7 @@
 from dataclasses import fields
 
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from service.pages.type.laws import put_in_force
 from service.pages.type.tolerances import Watch, preview_tolerances, set_tolerances
@@ -13,7 +13,7 @@ from service.people.dependencies import CREW, StorageOf
 from service.types.records import TolerancePreview, Tolerances, UnitType, WantedTolerances
 from service.types.store import UnitTypes
 from service.web.dependencies import Now, Reading, SettingsOf
-from service.web.fields import Name, Reason, TypeName, WindowOf
+from service.web.fields import Body, Name, Reason, TypeName, WindowOf
 from service.web.problem_document import errors
 
 router = APIRouter(prefix="/unit-types", tags=["unit types"])
@@ -26,10 +26,8 @@ def list_unit_types(store: Reading, window: WindowOf) -> UnitTypePage:
     return UnitTypePage(unit_types=found, **window.place(len(found)))
 
 
-class WantedTypeLaws(BaseModel):
+class WantedTypeLaws(Body):
     """Whether a type's temperature laws are to hold."""
-
-    model_config = ConfigDict(extra="forbid")
 
     in_force: bool = Field(description="True learns them anew from the sessions accepted now; false takes them back.")
     by: Name = Field(description="Who says so.")

@@ -331,14 +331,12 @@ MOST_UNITS = 100
 """Units that are looked at, the worst first: about two seconds; those far within their tolerances change last."""
 
 
-def preview_tolerances(
-    store: Store, name: str, wanted: WantedTolerances, coverage_factor: float, most: int = MOST_UNITS
-) -> TolerancePreview:
+def preview_tolerances(store: Store, name: str, wanted: WantedTolerances, coverage_factor: float) -> TolerancePreview:
     """By the rule that judges uploads, against the same references; NotFoundError where there is no such type."""
     known = UnitTypes(store).get(name)
     other = replace(known, tolerances=wanted.tolerances, gyro_tolerances=wanted.gyro_tolerances)
     units = sum(UnitTypes(store).uses(name)[name].verdicts.values())
-    serials = tuple(unit.serial for unit in Fleet(store).units(FleetQuery(unit_type=name, limit=most)))
+    serials = tuple(unit.serial for unit in Fleet(store).units(FleetQuery(unit_type=name, limit=MOST_UNITS)))
     latest = FleetRows(store).latest_sessions(serials)
     against = {one.session: _reference(store, one) for one in latest.values()}
     known_of = {session: reference for session, reference in against.items() if reference is not None}

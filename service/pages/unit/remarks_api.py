@@ -2,7 +2,7 @@
 
 from fastapi import APIRouter, Response
 from fastapi.responses import FileResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from estimator.json_object import Json
 from service.flags.api import Handling
@@ -16,7 +16,7 @@ from service.units.remarks_store import Attachments, Notes
 from service.units.store import Units
 from service.uploads.received import SentOf
 from service.web.dependencies import Now, Reading
-from service.web.fields import Name, Number, Reason, Serial, SessionId
+from service.web.fields import Body, Name, Number, Reason, Serial, SessionId
 from service.web.files import disposition
 from service.web.problem_document import errors
 
@@ -35,12 +35,8 @@ class AttachmentList(BaseModel):
     attachments: tuple[Attachment, ...] = Field(description="The files, withdrawn ones too.")
 
 
-class NewComment(BaseModel):
+class NewComment(Body, json_schema_extra={"example": {"text": "the room was warm", "by": "K. Ito"}}):
     """A remark on a session."""
-
-    model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"example": {"text": "the room was warm", "by": "K. Ito"}}
-    )
 
     text: Reason = Field(description="What is worth knowing.")
     by: Name = Field(description="Who says it.")

@@ -10,6 +10,7 @@ from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
 from service.judging.covered import CoveredTemperatures
 from service.judging.reference import covered_at
+from service.kit.copying import copied
 from service.outlook.records import UnitOutlook
 from service.sessions.records import SessionQuery, StoredSession
 from service.sessions.states import RecordState, StateChange
@@ -61,16 +62,12 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
     if known is None:
         raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
     said = SaidOf(store).unit(serial)
-    return UnitReport(
-        summary=known.summary,
-        unit_type=known.unit_type,
-        reference_session=known.reference_session,
+    return copied(
+        UnitReport,
+        known,
         sessions=Sessions(store).wanted(SessionQuery(unit=serial, limit=LATEST)),
         services=tuple(s for s in said.services if s.state is RecordState.ACCEPTED),
         withdrawn_services=tuple(s for s in said.services if s.state is RecordState.WITHDRAWN),
         withdrawals=said.withdrawals,
-        waiting=known.waiting,
-        outlook=known.outlook,
         said=said,
-        entry=known.entry,
     )

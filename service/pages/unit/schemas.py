@@ -9,20 +9,19 @@ from service.fleet.condition import UnitSummary
 from service.judging.covered import CoveredTemperatures
 from service.judging.records import SaidVerdict, said
 from service.kit.answer import answer
+from service.kit.copying import copied
 from service.sessions.history_store import HistoryQuery
 from service.sessions.records import HistoryPoint
 from service.sessions.schemas import SaidSession, said_session
 from service.types.records import UnitType
 from service.units.records import Service
-from service.web.fields import Bound, Paged, Text, Window
+from service.web.fields import Body, Bound, Paged, Text, Window
 
 Tolerance = Annotated[float, Field(ge=1e-15, le=1e6, allow_inf_nan=False)]
 
 
-class TolerancesSchema(BaseModel):
+class TolerancesSchema(Body, from_attributes=True):
     """Largest allowed deviations from the reference; null where a parameter is not judged."""
-
-    model_config = ConfigDict(from_attributes=True, extra="forbid")
 
     scale: Tolerance | None = Field(description="Relative: 1e-6 is 1 ppm.", examples=[1e-4])
     bias: Tolerance | None = Field(description="m/s² (rad/s).", examples=[4.9e-4])
@@ -30,10 +29,8 @@ class TolerancesSchema(BaseModel):
     axis: Tolerance | None = Field(description="rad.", examples=[9.7e-5])
 
 
-class NewTolerances(BaseModel):
+class NewTolerances(Body):
     """Other tolerances for a unit type, from the next session on."""
-
-    model_config = ConfigDict(extra="forbid")
 
     tolerances: TolerancesSchema = Field(description="Of the sensors of the block's own kind.")
     gyro_tolerances: TolerancesSchema | None = Field(
@@ -50,10 +47,8 @@ class NewTolerances(BaseModel):
     )
 
 
-class NewLot(BaseModel):
+class NewLot(Body):
     """The production lot of a unit."""
-
-    model_config = ConfigDict(extra="forbid")
 
     lot: Text | None = Field(description="Name of the lot; null where it is not known.", examples=["2024-07"])
 
@@ -135,17 +130,7 @@ class HistoryAsked(BaseModel):
     @property
     def query(self) -> HistoryQuery:
         """The same for the store."""
-        return HistoryQuery(
-            parameter=self.parameter,
-            sensor=self.sensor,
-            since=self.since,
-            until=self.until,
-            offset=self.window.offset,
-            limit=self.limit,
-            revision=self.revision,
-            raw=self.raw,
-            noise=True,
-        )
+        return copied(HistoryQuery, self, offset=self.window.offset, newest=False, noise=True)
 
 
 class HistoryPage(Paged):

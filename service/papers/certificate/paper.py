@@ -84,11 +84,8 @@ def _traceability(found: CertifiedSession) -> str:
     """With that of the reference, since every deviation depends on it."""
     if found.reference is None:
         return found.traceability.text
-    return say(
-        "{traceability} Of the reference session: {reference_traceability}",
-        traceability=found.traceability.text,
-        reference_traceability=found.reference.traceability.text,
-    )
+    parts = {"traceability": found.traceability.text, "reference_traceability": found.reference.traceability.text}
+    return say("{traceability} Of the reference session: {reference_traceability}", **parts)
 
 
 def _departures(found: CertifiedSession) -> str:

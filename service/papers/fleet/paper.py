@@ -238,12 +238,8 @@ def _drift(one: Placed, population: Population) -> str:
     rate, sigma = one.value * one.tolerance, one.sigma * one.tolerance
     unit = deviation_measure(population.kind, population.parameter, abs(rate))
     write = measured if population.parameter == "axis" else signed
-    return say(
-        "{sensor} {parameter} drifts {rate} a year",
-        sensor=one.sensor,
-        parameter=population.parameter,
-        rate=write(rate, COVERAGE * sigma, unit),
-    )
+    parts = {"sensor": one.sensor, "parameter": population.parameter, "rate": write(rate, COVERAGE * sigma, unit)}
+    return say("{sensor} {parameter} drifts {rate} a year", **parts)
 
 
 def _condition(tally: Tally) -> Condition:

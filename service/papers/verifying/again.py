@@ -76,7 +76,7 @@ def _record(
     raw: RawFile, found: Calibrated, inputs: RecomputationInputs, decisions: tuple[Decision, ...], printed: Printed
 ) -> StoredSession:
     source = found.checked.session
-    why = _reason(found, decisions, printed) if not inputs.is_reference else _opening(found, printed)
+    why = _reason(found, decisions) if not inputs.is_reference else _opening(found, printed)
     return StoredSession(
         id=raw.sha256[:ID_DIGITS],
         unit=source.unit,
@@ -97,7 +97,7 @@ def _record(
     )
 
 
-def _reason(found: Calibrated, decisions: tuple[Decision, ...], printed: Printed) -> str:
+def _reason(found: Calibrated, decisions: tuple[Decision, ...]) -> str:
     """Why the verdict is what it is."""
     if found.comparison is not None:
         return recording_in_words(found.comparison.result, decisions)

@@ -43,9 +43,5 @@ def left_open(calibration: Calibration) -> str:
         return ""
     missing = [name for name in needed if any(not s.observable[name] for s in felt)]
     who = "every accelerometer" if len(blind) == len(felt) else joined(", ", blind)
-    return say(
-        "It does not observe {missing} of {sensors}: {calibration}.",
-        missing=joined(", ", missing),
-        sensors=who,
-        calibration=what_to_add(calibration),
-    )
+    parts = {"missing": joined(", ", missing), "sensors": who, "calibration": what_to_add(calibration)}
+    return say("It does not observe {missing} of {sensors}: {calibration}.", **parts)

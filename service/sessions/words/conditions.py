@@ -113,13 +113,8 @@ MEANINGS = {
 
 def state_in_words(change: StateChange) -> str:
     """``Withdrawn on 21 Nov 2026 by K. Ito: wrong unit``."""
-    return say(
-        "{states} on {date} by {who}: {reason}",
-        states=STATES[change.state],
-        date=day_of(change.at),
-        who=change.who,
-        reason=change.why,
-    )
+    parts = {"states": STATES[change.state], "date": day_of(change.at), "who": change.who, "reason": change.why}
+    return say("{states} on {date} by {who}: {reason}", **parts)
 
 
 LOOKING = "the search for causes is not finished"

@@ -60,14 +60,8 @@ def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> 
         )
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
-    return say(
-        "All scale factors{whose} changed together by {size} {date}; cause: {cause}. {judged}",
-        whose=whose,
-        size=size,
-        date=since,
-        cause=cause,
-        judged=JUDGED,
-    )
+    parts = {"whose": whose, "size": size, "date": since, "cause": cause, "judged": JUDGED}
+    return say("All scale factors{whose} changed together by {size} {date}; cause: {cause}. {judged}", **parts)
 
 
 def _turn_measure(motion: CommonMotion) -> Measure:
@@ -95,12 +89,8 @@ def _alone(motion: CommonMotion) -> str:
     if not others:
         return say(" In addition, the {what} of {last} changed.", what=what, last=last)
     several = "input axes" if motion.quantity == AXES else "scale factors"
-    return say(
-        " In addition, the {several} of {others} and {last} changed.",
-        several=several,
-        others=joined(", ", others),
-        last=last,
-    )
+    parts = {"several": several, "others": joined(", ", others), "last": last}
+    return say(" In addition, the {several} of {others} and {last} changed.", **parts)
 
 
 def _undivided(motion: CommonMotion, whose: str) -> str:
@@ -117,10 +107,5 @@ def _undivided(motion: CommonMotion, whose: str) -> str:
             turn=turn,
             judged=judged,
         )
-    return say(
-        "{sensors} to separate {turn} from {scaling}: {judged}.",
-        sensors=few(len(motion.sensors), "sensor"),
-        turn=turn,
-        scaling=one,
-        judged=judged,
-    )
+    parts = {"sensors": few(len(motion.sensors), "sensor"), "turn": turn, "scaling": one, "judged": judged}
+    return say("{sensors} to separate {turn} from {scaling}: {judged}.", **parts)

@@ -19,7 +19,7 @@ from tests.service.made_sessions import session_bytes
 from tests.serving import http_client, limited_client, running
 
 HTML = {"Accept": "text/html"}
-MOST_QUERIES = 16
+MOST_QUERIES = 12
 """Of the page of a session, which asks most: what it shows comes from as many tables."""
 
 

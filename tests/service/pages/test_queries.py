@@ -49,7 +49,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "types": (1, lambda store: UnitTypes(store).page(0, 100)),
     "list of sessions": (1, lambda store: Sessions(store).wanted(SessionQuery())),
     "list of stands": (4, every_stand),
-    "stand": (9, lambda store: stand_report(store, "ODG-1", NOW)),
+    "stand": (8, lambda store: stand_report(store, "ODG-1", NOW)),
     "uploads": (2, lambda store: Arrivals(store).page(ArrivalQuery())),
     "list of types": (2, every_type),
     "type": (9, lambda store: type_report(store, "accelerometer × 6, V", NOW)),

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.papers.descent import descend, levenberg_marquardt
+from benchmarks.papers.triples import triples_of
 from estimator.calibration import calibrate
 from estimator.errors import ScheduleError
-from estimator.published.descent import descend, levenberg_marquardt
-from estimator.published.triples import triples_of
 from tests.estimator.calibration.free_sessions import G, session, sphere, truth
 
 ACCURACY = 1e-5

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.papers.half_sums import simulated
-from estimator.published.printed import Conditions, checked, gyro_conditions, printed
+from benchmarks.papers.printed import Conditions, checked, gyro_conditions, printed
 from estimator.session import Array, StandErrors
 from tests.builders import ARCSEC, cone_axes
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from benchmarks.papers.triples import Triples
 from estimator.parameters import SensorParameters
-from estimator.published.triples import Triples
 from estimator.session import Array
 
 FIRST_STEP = 0.01
