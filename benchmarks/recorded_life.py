@@ -25,9 +25,9 @@ import httpx
 import numpy as np
 
 from benchmarks.diagnosed_recordings.groups import accelerometers, some
-from benchmarks.p5_uploads import services
 from benchmarks.recordings.sets import recordings
 from benchmarks.recordings.tables import table
+from benchmarks.u2_uploads import serving
 from estimator.causes.environment import WarmUp
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
@@ -209,7 +209,7 @@ def main() -> None:
     print(f"\nBoth warm, {' and '.join(WARM)} differ by {rms(np.subtract(*warm))} mg rms.", flush=True)
     with (
         tempfile.TemporaryDirectory(prefix="imu-life-", ignore_cleanup_errors=True) as folder,
-        services(folder, 1) as (port,),
+        serving(folder) as port,
         httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", timeout=LONGEST) as http,
     ):
         heads = ("session", "minutes since switching on", "named", "verdict", "reason", "next")

@@ -12,7 +12,7 @@ SECTIONS = (
     ("mpu9150-five: five MPU-9150", tables.mpu9150_five),
     ("ctu-mat: one triad, 49 orientations", tables.ctu),
     ("kth-mimu: held-out residual per IMU, mg", tables.kth_triads),
-    ("kth-mimu: three sessions of one board", tables.history),
+    ("kth-mimu: sessions of one board, each beside the one before", tables.history),
     ("ferraris-csv: six labelled positions", tables.ferraris_table),
     ("ferraris-csv: residual of the six positions, mm/s²", tables.ferraris_residuals),
 )
