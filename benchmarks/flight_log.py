@@ -26,8 +26,8 @@ HEAD, FORMAT, FORMAT_LENGTH = b"\xa3\x95", 128, 89
 LETTERS = {"I": "I", "f": "f", "B": "B", "M": "B", "Q": "Q"}
 """Of DataFlash's formats → of `struct`, as far as messages of IMUs use them."""
 IMUS = ("IMU", "IMU2", "IMU3")
-REST, RATE = 50.0, 49.1
-"""s at rest from the log's first reading, and Hz of its readings; it takes off after a minute."""
+REST, RATE = (22.0, 50.0), 49.1
+"""s from the log's first reading, between the hands that set it down and its take-off, and Hz of its readings."""
 DIRECTIONS, NOISE, GRAVITY = 20, 0.01, 9.80665
 """Of the reference; m/s², one sigma of a reading; m/s²."""
 
@@ -56,7 +56,8 @@ def at_rest(content: bytes) -> Columns:
         rows[name].append(numbers)
     count = min(map(len, rows.values()))
     force = np.hstack([np.array(rows[name])[:count, 4:7] for name in IMUS])
-    return force[: round(REST * RATE)]
+    first, last = (round(RATE * seconds) for seconds in REST)
+    return force[first:last]
 
 
 def documents() -> Iterator[dict[str, Any]]:
