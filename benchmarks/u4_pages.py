@@ -21,7 +21,7 @@ from fastapi import FastAPI
 from playwright.sync_api import Browser, sync_playwright
 from sqlalchemy import Engine, text
 
-from benchmarks.figures import Felt
+from benchmarks.figures import Felt, children, importing
 from benchmarks.fleet.cost import cost
 from benchmarks.fleet.fill import NOW, STANDS, TEMPLATES, Size, fill, live, serial
 from benchmarks.kills.server import Service, free_port
@@ -110,10 +110,11 @@ def served(fleet: Fleet, asking: "Asking") -> Iterator[Felt]:
     for name, path in (fleet.pages | reports).items():
         most = None if name in reports else SERVER
         taken = cost(partial(asking.size_of, path), asking.engine, fleet.server, ROUNDS if most else 1)
-        yield Felt(f"U4, {name}", f"{name}, of {UNITS:,} units, processor of service and database", taken.seconds, most)
+        work = f"{name}, of {UNITS:,} units, processor of service and database"
+        yield Felt(f"U4, {name}", work, taken.seconds, most, m=importing(children))
     taken = cost(partial(asking.size_of, SINCE), asking.engine, fleet.server, ROUNDS)
     work = f"a stand found bad: certificates of half a year, of {UNITS:,} units ({taken.size / 1e6:.1f} MB)"
-    yield Felt("U10", work, taken.seconds, 1.0, "s")
+    yield Felt("U10", work, taken.seconds, 1.0, "s", m=importing(children))
 
 
 class Asking:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.figures import Felt
+from benchmarks.figures import Felt, children, importing
 from benchmarks.orientations import GRAVITY, NOISE, case, sphere
 from estimator import CalibrationSession, diagnose
 
@@ -37,4 +37,4 @@ def run() -> Iterator[Felt]:
     """Both."""
     for name, session in zip(("sound", "a bias ramp"), sessions(), strict=True):
         work = f"diagnose {SENSORS} sensors × {ORIENTATIONS} orientations, {name}"
-        yield Felt(f"U8, {name}", work, seconds(session), 60)
+        yield Felt(f"U8, {name}", f"{work}, processor", seconds(session), 60, m=importing(children))
