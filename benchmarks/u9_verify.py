@@ -30,7 +30,7 @@ def run() -> Iterator[Felt]:
     with tempfile.TemporaryDirectory(prefix="imu-u9-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         key = folder / "seal.pem"
-        key.write_bytes(seal_room().make_trial_key("U9", datetime.now(UTC)))
+        key.write_bytes(seal_room("trial").make_trial_key("U9", datetime.now(UTC)))
         seal = seal_of(key, None)
         assert seal is not None
         sealed, trusted = seal.xml(certificate(name)), TRUSTED + key.read_bytes().split(TRUSTED)[1]

@@ -58,7 +58,7 @@ def outcomes(found: Verification) -> dict[str, Outcome]:
 def key_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Key and certificate for trial."""
     file = tmp_path_factory.mktemp("seal") / "seal.pem"
-    file.write_bytes(seal_room().make_trial_key("Laboratory North", datetime.now(UTC)))
+    file.write_bytes(seal_room("trial").make_trial_key("Laboratory North", datetime.now(UTC)))
     return file
 
 
@@ -169,7 +169,7 @@ def counted(step: Callable[..., Any], called: list[str]) -> Callable[..., Any]:
 
 
 def test_a_seal_of_somebody_else_is_refused(printed: bytes, seal: Seal, tmp_path: Path) -> None:
-    (tmp_path / "other.pem").write_bytes(seal_room().make_trial_key("Somebody", datetime.now(UTC)))
+    (tmp_path / "other.pem").write_bytes(seal_room("trial").make_trial_key("Somebody", datetime.now(UTC)))
     other = (tmp_path / "other.pem").read_bytes()
     own = b"-----BEGIN CERTIFICATE" + other.split(b"-----BEGIN CERTIFICATE")[1]
     assert outcomes(verify(seal.xml(printed), RAW, Beside(trusted=own), NOW))["seal"] is Outcome.DIFFERS
