@@ -58,8 +58,8 @@ def started(*options: str) -> Iterator[Started]:
     with tempfile.TemporaryDirectory(prefix="imu-u1-", ignore_cleanup_errors=True) as folder:
         command = (COMMAND, "serve", "--port", str(port), "--data-folder", folder, *options)
         began = time.monotonic()
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        process = subprocess.Popen(command, env=COMPILING, cwd=folder, **quiet)
+        null = subprocess.DEVNULL
+        process = subprocess.Popen(command, env=COMPILING, cwd=folder, stdout=null, stderr=null)
         try:
             with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60) as http:
                 yield Started(http, psutil.Process(process.pid), began)

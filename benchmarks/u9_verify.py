@@ -37,10 +37,9 @@ def run() -> Iterator[Felt]:
         files = {"c.xml": sealed, "s.json": FAILED[-1], "r.json": FAILED[0], "t.pem": trusted}
         for file, content in files.items():
             (folder / file).write_bytes(content)
-        own, beside = [str(folder / file) for file in ("c.xml", "s.json")], []
-        for option, file in (("--reference", "r.json"), ("--trust", "t.pem")):
-            beside += [option, str(folder / file)]
-        yield Felt("U9", "a certificate recomputed from its session's file", command(*own, *beside), LIMIT, "s")
+        c, s, r, t = (str(folder / file) for file in files)
+        taken = command(c, s, "--reference", r, "--trust", t)
+        yield Felt("U9", "a certificate recomputed from its session's file", taken, LIMIT, "s")
     passed = 0
     for seed in range(MUTATIONS):
         given = Beside(trusted=trusted) if seed % 2 else Beside()
