@@ -24,7 +24,14 @@ QUIET = 5.0
 """Seconds after which a service that nobody asks has started all that it keeps."""
 BETWEEN = 0.05
 """Seconds between two looks."""
-NOTE = ""
+NOTE = """
+U1 misses its target: the address answers when the demonstration is stored, session after session; an empty service
+answers in a few seconds.
+
+U7 misses its target. By what each import adds, numpy and scipy are a quarter of it, the service's own modules with
+their routes and models a fifth, SQLAlchemy, FastAPI, pydantic and Alembic together as much. Charts, tables, paper,
+readers of files and the demonstration are not among it until somebody asks for them.
+"""
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import vl_convert
 else:
     alt, pl = ModuleOnDemand("altair"), ModuleOnDemand("polars")
-    httpx, pypdf, typst, vl_convert = (ModuleOnDemand(name) for name in ("httpx", "pypdf", "typst", "vl_convert"))
+    httpx, pypdf = ModuleOnDemand("httpx"), ModuleOnDemand("pypdf")
+    typst, vl_convert = ModuleOnDemand("typst"), ModuleOnDemand("vl_convert")
 
 __all__ = ["alt", "httpx", "pl", "pypdf", "typst", "vl_convert"]
