@@ -1,4 +1,4 @@
-"""Run the benchmarks and write the table: ``python -m benchmarks``, or some of them: ``--only P6 P9``.
+"""Run the benchmarks and write the table: ``python -m benchmarks``, or some of them: ``--only U2 P8``.
 
 Each runs in a process of its own, and every row is written as soon as it is measured: what fails, hangs or is ended
 loses none of the rows before it.

@@ -1,10 +1,75 @@
 """What a benchmark returns, and how it is timed."""
 
+import os
+import resource
 import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
+
+IMPORTS = (sys.executable, "-c", "import numpy, scipy")
+"""The program whose time is *m*."""
+ROUNDS = 5
+"""Times that it is run for one figure."""
+COMPILING = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+"""Programs are started from compiled files, as an installation has them."""
+
+
+def shown(value: float, unit: str) -> str:
+    """With its unit; seconds below one as milliseconds."""
+    if unit == "s" and value < 1:
+        return f"{1e3 * value:.3g} ms"
+    return f"{value:.3g} {unit}".rstrip()
+
+
+def start(*command: str) -> None:
+    """Runs a command to its end."""
+    subprocess.run(command, env=COMPILING, stdout=subprocess.DEVNULL, check=True)
+
+
+def children() -> float:
+    """Processor seconds of all processes that were started here and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def importing(clock: Callable[[], float] = time.monotonic) -> float:
+    """m at this moment, s: machines differ by a factor of three, and one by what else it does."""
+    taken = []
+    for _ in range(ROUNDS):
+        began = clock()
+        start(*IMPORTS)
+        taken.append(clock() - began)
+    return statistics.median(taken)
+
+
+@dataclass(frozen=True)
+class Felt:
+    """One row of what a user feels: seconds beside m, or another measure."""
+
+    id: str
+    what: str
+    value: float
+    """s, or in ``unit``."""
+    most: float | None
+    """In ``unit``; None where nothing is aimed at."""
+    unit: str = "m"
+    """Of the target."""
+    m: float = field(default_factory=importing)
+    """s, of the same moment and by the same clock: `importing` with `children` beside processor seconds."""
+
+    def row(self) -> str:
+        """One line of the table."""
+        is_time = self.unit in ("m", "s")
+        told = self.value / self.m if self.unit == "m" else self.value
+        target = "—" if self.most is None else f"≤ {self.most:g} {self.unit}".rstrip()
+        reached = "—" if self.most is None else "yes" if told <= self.most else "no"
+        in_m = f"{self.value / self.m:.3g} m" if is_time else "—"
+        value = shown(self.value, "s" if is_time else self.unit)
+        return f"| {self.id} | {self.what} | {value} | {in_m} | {target} | {reached} |"
 
 
 @dataclass(frozen=True)
@@ -34,15 +99,9 @@ class Figure:
             return "—"
         return "yes" if self.ratio >= Fraction(self.target.split()[-1]) else "no"
 
-    def shown(self, value: float) -> str:
-        """With its unit; seconds below one as milliseconds."""
-        if self.unit == "s" and value < 1:
-            return f"{1e3 * value:.3g} ms"
-        return f"{value:.3g} {self.unit}".rstrip()
-
     def row(self) -> str:
         """One line of the table."""
-        ours, theirs = self.shown(self.ours), self.shown(self.theirs)
+        ours, theirs = shown(self.ours, self.unit), shown(self.theirs, self.unit)
         return (
             f"| {self.id} | {self.work} | {ours} | {self.peer} | {theirs} "
             f"| {self.ratio:.3g} | {self.target} | {self.reached} |"

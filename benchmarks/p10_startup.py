@@ -5,25 +5,20 @@ compiles what is not compiled yet and is not measured. The session is that of P1
 """
 
 import json
-import os
-import resource
-import subprocess
 import sys
 import tempfile
 from functools import partial
 from pathlib import Path
 
 from benchmarks.block import sessions
-from benchmarks.figures import Figure, side_by_side
+from benchmarks.figures import IMPORTS, Figure, children, side_by_side, start
 from estimator.writing import session_document
 
 ROUNDS = 20
 COMMAND = str(Path(sys.executable).with_name("imu-health"))
-PEER = (sys.executable, "-c", "import numpy, scipy")
 NEEDED = "import numpy, scipy.special, typer, rich.progress, rich.table; from pydantic import TypeAdapter"
 LIBRARIES = (sys.executable, "-c", NEEDED)
 """What a command that calibrates and prints a table cannot do without; Typer reads arguments by pydantic."""
-COMPILING = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 NOTE = """
 P10 misses its second target by its libraries. The peer imports numpy and of scipy only the name. A calibration needs
 scipy's special functions, for probabilities and coverage factors, a third of the time: their import loads all of numpy
@@ -33,17 +28,6 @@ fifteenth, reading and calibrating a hundredth.
 """
 
 
-def start(*command: str) -> None:
-    """Runs a command to its end."""
-    subprocess.run(command, env=COMPILING, stdout=subprocess.DEVNULL, check=True)
-
-
-def children() -> float:
-    """Processor seconds of all processes that were started here and have ended."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def run() -> list[Figure]:
     """The list of commands, the command that needs least, and what bounds it."""
     with tempfile.TemporaryDirectory(prefix="imu-p10-") as folder:
@@ -51,8 +35,8 @@ def run() -> list[Figure]:
         file.write_text(json.dumps(session_document(sessions(1)[0])), encoding="utf-8")
         calibrate = ("calibrate", str(file))
         rows = (
-            ("P10, help", ("--help",), PEER, "python -c 'import numpy, scipy'", "≥ 1"),
-            ("P10, calibrate", calibrate, PEER, "python -c 'import numpy, scipy'", "at least 1/2"),
+            ("P10, help", ("--help",), IMPORTS, "python -c 'import numpy, scipy'", "≥ 1"),
+            ("P10, calibrate", calibrate, IMPORTS, "python -c 'import numpy, scipy'", "at least 1/2"),
             ("P10, libraries", calibrate, LIBRARIES, "python that imports its libraries and ends", "—"),
         )
         figures = []

@@ -1,4 +1,4 @@
-"""P8: stored sessions computed again under a new model by processes of this machine, against one process.
+"""P8 and U5: stored sessions computed again under a new model by processes of this machine, against one process.
 
 A few units come in by the front door; their sessions are multiplied under serial numbers and files of their own, in
 PostgreSQL, until there are as many as were asked for. Then a cause is accepted for their type, and all of it is
@@ -22,7 +22,7 @@ from pathlib import Path
 import psutil
 from sqlalchemy import text
 
-from benchmarks.figures import Figure
+from benchmarks.figures import Felt, Figure
 from benchmarks.fleet.cost import of_database
 from benchmarks.fleet.many_files import NOW, SESSIONS, TYPE, fill
 from service.opening import open_storage
@@ -60,11 +60,12 @@ class Rate:
         return self.seconds / self.sessions
 
 
-def run(sessions: int = ORDINARY) -> Iterator[Figure]:
+def run(sessions: int = ORDINARY) -> Iterator[Figure | Felt]:
     """One process, then one for each core."""
     one, many = measured(sessions)
     cores = many.workers
     work = f"recompute {many.sessions:,} of {sessions:,} stored sessions by {cores} processes"
+    yield Felt("U5", f"{work}: one session", many.each, 0.25)
     yield Figure("P8", work, f"one process, shared by {cores}", many.each, one.each / cores, "0.8")
 
 

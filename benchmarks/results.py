@@ -4,20 +4,36 @@ import ast
 import os
 import platform
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
 BENCHMARKS = {
-    "P1": "p1_calibrate", "P2": "p2_fleet", "P3": "p3_orientations", "P4": "p4_diagnose", "P5": "p5_uploads",
-    "P6": "p6_logs", "P7": "p7_fleet", "P8": "p8_recompute", "P9": "p9_pages", "P10": "p10_startup",
-    "P11": "p11_history", "P12": "p12_files", "serving": "serving", "soak": "soak", "rivals": "rivals",
+    "U1": "u1_start", "U2": "u2_uploads", "U4": "u4_pages", "U6": "u6_logs", "U8": "u8_sensors", "U9": "u9_verify",
+    "P1": "p1_calibrate", "P2": "p2_fleet", "P3": "p3_orientations", "P4": "p4_diagnose", "P8": "p8_recompute",
+    "P10": "p10_startup", "P11": "p11_history", "P12": "p12_files", "soak": "soak", "rivals": "rivals",
 }  # fmt: skip
-"""What a row's id begins with → the file that measures it; P4h is measured with P4."""
+"""What a row's id begins with → the file that measures it."""
+ALSO = {"U3": "U2", "U5": "P8", "U7": "U1", "U10": "U4", "P4h": "P4"}
+"""Rows that are measured with another benchmark."""
+FELT = re.compile(r"U\d+")
+"""Ids of what a user feels."""
 HEAD = """# Benchmarks
 
-Written by `make bench`; `make bench ONLY="P6 P9"` measures these anew and leaves the others.
+Written by `make bench`; `make bench ONLY="U2 P8"` measures these anew and leaves the others.
+
+## What a user feels
+
+Machines differ by a factor of three, so that times are told in **m** too, the time of `python -c "import numpy, scipy"`
+on the same machine in the same minute. Both are by the clock, or the processor's where a row says so.
+
+| id | what | measured | in m | target | reached |
+| --- | --- | --- | --- | --- | --- |
+"""
+ENGINE = """
+## The engine
 
 A ratio is the peer's figure over ours, or a limit's: both in one run on one machine, medians taken in turn. Times are
 the processor's, so that other programs on the machine do not count, but where a row says that they are by the clock.
@@ -72,14 +88,25 @@ class Results:
         self.write()
 
     def write(self) -> None:
-        """The whole file, benchmarks in their order."""
-        by_key = {key: [line for line in self.rows.values() if benchmark_of(line) == key] for key in BENCHMARKS}
-        table = "".join(f"{line}\n" for lines in by_key.values() for line in lines)
-        notes = "".join(note_of(key) for key, lines in by_key.items() if lines)
+        """The whole file, benchmarks in their order, what a user feels first."""
         runs = "".join(f"{self.runs[key]}\n" for key in BENCHMARKS if key in self.runs)
+        parts = (HEAD, *self._part(is_felt=True), ENGINE, *self._part(is_felt=False), RUNS, runs)
         unfinished = self.file.with_suffix(".part")
-        unfinished.write_text(f"{HEAD}{table}{notes}{RUNS}{runs}", "utf-8")
+        unfinished.write_text("".join(parts), "utf-8")
         unfinished.replace(self.file)
+
+    def _part(self, *, is_felt: bool) -> Iterator[str]:
+        """The rows of one table, then what explains those of its benchmarks."""
+        own = sorted((id for id in self.rows if bool(FELT.match(id)) is is_felt), key=place_of)
+        yield from (f"{self.rows[id]}\n" for id in own)
+        keys = {benchmark_of(line) for line in self.rows.values()}
+        yield from (note_of(key) for key in BENCHMARKS if key in keys and bool(FELT.match(key)) is is_felt)
+
+
+def place_of(id: str) -> int:
+    """Of a row in its table; of rows of one place the order stays."""
+    found = FELT.match(id)
+    return int(found[0][1:]) if found else list(BENCHMARKS).index(benchmark_of(f"| {id} | "))
 
 
 def id_of(line: str) -> str:
@@ -90,7 +117,8 @@ def id_of(line: str) -> str:
 def benchmark_of(line: str) -> str:
     """Its key; nothing of a line that is no row."""
     key = re.split(r"[, ]", id_of(line))[0]
-    return next((known for known in (key, key.removesuffix("h")) if known in BENCHMARKS), "")
+    known = ALSO.get(key, key)
+    return known if known in BENCHMARKS else ""
 
 
 def note_of(key: str) -> str:

@@ -23,6 +23,16 @@ def names_on_demand(package: str, rooms: Mapping[str, str]) -> Callable[[str], A
     return get
 
 
+class ModuleOnDemand:
+    """Stands for a module, which is imported when the first of its names is looked up."""
+
+    def __init__(self, home: str) -> None:
+        self._home = home
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(import_module(self._home), name)
+
+
 def function_on_demand(home: str, name: str) -> Callable[..., Any]:
     """A function that stands for another, whose module is imported when it is first called."""
 

@@ -1,10 +1,8 @@
-"""A raw log of a gigabyte → its averaged positions, beside a bare scan of the same file with a group-by mean."""
+"""A raw log of a gigabyte → its averaged positions."""
 
 import json
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -20,15 +18,7 @@ from service.ingest import apart, read_upload
 ROWS = 15_000_000
 """As CSV of 7 digits they take about a gigabyte."""
 ROUNDS = 3
-"""Both in turn, so that whatever else the machine does meets both."""
-BARE = """
-import sys, polars as pl
-scan = pl.scan_csv(sys.argv[1], skip_lines=1) if sys.argv[1].endswith("csv") else pl.scan_parquet(sys.argv[1])
-scan.group_by("position").mean().collect(engine="streaming")
-"""
-"""What the peer is: polars alone, with all its threads, its start not counted."""
-START = "import polars"
-"""Of the peer."""
+"""Of which the median is told."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +28,6 @@ class LongLog:
     kind: str
     size: int
     seconds: float
-    peer: float
-    """Seconds."""
     memory: float
     """Peak of the reading process over the one it is a fork of, MiB."""
 
@@ -50,24 +38,14 @@ def long_logs(folder: Path, rows: int = ROWS, rounds: int = ROUNDS) -> Iterator[
         path = folder / f"log.{kind}"
         write(path, rows)
         read_upload(path, "warm")
-        own, bare, peaks = [], [], [0.0]
+        taken, peaks = [], [0.0]
         for _ in range(rounds):
             with Watched(peaks):
-                own.append(_seconds(lambda path=path: read_upload(path, "log")))  # type: ignore[misc]
-            started = _seconds(lambda: _run(START))
-            bare.append(_seconds(lambda path=path: _run(BARE, str(path))) - started)  # type: ignore[misc]
-        yield LongLog(kind, path.stat().st_size, median(own), median(bare), max(peaks))
+                began = time.perf_counter()
+                read_upload(path, "log")
+                taken.append(time.perf_counter() - began)
+        yield LongLog(kind, path.stat().st_size, median(taken), max(peaks))
         path.unlink()
-
-
-def _run(program: str, *words: str) -> None:
-    subprocess.run([sys.executable, "-c", program, *words], check=True)
-
-
-def _seconds(work: Callable[[], object]) -> float:
-    began = time.perf_counter()
-    work()
-    return time.perf_counter() - began
 
 
 class Watched:
@@ -111,12 +89,5 @@ def write_parquet(path: Path, rows: int) -> None:
 
 def table(found: list[LongLog]) -> str:
     """Markdown."""
-    lines = [
-        f"| {one.kind} | {one.size / 1e6:,.0f} | {one.seconds:.1f} | {one.peer:.1f} | {one.seconds / one.peer:.1f} "
-        f"| {one.memory:.0f} |"
-        for one in found
-    ]
-    head = (
-        "| format | size, MB | seconds | bare scan, s | ratio | memory, MiB |\n| --- | --- | --- | --- | --- | --- |\n"
-    )
-    return head + "\n".join(lines)
+    lines = [f"| {one.kind} | {one.size / 1e6:,.0f} | {one.seconds:.1f} | {one.memory:.0f} |" for one in found]
+    return "| format | size, MB | seconds | memory, MiB |\n| --- | --- | --- | --- |\n" + "\n".join(lines)

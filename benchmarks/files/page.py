@@ -107,8 +107,7 @@ scanned (`estimator/long_logs`), in constant memory and with the same result as 
 piece. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
 whole.
 
-Beside polars alone (scan and group-by mean of the same file), medians of three; memory of the reading process over
-idle.
+Medians of three; memory of the reading process over idle.
 
 {table(list(long))}
 """

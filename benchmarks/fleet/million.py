@@ -45,7 +45,7 @@ def bytes_a_session() -> tuple[float, float]:
 
 def lines() -> Iterator[str]:
     """The table, a fleet a column."""
-    upload, diagnosis = seconds("P5, 1 client"), seconds("P4h, new")
+    upload, diagnosis = seconds("U2, 1 client"), seconds("P4h, new")
     stored, file = bytes_a_session()
     rates = [units * SESSIONS_A_YEAR * PEAK / WORKING for units in FLEETS]
     sessions = [units * SESSIONS_A_YEAR * KEPT_YEARS for units in FLEETS]

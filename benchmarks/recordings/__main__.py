@@ -4,6 +4,7 @@ what follows from them."""
 import sys
 
 from benchmarks.recordings import tables
+from benchmarks.recordings.gyros import gyros
 from benchmarks.recordings.sets import FOLDER, folder
 
 SECTIONS = (
@@ -12,7 +13,8 @@ SECTIONS = (
     ("mpu9150-five: five MPU-9150", tables.mpu9150_five),
     ("ctu-mat: one triad, 49 orientations", tables.ctu),
     ("kth-mimu: held-out residual per IMU, mg", tables.kth_triads),
-    ("kth-mimu: three sessions of one board", tables.history),
+    ("kth-mimu: sessions of one board, each beside the one before", tables.history),
+    ("Gyros at rest: held-out error before and after a cause is named", gyros),
     ("ferraris-csv: six labelled positions", tables.ferraris_table),
     ("ferraris-csv: residual of the six positions, mm/s²", tables.ferraris_residuals),
 )

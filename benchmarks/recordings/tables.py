@@ -233,7 +233,7 @@ def ferraris_residuals() -> str:
 
 
 def history() -> str:
-    """KTH: how the parameters of 24 accelerometers moved between the three sessions."""
+    """KTH: how the parameters of 24 accelerometers moved from session to session."""
     results = [(r.name, calibrate(r.session, quadratic=False), r) for r in recordings("kth-mimu")]
     body = []
     for (name, earlier, recording), (other, later, _) in pairwise(results):

@@ -13,8 +13,7 @@ where its own p-value is small and it explains more than any change.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtri
-from scipy.stats import t as student
+from scipy.special import ndtri, stdtr
 
 from estimator.health.fits import WALKS, Fits, Readings, fits
 from estimator.health.odds import Odds, mixture, odds
@@ -200,7 +199,7 @@ def _shrunk(squared: float, k: int, dof: float) -> float:
         return 1.0
     if k == 2:  # P(F > s/2) = (1 + s/dof)^(−dof/2), P(χ² > s) = exp(−s/2)
         return float(np.sqrt(dof * np.log1p(squared / dof) / squared))
-    single = max(float(student.sf(np.sqrt(squared), dof)), 1e-300)
+    single = max(float(stdtr(dof, -np.sqrt(squared))), 1e-300)
     return float(-ndtri(single) / np.sqrt(squared))
 
 

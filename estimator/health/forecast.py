@@ -18,8 +18,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.special import ndtr
-from scipy.stats import ncx2
+from scipy.special import chndtr, ndtr
 
 from estimator.health.fits import PART_KINDS, PART_SIZES
 from estimator.health.pooled import Prior
@@ -148,8 +147,8 @@ def _beyond(distance: Array, sigma: Array, k: int) -> Array:
     sigma = np.maximum(sigma, 1e-6)
     if k == 1:
         return np.asarray(ndtr((distance - 1) / sigma) + ndtr(-(distance + 1) / sigma))
-    near = np.maximum(sigma, 1e-2)  # narrower ones pass only from the edge, and the series of ncx2 grows long
-    return np.asarray(ncx2.sf(near**-2.0, k, (distance / near) ** 2))
+    near = np.maximum(sigma, 1e-2)  # narrower ones pass only from the edge, and the series of χ² grows long
+    return np.asarray(1 - chndtr(near**-2.0, k, (distance / near) ** 2))
 
 
 def reach(chance: Array, level: float, ahead: Array = AHEAD) -> Array:

@@ -10,8 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
-from scipy.stats import ncx2
+from scipy.special import chndtr, ndtr
 
 from estimator.health.decision import ParameterJudgement
 from estimator.health.rule import PASS, UNDECIDABLE, state
@@ -112,4 +111,4 @@ def probability_out(sight: Sight, tolerance: float) -> float | None:
     if len(sight.change) == 1:
         return float(ndtr((sight.size - tolerance) / sight.sigma) + ndtr((-sight.size - tolerance) / sight.sigma))
     variance = sight.sigma**2 / 2
-    return float(ncx2.sf(tolerance**2 / variance, 2, np.square(sight.size) / variance))
+    return float(1 - chndtr(tolerance**2 / variance, 2, np.square(sight.size) / variance))

@@ -14,8 +14,7 @@ taken at the x that a count of n would ask for, beyond which it is a little larg
 """
 
 import numpy as np
-from scipy import stats
-from scipy.special import ndtr, roots_genlaguerre
+from scipy.special import gammaln, ndtr, roots_genlaguerre, xlogy
 
 from estimator.session import Array
 from estimator.significance import critical_chi2
@@ -51,7 +50,8 @@ def _crossings(correlation: Array, size: int, limit: float) -> Array:
     height = np.sqrt(np.maximum(limit - s[..., None] ** 2 * q, 0.0))
     along = (rho * r)[..., None]
     beyond = (ndtr((along - height) / s[..., None]) + ndtr((-along - height) / s[..., None])) @ share
-    return np.asarray(((edge - start) / 2 * WEIGHTS * stats.chi.pdf(r, size) * beyond).sum(axis=1))
+    density = np.exp(xlogy(size - 1, r) - r**2 / 2 - (size / 2 - 1) * np.log(2) - gammaln(size / 2))
+    return np.asarray(((edge - start) / 2 * WEIGHTS * density * beyond).sum(axis=1))
 
 
 def _across(size: int) -> tuple[Array, Array]:

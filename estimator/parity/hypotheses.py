@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_solve, solve_triangular
-from scipy.stats import f, norm
+from scipy.special import ndtri
 
 from estimator.parity.isolation import Rivals, log_tail, shortfall
 from estimator.parity.regression import ParityChange
@@ -103,7 +103,8 @@ class ParityEvidence:
         second = nu - s + 1
         factor = s * nu / second
         parts = q / s
-        mean, variance = parts * (factor * second / (second - 2)), parts * (factor**2 * f.var(s, second))
+        spread = 2 * second**2 * (s + second - 2) / (s * (second - 2) ** 2 * (second - 4))  # variance of F
+        mean, variance = parts * (factor * second / (second - 2)), parts * (factor**2 * spread)
         return variance / (2 * mean), 2 * mean**2 / variance
 
     def detected(self, false_alarm: float) -> bool:
@@ -122,7 +123,7 @@ class ParityEvidence:
     def margin(self) -> float:
         """Δ"""
         rivals = max(len(self.change.reference.names) - 1, 1)
-        return float(norm.isf(WRONG_SENSOR / rivals)) ** 2
+        return float(ndtri(WRONG_SENSOR / rivals)) ** 2
 
     def explained(self, best: ParityHypothesis) -> bool:
         """Whether the best hypothesis leaves noise only."""
@@ -205,7 +206,7 @@ class ParityEvidence:
     def wanted(self, k: int, false_alarm: float) -> float:
         """Sigmas of a change of k numbers that are detected with the power."""
         threshold = self.threshold(k, false_alarm)
-        return threshold + float(norm.ppf(POWER)) * shortfall(threshold, self.dof)
+        return threshold + float(ndtri(POWER)) * shortfall(threshold, self.dof)
 
 
 def tail(ratio: float, k: int, dof: float) -> tuple[float, float]:

@@ -6,7 +6,7 @@ steps; thresholds hold over all windows and sensors together.
 """
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from estimator.least_squares import least_squares
 from estimator.readiness.results import Disturbance, DisturbanceKind
@@ -51,7 +51,7 @@ def _steps(series: Series, names: tuple[str, ...], allowed: Array) -> list[tuple
     away = jump - _usual(jump)
     spread = TO_NORMAL * np.median(np.abs(away), axis=0)
     least = np.sqrt(2 / WINDOW) * TO_NORMAL * np.median(np.abs(np.diff(series.value, axis=0)), axis=0) / np.sqrt(2)
-    bound = student.isf(FALSE_ALARMS / (4 * away.size), max(n / WINDOW - 1, 2)) * np.maximum(spread, least)
+    bound = -stdtrit(max(n / WINDOW - 1, 2), FALSE_ALARMS / (4 * away.size)) * np.maximum(spread, least)
     far = (np.abs(away) > bound) & (np.abs(away) > allowed)
     steps = [_step(series, names, middles, away, far, run) for run in _runs(far.any(axis=1))]
     return [step for step in steps if _is_sharp(series, names, step, allowed)]
@@ -100,7 +100,7 @@ def _bursts(series: Series, names: tuple[str, ...]) -> list[tuple[int, Disturban
     away = level - np.median(level, axis=0)
     least = np.sqrt(2 / (np.median(series.count) - 1))
     spread = np.maximum(TO_NORMAL * np.median(np.abs(away), axis=0), least)
-    bound = student.isf(FALSE_ALARMS / (2 * away.size), max(len(level) / 4, 4)) * spread
+    bound = -stdtrit(max(len(level) / 4, 4), FALSE_ALARMS / (2 * away.size)) * spread
     far = away > np.maximum(bound, np.log(TWICE))
     bursts = []
     for start, stop in _runs(far.any(axis=1)):

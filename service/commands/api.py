@@ -252,6 +252,18 @@ VIEWS = ListColumns(
         "address": lambda view: escape(f"{view['server'].rstrip('/')}{view['url']}"),
     },
 )
+AFFECTED = ListColumns(
+    "certificates",
+    "No certificate rests on it.",
+    {
+        "certificate": lambda found: escape(found["number"]),
+        "unit": lambda found: escape(found["unit"]),
+        "measured on": lambda found: found["started_at"][:10],
+        "issued on": lambda found: found["issued_at"][:10],
+        "session": lambda found: found["session"],
+    },
+    is_numbered=False,
+)
 FORESEEN = ListColumns(
     "changes",
     "No verdict, date or flag would change.",
@@ -268,13 +280,19 @@ CUSTOMER = {
     "by": By,
     "address": (Annotated[str, typer.Option(help="Where they can be reached.")], ""),
 }
+STAND = Annotated[str, typer.Argument(metavar="STAND", help="Its name, as session files give it.")]
 STAND_CERTIFICATE = {
-    "stand": Annotated[str, typer.Argument(metavar="STAND", help="Its name, as session files give it.")],
+    "stand": STAND,
     "number": Annotated[str, typer.Option(help="As printed on the certificate.")],
     "issued_by": Annotated[str, typer.Option(help="The laboratory that calibrated the stand.")],
     "issued_on": Annotated[datetime, typer.Option(formats=DAYS, help="From this day on it speaks for the stand.")],
     "valid_until": Annotated[datetime, typer.Option(formats=DAYS, help="The last day on which it holds.")],
     "by": By,
+}
+RESTING = {
+    "stand": STAND,
+    "since": (Annotated[datetime | None, typer.Option(formats=DAYS, help="First day of measurement.")], None),
+    "until": (Annotated[datetime | None, typer.Option(formats=DAYS, help="Last day of measurement.")], None),
 }
 ON_SESSION = {"id": SessionId, "by": By, "why": Why}
 ON_SERVICE = {
@@ -313,6 +331,7 @@ COMMANDS: dict[str, Row] = {
     "flags assign": assign_flags,
     "customer": Call("PUT /units/{unit}/customer", CUSTOMER, _show_customer),
     "stand-certificate": Call("PUT /stands/{stand}/certificate", STAND_CERTIFICATE, _show_stand),
+    "stand-affected": Call("GET /stands/{stand}/resting-certificates", RESTING, AFFECTED),
     "usable": Call(
         "GET /units/{unit}/usable",
         {"unit": Unit},

@@ -96,6 +96,9 @@ CATALOGUE = {
         "api",
         "Record the certificate of a stand's own calibration, which every session on it hangs on.",
     ),
+    "stand-affected": CommandEntry(
+        "api", "List every certificate whose numbers rest on a stand, for when it was found bad."
+    ),
     "stand-dcc": CommandEntry(
         "stands.stand_dcc",
         "Record a stand's certificate from its document.",

@@ -1,15 +1,15 @@
 """`imu-health serve`: the service, with an upgraded schema, and the demonstration fleet if requested."""
 
 import socket
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from estimator.on_demand import ModuleOnDemand
 from service.app import create_app, utc_now
 from service.commands.console import progress
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import say
-from service.demo.fill import FILES, fill, is_wanted
 from service.kit.log import write_log
 from service.opening import open_database
 from service.people.changes import make_link
@@ -20,6 +20,11 @@ from service.storage.folders import require_writable
 from service.storage.schema import upgrade
 from service.web.hosts import hosts_of
 from service.web.server import Server, address_of
+
+if TYPE_CHECKING:
+    from service.demo import fill as demo_fleet
+else:
+    demo_fleet = ModuleOnDemand("service.demo.fill")
 
 STARTED = "who started the service"
 """Name in the audit trail."""
@@ -78,8 +83,8 @@ def _first_link(settings: Settings) -> str | None:
 def _fill(settings: Settings) -> None:
     """Uploads the demonstration fleet to an empty database."""
     storage = Storage(open_database(settings.database), Files(settings.files))
-    if is_wanted(storage):
-        say(f"Filling the empty database with a simulated demonstration fleet, {FILES} sessions.")
-        with progress(FILES, "simulating, calibrating, storing") as advance:
-            fill(storage, settings.coverage_factor, advance)
+    if demo_fleet.is_wanted(storage):
+        say(f"Filling the empty database with a simulated demonstration fleet, {demo_fleet.FILES} sessions.")
+        with progress(demo_fleet.FILES, "simulating, calibrating, storing") as advance:
+            demo_fleet.fill(storage, settings.coverage_factor, advance)
     storage.database.close()

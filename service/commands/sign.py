@@ -54,7 +54,7 @@ def make_trial(
     out: Annotated[Path, typer.Option(help="File to write; one that is there stays as it is.", show_default=False)],
 ) -> None:
     """Make a key that nobody trusts, to try seals with: it says so in its name, and holds for ninety days."""
-    key: bytes = seal_room().make_trial_key(Settings().laboratory_name, datetime.now(UTC))
+    key: bytes = seal_room("trial").make_trial_key(Settings().laboratory_name, datetime.now(UTC))
     file = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, OWNER_ONLY)
     with os.fdopen(file, "wb") as opened:
         opened.write(key)

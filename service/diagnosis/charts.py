@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-import altair as alt
 import numpy as np
 
 from estimator.diagnosis.results import Course
@@ -13,6 +12,7 @@ from estimator.message import say
 from estimator.results import Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER
 from service.diagnosis.words.findings import SIZE, component_in_words
+from service.kit.libraries import alt
 from service.kit.measures import THIN, Measure, decimals, deviation_measure, number
 from service.sessions.charts import (
     BETA,
@@ -24,7 +24,6 @@ from service.sessions.charts import (
     LOW,
     RIGHT,
     RUNS,
-    SHAPES,
     UNIT,
     Across,
     ChartSet,
@@ -37,6 +36,7 @@ from service.sessions.charts import (
     largest_edge,
     padded,
     scatter_in_words,
+    shapes,
     specification,
     ticks,
     zero_line,
@@ -151,7 +151,7 @@ def _spec(across: Across, measure: Measure, largest: float, *, wider: bool) -> J
     )
 
 
-def _marks(base: alt.Chart, y: alt.Y, measure: Measure, model: str) -> alt.Chart:
+def _marks(base: "alt.Chart", y: "alt.Y", measure: Measure, model: str) -> "alt.Chart":
     """Before as empty marks, after as full ones; direct round, flipped pointed."""
     first = model == MODELS[0]
     colour = "var(--second)" if first else "var(--accent)"
@@ -162,7 +162,7 @@ def _marks(base: alt.Chart, y: alt.Y, measure: Measure, model: str) -> alt.Chart
         .mark_point(color=colour, opacity=1, size=38, **style)
         .encode(
             y=y,
-            shape=alt.Shape("run:N", legend=None, scale=SHAPES),
+            shape=alt.Shape("run:N", legend=None, scale=shapes()),
             tooltip=[
                 alt.Tooltip("row:Q", title="row"),
                 alt.Tooltip("run:N", title="run"),
@@ -269,9 +269,9 @@ def _course_spec(name: str, title: str, *, is_joined: bool) -> Json:
     return specification([zero_line(), *lines, _course_marks(base)], HEIGHT)
 
 
-def _course_marks(base: alt.Chart) -> alt.Chart:
+def _course_marks(base: "alt.Chart") -> "alt.Chart":
     chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
-        shape=alt.Shape("run:N", legend=None, scale=SHAPES),
+        shape=alt.Shape("run:N", legend=None, scale=shapes()),
         tooltip=[
             alt.Tooltip("row:Q", title="row"),
             alt.Tooltip("run:N", title="run"),

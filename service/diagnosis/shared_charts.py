@@ -1,12 +1,12 @@
 """The course that several sensors share, with what all of them together read."""
 
-import altair as alt
 import numpy as np
 
 from estimator.diagnosis.results import Shared
 from estimator.json_object import Json
 from estimator.message import say
 from estimator.results import Residuals
+from service.kit.libraries import alt
 from service.kit.measures import COVERAGE, THIN, decimals, deviation_measure, number
 from service.sessions.charts import DATA_FORM, HEIGHT, Across, ChartSet, Panel, in_order, padded, specification, ticks
 

@@ -5,8 +5,6 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime
 
-import httpx
-
 from estimator.errors import Problem
 from estimator.message import joined, say
 from service.errors import ConflictError, RefusedError
@@ -15,6 +13,7 @@ from service.flags.records import NOBODY, Assignee, Flag, FlagState, NoticeKind,
 from service.flags.store import Flags, Notices
 from service.flags.webhooks_store import Webhooks
 from service.fleet.store import Fleet
+from service.kit.libraries import httpx
 from service.people.store import Accounts
 from service.storage import Storage
 from service.storage.audit import Audit

@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from threading import Event
 
-import httpx
-
 from service.flags.changes import fault_of
 from service.flags.mail import NO_MAIL, SCHEME, MailServer, send
 from service.flags.records import DeliveryState, Outgoing
 from service.flags.webhooks_store import Webhooks
 from service.kit.guard import Guard
+from service.kit.libraries import httpx
 from service.kit.metrics import Metrics
 from service.storage import Storage
 
@@ -29,9 +28,8 @@ AT_A_TIME = 20
 """Messages that are claimed together: few enough that a claim outlasts them, were they all for one receiver."""
 CLAIM = timedelta(minutes=10)
 """Longer than `AT_A_TIME` attempts that all time out."""
-LONGEST_ATTEMPT = 10.0
-"""Seconds, all together: a receiver that takes longer should accept first and work after."""
-TIMEOUT = httpx.Timeout(LONGEST_ATTEMPT, connect=5.0)
+LONGEST_ATTEMPT, CONNECTING = 10.0, 5.0
+"""Seconds, all together, and to connect: a receiver that takes longer should accept first and work after."""
 MOST_AT_ONCE = 16
 """Receivers that are sent to at once; one that holds its connection open holds a socket, and no more."""
 FIRST_PAUSE, LONGEST_PAUSE = timedelta(seconds=10), timedelta(hours=1)
@@ -110,7 +108,7 @@ class Outbox:
 class DeliveryTurns:
     """Receivers that are being sent to: each in a turn of its own, so that a slow one keeps none of the others."""
 
-    def __init__(self, outbox: Outbox, guard: Guard, http: httpx.AsyncClient) -> None:
+    def __init__(self, outbox: Outbox, guard: Guard, http: "httpx.AsyncClient") -> None:
         self._outbox, self._guard, self._http = outbox, guard, http
         self._running: dict[int, asyncio.Task[None]] = {}
 
@@ -146,7 +144,9 @@ class DeliveryTurns:
 @asynccontextmanager
 async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[DeliveryTurns]:
     """Turns, which are cancelled at the end."""
-    async with httpx.AsyncClient(timeout=TIMEOUT, follow_redirects=False, trust_env=False) as http:
+    async with httpx.AsyncClient(
+        timeout=httpx.Timeout(LONGEST_ATTEMPT, connect=CONNECTING), follow_redirects=False, trust_env=False
+    ) as http:
         turns = DeliveryTurns(outbox, guard, http)
         try:
             yield turns
@@ -154,7 +154,7 @@ async def turns_of(outbox: Outbox, guard: Guard) -> AsyncIterator[DeliveryTurns]
             await turns.cancel()
 
 
-async def _attempt(outgoing: Outgoing, ways: Ways, http: httpx.AsyncClient) -> tuple[bool, str]:
+async def _attempt(outgoing: Outgoing, ways: Ways, http: "httpx.AsyncClient") -> tuple[bool, str]:
     """Whether the receiver accepted, and what it said; its answer's body is never read."""
     fault = fault_of(outgoing.webhook.url, ways.hosts, has_mail=ways.mail.is_there)
     if fault:

@@ -9,8 +9,6 @@ from functools import cache
 from math import degrees, isfinite
 from statistics import median
 
-import altair as alt
-
 from estimator.groups import GroupFinding
 from estimator.groups.layout import EVERY
 from estimator.groups.pictures import ANGLES
@@ -19,6 +17,7 @@ from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.moments import moment
 from service.diagnosis.words.amplitudes import amplitude_measure, part_of
+from service.kit.libraries import alt
 from service.kit.measures import ARCSEC, COVERAGE, Measure, day_of, deviation_measure, measured, number
 from service.sessions.charts import (
     BETA,

@@ -6,9 +6,8 @@ from datetime import datetime, timedelta
 from functools import cache
 from typing import Any
 
-import altair as alt
-
 from estimator.json_object import Json
+from service.kit.libraries import alt
 from service.kit.measures import Measure, day_of, deviation_measure, in_measure, limit, measured, signed
 from service.outlook.records import ParameterTrend
 from service.outlook.rules.histories import MeasuredChange, changes_of
@@ -184,7 +183,7 @@ def forecast_data(
     }  # fmt: skip
 
 
-def forecast_layers(x: alt.X) -> list[alt.Chart]:
+def forecast_layers(x: "alt.X") -> "list[alt.Chart]":
     """Bounds of 90 % and 50 %, the middle, and the trend behind it."""
     fan, trend = (alt.Chart(alt.NamedData(name=name)).encode(x=x) for name in NAMES)
     colour = "var(--second)"
@@ -245,7 +244,7 @@ def history_spec() -> Json:
     )  # fmt: skip
 
 
-def _breaks(services: alt.NamedData) -> alt.Chart:
+def _breaks(services: "alt.NamedData") -> "alt.Chart":
     chart: alt.Chart = (
         alt.Chart(services)
         .mark_rule(color="var(--ink)", strokeWidth=2, strokeDash=[2, 2])
@@ -257,7 +256,7 @@ def _breaks(services: alt.NamedData) -> alt.Chart:
     return chart
 
 
-def _remarks(notes: alt.NamedData) -> alt.Chart:
+def _remarks(notes: "alt.NamedData") -> "alt.Chart":
     """A mark at the upper edge; what it says is read by pointing at it, and in the list below the charts."""
     chart: alt.Chart = (
         alt.Chart(notes)
@@ -271,7 +270,7 @@ def _remarks(notes: alt.NamedData) -> alt.Chart:
     return chart
 
 
-def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
+def _marks(base: "alt.Chart", y: "alt.Y") -> "alt.Chart":
     shown = (*CONDITIONS, REFERENCE, NOT_JUDGED)
     names = [c.word for c in shown]
 

@@ -7,13 +7,12 @@ from datetime import UTC, datetime
 from hashlib import sha256
 from io import BytesIO
 
-from pypdf import PdfReader, PdfWriter
-
 from estimator.errors import Problem
 from estimator.message import say
 from service.diagnosis.records import StoredDiagnosis
 from service.errors import ConflictError, DamagedError, NotFoundError, RefusedError
 from service.kit.answer import answer
+from service.kit.libraries import pypdf
 from service.languages.language import Language
 from service.papers.certificate import certificate_pdf
 from service.papers.certificate.words import certificate
@@ -263,9 +262,9 @@ def hand_out_together(desk: Desk, ids: Sequence[str], now: datetime, *, who: str
 
 def joined(documents: Sequence[bytes]) -> bytes:
     """PDF documents as one, without form fields and signatures."""
-    writer = PdfWriter()
+    writer = pypdf.PdfWriter()
     for document in documents:
-        for page in PdfReader(BytesIO(document)).pages:
+        for page in pypdf.PdfReader(BytesIO(document)).pages:
             writer.add_page(page)
     writer.remove_annotations("/Widget")
     file = BytesIO()

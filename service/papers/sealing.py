@@ -31,10 +31,10 @@ class Seal:
     """The XML with an enveloped signature (XAdES-B)."""
 
 
-def seal_room() -> ModuleType:
-    """The part that needs further libraries; ServiceError in words where they are not installed."""
+def seal_room(part: str) -> ModuleType:
+    """A part that needs further libraries; ServiceError in words where they are not installed."""
     try:
-        return import_module(ROOM)
+        return import_module(f"{ROOM}.{part}")
     except ModuleNotFoundError as fault:
         raise ServiceError(say(WITHOUT, fault=fault)) from fault
 
@@ -43,5 +43,5 @@ def seal_of(key_file: Path | None, password_file: Path | None) -> Seal | None:
     """The seal of a key; None where none is set, ServiceError where it cannot be used."""
     if key_file is None:
         return None
-    found: Seal = seal_room().seal_with(key_file, password_file)
+    found: Seal = seal_room("with_key").seal_with(key_file, password_file)
     return found

@@ -8,10 +8,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import typst
-import vl_convert
-
 from estimator.json_object import Json
+from service.kit.libraries import typst, vl_convert
 from service.kit.printable import printable_data
 from service.languages import typst_sources
 from service.languages.catalogue import catalogue_of

@@ -2,7 +2,6 @@
 
 from functools import cache
 
-import altair as alt
 import numpy as np
 
 from estimator.json_object import Json
@@ -11,6 +10,7 @@ from estimator.planning import Plan, Sweep
 from estimator.readiness import Readiness
 from estimator.results import PARAMETERS
 from estimator.session import Array
+from service.kit.libraries import alt
 from service.kit.measures import MEASURES, THIN, Measure, deviation_measure, heading, number
 from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
 

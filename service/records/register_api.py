@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-import polars as pl
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 
@@ -12,6 +11,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from service.kit.answer import answer
 from service.kit.arriving_files import held
+from service.kit.libraries import pl
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.records.register import Entered, Entering, enter, move_unit
@@ -27,8 +27,8 @@ from service.web.problem_document import errors
 
 FORMS = {"application/json": "json", "text/csv": "csv"}
 COLUMNS = {
-    "serial": pl.String(), "unit_type": pl.String(), "owner": pl.String(), "location": pl.String(),
-    "custodian": pl.String(), "note": pl.String(), "retired_on": pl.String(),
+    "serial": str, "unit_type": str, "owner": str, "location": str,
+    "custodian": str, "note": str, "retired_on": str,
 }  # fmt: skip
 
 
@@ -107,7 +107,7 @@ def read_all(
     return Response(document, media_type="application/json", headers=BY_HEADER)
 
 
-def register_table(found: Sequence[Registered]) -> pl.DataFrame:
+def register_table(found: Sequence[Registered]) -> "pl.DataFrame":
     """One row a unit."""
     return table_of([_row(one) for one in found], COLUMNS)
 

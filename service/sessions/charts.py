@@ -10,13 +10,13 @@ from functools import cache
 from math import isfinite, sqrt
 from typing import Any
 
-import altair as alt
 import numpy as np
 
 from estimator.json_object import Json
 from estimator.message import say
 from estimator.results import Calibration, Residuals
 from estimator.session import Array
+from service.kit.libraries import alt
 from service.kit.measures import THIN, Measure, decimals, deviation_measure, number
 from service.sessions.words.conditions import Condition
 
@@ -83,7 +83,7 @@ ZOOM: Json = {
 """Ctrl and the wheel zoom, the mouse drags, a double click resets; wheel and finger alone scroll the page."""
 
 
-def specification(layers: list[alt.Chart], height: int) -> Json:
+def specification(layers: "list[alt.Chart]", height: int) -> Json:
     """Layers as Vega-Lite that fills the width of its place; the last one, of marks, can be zoomed."""
     chart = alt.layer(*layers).properties(width="container", height=height).to_dict()
     chart["layer"][-1]["params"] = [ZOOM]
@@ -115,7 +115,13 @@ BETA, ORDER = "beta", "order"
 """Names of the ways that every session with a stand, and every session, can be looked at."""
 BETA_RANGE, BETA_TICKS = [-12, 372], [0, 90, 180, 270, 360]
 """Degrees: a full turn with room for the marks at its ends."""
-SHAPES = alt.Scale(domain=RUNS, range=["circle", "triangle-up"])
+
+
+def shapes() -> "alt.Scale":
+    """The two runs differ without colour too."""
+    return alt.Scale(domain=RUNS, range=["circle", "triangle-up"])
+
+
 """Runs differ by shape, not by colour alone."""
 
 
@@ -148,7 +154,7 @@ def ticks(name: str) -> dict[str, Any]:
     return {"values": BETA_TICKS} if name == BETA else {"tickCount": 5}
 
 
-def zero_line() -> alt.Chart:
+def zero_line() -> "alt.Chart":
     """Where measured and simulated agree."""
     chart: alt.Chart = (
         alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
@@ -218,7 +224,7 @@ def _stated(residuals: Residuals) -> Array:
     return np.asarray(residuals.sigma / (residuals.enlarged_by or 1.0))
 
 
-def edges(base: alt.Chart, scale: alt.Scale, colour: str) -> list[alt.Chart]:
+def edges(base: "alt.Chart", scale: "alt.Scale", colour: str) -> "list[alt.Chart]":
     """Dashed lines at both edges of the noise found; ``base`` has x and, in its data, ``found``."""
     drawn = base.transform_filter("isValid(datum.found)").transform_calculate(opposite="-datum.found")
     line = drawn.mark_line(color=colour, strokeDash=DASHES, strokeWidth=1)
@@ -332,11 +338,11 @@ def _spec(name: str, title: str, *, wider: bool) -> Json:
     return specification([shades, *found, zero_line(), _marks(base, y)], HEIGHT)
 
 
-def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
+def _marks(base: "alt.Chart", y: "alt.Y") -> "alt.Chart":
     chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
         y=y,
         color=alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"])),
-        shape=alt.Shape("run:N", legend=None, scale=SHAPES),
+        shape=alt.Shape("run:N", legend=None, scale=shapes()),
         tooltip=[
             alt.Tooltip("row:Q", title="row"),
             alt.Tooltip("run:N", title="run"),

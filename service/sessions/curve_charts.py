@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from functools import cache
 
-import altair as alt
 import numpy as np
 
 from estimator.curves import Curve, ThermalCurves
@@ -11,6 +10,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from estimator.results import Calibration
 from estimator.session import Array
+from service.kit.libraries import alt
 from service.kit.measures import Measure, deviation_measure
 from service.sessions.charts import (
     BAND,

@@ -7,10 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from copy import copy
 from datetime import datetime
+from typing import TYPE_CHECKING
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from estimator.on_demand import function_on_demand
 from service.errors import AwayError
 from service.kit.lock_order import writing
 from service.storage.audit import Audit
@@ -18,8 +20,12 @@ from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
 from service.storage.queries import BeforeCommit, Store
 from service.storage.revisions import unfit
-from service.storage.schema import stored_revision
 from service.storage.waits import FairLock, Waits
+
+if TYPE_CHECKING:
+    from service.storage.schema import stored_revision
+else:
+    stored_revision = function_on_demand("service.storage.schema", "stored_revision")
 
 
 class Database:

@@ -1,7 +1,15 @@
 """Whether the revision of a database fits this version, and what to do where it does not."""
 
+from typing import TYPE_CHECKING
+
 from estimator.message import say
-from service.storage.schema import head_revision, is_known
+from estimator.on_demand import function_on_demand
+
+if TYPE_CHECKING:
+    from service.storage.schema import head_revision, is_known
+else:
+    head_revision = function_on_demand("service.storage.schema", "head_revision")
+    is_known = function_on_demand("service.storage.schema", "is_known")
 
 
 def unfit(revision: str | None) -> str | None:

@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-import polars as pl
-from polars.exceptions import DuplicateError, PolarsError
-
 from estimator.errors import Problem
 from estimator.message import joined, say
 from service.errors import RefusedError
 from service.ingest.names import plain_name
+from service.kit.libraries import pl
 from service.kit.printable import printable
 from service.units.records import NewEntry
 
@@ -48,9 +46,9 @@ def _rows(content: bytes, filename: str) -> list[dict[str, Any]]:
     try:
         table = pl.read_csv(text.encode(), separator=separator, infer_schema=False)
         table = table.rename(lambda name: name.strip().lower())
-    except DuplicateError as fault:
+    except pl.exceptions.DuplicateError as fault:
         raise _refused(filename, [Problem("file", "has two columns of one name; keep one of them")]) from fault
-    except PolarsError as fault:
+    except pl.exceptions.PolarsError as fault:
         detail = say("cannot be read as a table: {fault}", fault=printable(str(fault).partition("\n")[0]))
         raise _refused(filename, [Problem("file", detail)]) from fault
     if table.height > MOST_ROWS:

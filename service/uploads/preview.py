@@ -14,8 +14,7 @@ from estimator.writing import session_document
 from service.errors import NotFoundError, RefusedError
 from service.ingest import look_at, read_upload
 from service.ingest.layout.envelope import wrapped
-from service.ingest.layout.look import fingerprint
-from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, layout_of
+from service.ingest.layout.mapping import FORMAT, PER_FILE_FIELDS, fingerprint, layout_of
 from service.ingest.layout.understand import SeenColumn, understood
 from service.ingest.layout.vocabulary import plain_label
 from service.planning.pattern import earlier

@@ -17,8 +17,7 @@ from service.ingest import in_turn, look_at, said_as_table
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.ingest.layout.envelope import wrapped
-from service.ingest.layout.look import fingerprint
-from service.ingest.layout.mapping import layout_of, remembered
+from service.ingest.layout.mapping import fingerprint, layout_of, remembered
 from service.jobs.changes import NO_HOOKS, UploadHooks
 from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.origin import require_one_origin

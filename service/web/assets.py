@@ -7,8 +7,9 @@ from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 
-import vl_convert
 from fastapi import APIRouter, HTTPException, Request, Response
+
+from service.kit.libraries import vl_convert
 
 STATIC = Path(__file__).parent / "static"
 KINDS = {".css": "text/css; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml"}

@@ -2,13 +2,14 @@
 
 import io
 from collections.abc import Mapping, Sequence
+from datetime import datetime
 from typing import Any
 from urllib.parse import quote
 
-import polars as pl
 from fastapi import Request, Response
 
 from estimator.json_object import Json
+from service.kit.libraries import pl
 
 FORMS = {
     "application/json": "json",
@@ -46,8 +47,6 @@ def _weights(header: str) -> dict[str, float]:
     return weights
 
 
-TIME = pl.Datetime("us", "UTC")
-"""Microseconds, as stored by both databases."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 """Schema of a table in OpenAPI."""
 TABLES: Json = {media: BINARY for media, form in FORMS.items() if form != "json"}
@@ -57,26 +56,26 @@ FORMULA = r"^[=+\-@\t\r]"
 """First character of a cell that a spreadsheet would evaluate instead of showing."""
 
 
-def as_csv(table: pl.DataFrame, filename: str) -> Response:
+def as_csv(table: "pl.DataFrame", filename: str) -> Response:
     """A line of names, then one line a row; times in ISO 8601. No text can pass for a formula of a spreadsheet."""
     harmless = [_harmless(column.name) for column in table.iter_columns() if column.dtype == pl.String]
     text = table.with_columns(harmless).write_csv(datetime_format="%Y-%m-%dT%H:%M:%S%.6fZ")
     return as_file(text.encode(), "text/csv; charset=utf-8", filename)
 
 
-def _harmless(column: str) -> pl.Expr:
+def _harmless(column: str) -> "pl.Expr":
     cell = pl.col(column)
     return pl.when(cell.str.contains(FORMULA)).then(pl.concat_str(pl.lit("'"), cell)).otherwise(cell).alias(column)
 
 
-def as_parquet(table: pl.DataFrame, filename: str) -> Response:
+def as_parquet(table: "pl.DataFrame", filename: str) -> Response:
     """Parquet."""
     target = io.BytesIO()
     table.write_parquet(target)
     return as_file(target.getvalue(), "application/vnd.apache.parquet", filename)
 
 
-def as_arrow(table: pl.DataFrame, filename: str) -> Response:
+def as_arrow(table: "pl.DataFrame", filename: str) -> Response:
     """Arrow's streaming format, with text in the layout that every Arrow reader supports."""
     target = io.BytesIO()
     table.write_ipc_stream(target, compat_level=pl.CompatLevel.oldest())
@@ -87,17 +86,18 @@ WRITERS = {"csv": as_csv, "parquet": as_parquet, "arrow": as_arrow}
 """By the value of the parameter `format`."""
 
 
-def as_table(table: pl.DataFrame, form: str, name: str) -> Response:
+def as_table(table: "pl.DataFrame", form: str, name: str) -> Response:
     """A table in one of these forms, as a file of this name."""
     answer = WRITERS[form](table, f"{name}.{form}")
     answer.headers.update(BY_HEADER)
     return answer
 
 
-def table_of(rows: Sequence[Mapping[str, Any]], columns: Mapping[str, pl.DataType]) -> pl.DataFrame:
-    """Rows as columns of their types."""
+def table_of(rows: Sequence[Mapping[str, Any]], columns: Mapping[str, type]) -> "pl.DataFrame":
+    """Rows as columns of their types; times in microseconds, as stored by both databases."""
     cells = {name: [_plain(row[name]) for row in rows] for name in columns}
-    return pl.DataFrame(cells, schema=dict(columns))
+    time = pl.Datetime("us", "UTC")
+    return pl.DataFrame(cells, schema={name: time if kind is datetime else kind for name, kind in columns.items()})
 
 
 def _plain(value: Any) -> Any:

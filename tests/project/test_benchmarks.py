@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.__main__ import RESULTS
-from benchmarks.figures import Figure
+from benchmarks.figures import Felt, Figure
 from benchmarks.results import BENCHMARKS, Results, benchmark_of, id_of, note_of
 
 
@@ -54,6 +54,23 @@ def test_a_target_is_reached_from_its_ratio_on() -> None:
     assert [reached(0.5, "at least 1/2"), reached(0.66, "at least 2/3"), reached(30, "30"), reached(9, "—")] == [
         "yes", "no", "yes", "—",
     ]  # fmt: skip
+
+
+def test_what_a_user_feels_leads_the_table_with_its_time_in_m(tmp_path: Path) -> None:
+    results = Results(tmp_path / "R.md")
+    rows = (Felt("U10", "stand", 0.2, 1.0, "s", m=0.1), Felt("U2, 1 client", "upload", 0.05, 0.4, m=0.1))
+    for line in (row("P1", 1.0), *(felt.row() for felt in rows), Felt("U7", "at rest", 264.0, 150, "MB", m=0.1).row()):
+        results.put(line)
+    written = (tmp_path / "R.md").read_text("utf-8")
+    assert [id_of(line) for line in written.splitlines() if line.startswith("| ") and benchmark_of(line)] == [
+        "U2, 1 client",
+        "U7",
+        "U10",
+        "P1",
+    ]
+    assert "| U2, 1 client | upload | 50 ms | 0.5 m | ≤ 0.4 m | no |" in written
+    assert "| U7 | at rest | 264 MB | — | ≤ 150 MB | no |" in written
+    assert "| U10 | stand | 200 ms | 2 m | ≤ 1 s | yes |" in written
 
 
 def test_every_missed_target_is_explained() -> None:

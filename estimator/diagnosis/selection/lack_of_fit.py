@@ -5,9 +5,9 @@ for scatter that is no noise. Where it holds structure that is no small part of 
 """
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import shapiro
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.selection.excess_noise import with_autocorrelation
@@ -16,6 +16,12 @@ from estimator.diagnosis.selection.ranking import extended_basis
 from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
 from estimator.diagnosis.signatures.noise import ExcessVariance, UnlikeNoise
 from estimator.diagnosis.signatures.switching import switching
+from estimator.on_demand import function_on_demand
+
+if TYPE_CHECKING:
+    from scipy.stats import shapiro
+else:
+    shapiro = function_on_demand("scipy.stats", "shapiro")
 
 MISFIT = 0.05
 """Share of the energy of names that structure beside them may hold: beyond a fifth in rms it is another effect that

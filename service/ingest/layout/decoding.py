@@ -7,8 +7,6 @@ from service.kit.limits import refusal
 
 MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
 """Byte order marks."""
-ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")
-"""Encodings of tables that are recognised, and can be chosen by hand."""
 CODE_PAGES = ["cp1251", "cp1252", "koi8_r", "cp866"]
 """Code pages, distinguished by frequencies of letters."""
 SAMPLE_BYTES = 64 * 1024

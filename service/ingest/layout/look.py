@@ -1,7 +1,5 @@
 """What a preview shows of a file before anything is decided: headings, first cells, the words of its columns."""
 
-import hashlib
-from collections.abc import Mapping
 from typing import Any
 
 from estimator.json_object import Json
@@ -14,13 +12,6 @@ from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import word_text
 from service.ingest.xlsx import session_sheets, sheet_names
 from service.kit.limits import refusal
-
-
-def fingerprint(preview: Mapping[str, Any]) -> str:
-    """SHA-256 of the headings of a preview, in lower case and without spaces."""
-    headings = ["".join(column["heading"].casefold().split()) for column in preview["columns"]]
-    return hashlib.sha256("\n".join(headings).encode()).hexdigest()
-
 
 SHOWN = 5
 """First cells of a column that are shown."""

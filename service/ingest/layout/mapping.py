@@ -1,5 +1,6 @@
 """`imu-mapping/1`: how a table of custom layout is read. Checked here, once; every fault is named with its place."""
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,6 +17,8 @@ TABLE = {"encoding": str, "separator": str, "decimal": str, "sheet": str, "heade
 """Settings of the parser, as far as stated."""
 COLUMN = {"heading": str, "as": str, "unit": str, "words": dict, "fill_down": bool}
 """Fields of a column."""
+ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")
+"""Encodings of tables that are recognised, and can be chosen by hand."""
 MOST_ROW = 1_048_576
 """Rows of a spreadsheet."""
 LONGEST = 1000
@@ -24,6 +27,12 @@ PER_FILE_FIELDS = (
     "unit", "started_at", "powered_on_at", "time_since_power_on_s", "operator", "notes", "stage", "origin",
 )  # fmt: skip
 """Fields of a session that differ from file to file; the others are kept for the next one."""
+
+
+def fingerprint(preview: Mapping[str, Any]) -> str:
+    """SHA-256 of the headings of a preview, in lower case and without spaces."""
+    headings = ["".join(column["heading"].casefold().split()) for column in preview["columns"]]
+    return hashlib.sha256("\n".join(headings).encode()).hexdigest()
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-import polars as pl
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 
@@ -29,9 +28,9 @@ MOST_UNITS = 10_000
 """Units of one answer."""
 FORMS = {"application/json": "json", "text/csv": "csv", XLSX: "xlsx"}
 COLUMNS = {
-    "unit": pl.String(), "unit_type": pl.String(), "location": pl.String(), "custodian": pl.String(),
-    "owner": pl.String(), "due_on": pl.String(), "days": pl.Int64(), "condition": pl.String(), "use": pl.String(),
-    "said": pl.String(), "why": pl.String(),
+    "unit": str, "unit_type": str, "location": str, "custodian": str,
+    "owner": str, "due_on": str, "days": int, "condition": str, "use": str,
+    "said": str, "why": str,
 }  # fmt: skip
 SHEET = (
     Column("Unit", width=16, is_named=True), Column("Type", width=22, is_named=True),

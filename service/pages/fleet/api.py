@@ -1,15 +1,16 @@
 """The fleet as a whole."""
 
 from collections.abc import Sequence
+from datetime import datetime
 from typing import Annotated, Any, Literal
 
-import polars as pl
 from fastapi import APIRouter, Query, Request, Response
 
 from service.fleet.condition import FleetCondition, UnitSummary
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.judging.words import unit_in_words
+from service.kit.libraries import pl
 from service.languages.language import asked
 from service.pages.unit.schemas import UnitPage, said_unit
 from service.papers.fleet.paper import fleet_pdf
@@ -23,7 +24,6 @@ from service.web.files import (
     FORMS,
     PDF,
     TABLES,
-    TIME,
     XLSX,
     as_file,
     as_table,
@@ -34,16 +34,16 @@ from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
 
 FLEET_COLUMNS = {
-    "serial": pl.String(), "unit_type": pl.String(), "simulated": pl.Boolean(), "sessions": pl.Int64(),
-    "last_session": pl.String(), "last_at": TIME, "verdict": pl.String(), "is_reference": pl.Boolean(),
-    "reason": pl.String(),
-    "worst_sensor": pl.String(), "worst_parameter": pl.String(), "margin": pl.Float64(),
-    "diagnosis": pl.String(), "flags": pl.Int64(), "due": TIME, "lot": pl.String(),
-    "said": pl.String(), "last_at_ms": pl.Int64(), "due_ms": pl.Int64(),
+    "serial": str, "unit_type": str, "simulated": bool, "sessions": int,
+    "last_session": str, "last_at": datetime, "verdict": str, "is_reference": bool,
+    "reason": str,
+    "worst_sensor": str, "worst_parameter": str, "margin": float,
+    "diagnosis": str, "flags": int, "due": datetime, "lot": str,
+    "said": str, "last_at_ms": int, "due_ms": int,
 }  # fmt: skip
 
 
-def fleet_table(units: Sequence[UnitSummary]) -> pl.DataFrame:
+def fleet_table(units: Sequence[UnitSummary]) -> "pl.DataFrame":
     """One row a unit."""
     return table_of([_unit_row(unit) for unit in units], FLEET_COLUMNS)
 

@@ -1,9 +1,9 @@
 """Stands over HTTP: their own health, and their certificates."""
 
-from datetime import date
-from typing import Annotated
+from datetime import date, datetime
+from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Query, Request
+from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import BaseModel, Field
 
 from service.papers.records import RestingCertificate
@@ -17,6 +17,7 @@ from service.stands.records import StandCertificate, StandCondition
 from service.stands.store import StandCertificates
 from service.web.dependencies import Now, Reading
 from service.web.fields import Body, Day, NonBlankName, StandName
+from service.web.files import BINARY, BY_HEADER, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
 
@@ -52,6 +53,12 @@ class RestingCertificateList(BaseModel):
     certificates: tuple[RestingCertificate, ...] = Field(description="Every issue, replaced ones too.")
 
 
+FORMS = {"application/json": "json", "text/csv": "csv"}
+RESTING = {
+    "number": str, "unit": str, "session": str, "started_at": datetime, "issued_at": datetime,
+    "is_measured_there": bool,
+}  # fmt: skip
+
 DCC_BODY = {"requestBody": {"required": True, "content": {"application/xml": {"schema": {"type": "string"}}}}}
 
 router = APIRouter(prefix="/stands", tags=["stands"])
@@ -70,16 +77,30 @@ def list_stand_certificates(name: StandName, store: Reading) -> StandCertificate
     return StandCertificateList(certificates=found)
 
 
-@router.get("/{name:path}/resting-certificates", responses=errors(404, 422))
+@router.get(
+    "/{name:path}/resting-certificates",
+    responses={200: {"content": {"text/csv": BINARY}}, **errors(404, 422)},
+    response_model=RestingCertificateList,
+)
 def list_resting_certificates(
+    request: Request,
     name: StandName,
     store: Reading,
     since: Annotated[date, Query(description="First day of measurement.")] = FIRST_DAY,
     until: Annotated[date, Query(description="Last day of measurement.")] = LAST_DAY,
-) -> RestingCertificateList:
+    format: Annotated[
+        Literal["json", "csv"] | None,
+        Query(description="Form of the answer; without it the header `Accept` chooses, else it is JSON."),
+    ] = None,
+) -> Response:
     """Every certificate to look at again where the stand was at fault: of sessions on it, or with a reference on it."""
     StandCertificates(store).known(name)
-    return RestingCertificateList(certificates=Certificates(store).resting_on(name, since, until))
+    found = Certificates(store).resting_on(name, since, until)
+    form = wanted_form(request, format, FORMS)
+    if form == "csv":
+        return as_table(table_of([vars(one) for one in found], RESTING), form, "resting-certificates")
+    document = RestingCertificateList(certificates=found).model_dump_json()
+    return Response(document, media_type="application/json", headers=BY_HEADER)
 
 
 @router.put("/{name:path}/certificate", responses=errors(400, 404, 422))

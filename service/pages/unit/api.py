@@ -1,15 +1,16 @@
 """Units: their condition, history and known breaks."""
 
 from collections.abc import Sequence
+from datetime import datetime
 from typing import Annotated, Any
 
-import polars as pl
 from fastapi import APIRouter, Query, Request, Response
 
 from service.flags.api import FlagPage, WantedState, flag_page
 from service.flags.store import FlagQuery
 from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
+from service.kit.libraries import pl
 from service.languages.catalogue import said_in
 from service.languages.language import asked
 from service.outlook.reading import outlook_of
@@ -35,17 +36,17 @@ from service.units.records import Customer
 from service.units.store import Units
 from service.web.dependencies import LanguageOf, Now, Reading, SettingsOf
 from service.web.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
-from service.web.files import BY_HEADER, TABLES, TIME, as_table, table_of, wanted_form
+from service.web.files import BY_HEADER, TABLES, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 from service.work.dependencies import ReaderOf, ReadingFleet
 
 HISTORY_COLUMNS = {
-    "session": pl.String(), "at": TIME, "sensor": pl.String(), "kind": pl.String(), "parameter": pl.String(),
-    "value": pl.Float64(), "u": pl.Float64(), "lower": pl.Float64(), "upper": pl.Float64(),
-    "reference": pl.Float64(), "deviation": pl.Float64(), "expanded": pl.Float64(), "tolerance": pl.Float64(),
-    "verdict": pl.String(), "is_reference": pl.Boolean(),
-    "axis_x": pl.Float64(), "axis_y": pl.Float64(), "axis_z": pl.Float64(), "revision": pl.Int64(),
-    "at_ms": pl.Int64(), "unit": pl.String(),
+    "session": str, "at": datetime, "sensor": str, "kind": str, "parameter": str,
+    "value": float, "u": float, "lower": float, "upper": float,
+    "reference": float, "deviation": float, "expanded": float, "tolerance": float,
+    "verdict": str, "is_reference": bool,
+    "axis_x": float, "axis_y": float, "axis_z": float, "revision": int,
+    "at_ms": int, "unit": str,
 }  # fmt: skip
 
 
@@ -53,7 +54,7 @@ NO_AXIS = (None, None, None)
 """Of a parameter that is a number."""
 
 
-def history_table(serial: str, points: Sequence[HistoryPoint]) -> pl.DataFrame:
+def history_table(serial: str, points: Sequence[HistoryPoint]) -> "pl.DataFrame":
     """One row a point of a unit's history; the axis as three columns."""
     return table_of([_point_row(serial, point) for point in points], HISTORY_COLUMNS)
 

@@ -3,12 +3,11 @@
 from collections.abc import Iterable, Mapping
 from functools import cache
 
-import altair as alt
-
 from estimator.json_object import Json
 from estimator.message import say
 from estimator.wording import counted
 from service.fleet.records import LAST, NOT_JUDGED, STEP, Tally
+from service.kit.libraries import alt
 from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
 from service.sessions.decision import Verdict
 from service.sessions.words.conditions import CONDITIONS, Condition, condition_of

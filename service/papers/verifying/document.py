@@ -52,7 +52,7 @@ def seal(certificate: bytes, printed: Printed, trusted: bytes | None) -> Check:
             return checked("seal", say(SEAL_GONE) if printed.is_sealed else say(NO_SEAL))
         return Check("seal", Outcome.LEFT_OUT, (say(NO_SEAL),))
     try:
-        owner: str = seal_room().owner_of_seal(certificate, trusted)
+        owner: str = seal_room("xml").owner_of_seal(certificate, trusted)
     except ServiceError as fault:
         return Check("seal", Outcome.NOT_CHECKED, (say(NO_LIBRARY, fault=fault.__cause__),))
     except ValueError as fault:

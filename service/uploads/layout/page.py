@@ -10,7 +10,7 @@ from estimator.json_object import Json
 from estimator.message import say
 from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
-from service.ingest.layout.decoding import ENCODINGS
+from service.ingest.layout.mapping import ENCODINGS
 from service.kit.measures import number
 from service.uploads.layout.form import Carried, LayoutForm, half_angle_of, moment
 from service.uploads.layout.words import FACTS, LABELS, PLACES, RARE, said_on_page

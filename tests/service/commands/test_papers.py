@@ -35,6 +35,15 @@ def test_customer_and_stand_are_named(run: Run, address: str) -> None:
     assert session["stand_certificate_expired"]
 
 
+def test_certificates_on_a_stand_that_was_found_bad_are_listed(run: Run, address: str) -> None:
+    stand = ("stand-affected", "ODG-1", "--server", address, "--format", "table")
+    assert "No certificate rests on it." in run(*stand).out
+    id = session_id(FAILED[-1])
+    httpx.get(f"{address}/api/v1/sessions/{id}/certificate?format=dcc", timeout=60).raise_for_status()
+    assert id in run(*stand, "--since", "2026-02-01", "--until", "2026-02-01").out
+    assert id not in run(*stand, "--until", "2025-12-31").out
+
+
 def test_the_label_is_written(run: Run, address: str, tmp_path: Path) -> None:
     target = tmp_path / "label.pdf"
     assert run("report", "label", "BA-017", "--out", target, "--server", address).code == 0

@@ -55,6 +55,15 @@ def test_calibrating_imports_neither_service_nor_what_other_programmes_need(good
     assert not {"scipy.stats", "scipy.optimize", "scipy.spatial", "estimator.alignment", "estimator.diagnosis"} & seen
 
 
+def test_a_service_that_waits_has_not_loaded_what_draws_prints_and_reads_files() -> None:
+    script = "import sys, service.app; print(*sys.modules)"
+    seen = set(
+        subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
+    )
+    assert {"service.papers.typeset", "service.sessions.charts", "service.web.files"} <= seen
+    assert not {"altair", "polars", "typst", "vl_convert", "pypdf", "h5py", "fastexcel", "httpx", "scipy.stats"} & seen
+
+
 def test_the_module_runs_like_the_command() -> None:
     command = [sys.executable, "-m", "service.cli", "--help"]
     assert "calibrate" in subprocess.run(command, capture_output=True, text=True, check=True).stdout

@@ -29,3 +29,8 @@ def test_certificates_of_sessions_on_it_and_of_those_judged_against_them(client:
     assert resting(client, "ODG-1", since="2026-01-02") == []
     assert resting(client, "ODG-1", until="2026-01-01") == [(ids[0], True), (ids[1], False)]
     assert client.get("/api/v1/stands/none/resting-certificates").status_code == 404
+    lines = client.get("/api/v1/stands/ODG-1/resting-certificates?format=csv").text.splitlines()
+    assert lines[0] == "number,unit,session,started_at,issued_at,is_measured_there"
+    assert [line.split(",")[2:6:3] for line in lines[1:]] == [[ids[0], "true"], [ids[1], "false"]]
+    page = client.get("/stands/ODG-1", headers={"Accept": "text/html"}).text
+    assert 'action="/api/v1/stands/ODG-1/resting-certificates"' in page

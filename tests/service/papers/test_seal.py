@@ -45,7 +45,7 @@ C14N11 = "http://www.w3.org/2006/12/xml-c14n11"
 @pytest.fixture
 def key_file(tmp_path: Path) -> Path:
     """Key and certificate for trial."""
-    (tmp_path / "seal.pem").write_bytes(seal_room().make_trial_key("Laboratory North", datetime.now(UTC)))
+    (tmp_path / "seal.pem").write_bytes(seal_room("trial").make_trial_key("Laboratory North", datetime.now(UTC)))
     return tmp_path / "seal.pem"
 
 
@@ -107,7 +107,7 @@ def sealed(key_file: Path) -> Seal:
 
 def _other(folder: Path) -> Path:
     """Somebody else's key."""
-    (folder / "other.pem").write_bytes(seal_room().make_trial_key("Somebody", datetime.now(UTC)))
+    (folder / "other.pem").write_bytes(seal_room("trial").make_trial_key("Somebody", datetime.now(UTC)))
     return folder / "other.pem"
 
 
@@ -187,7 +187,7 @@ def test_the_same_bytes_are_handed_out_again(settings: Settings, staff: Staff, k
 
 
 def test_an_expired_seal_signs_nothing(settings: Settings, staff: Staff, tmp_path: Path) -> None:  # noqa: F811
-    (tmp_path / "old.pem").write_bytes(seal_room().make_trial_key("", datetime(2020, 1, 1, tzinfo=UTC)))
+    (tmp_path / "old.pem").write_bytes(seal_room("trial").make_trial_key("", datetime(2020, 1, 1, tzinfo=UTC)))
     with named(settings, seal_key_file=tmp_path / "old.pem") as http:
         paper(http, staff)
         assert signed(http, staff, Role.ENGINEER, "reviewed").status_code == 201

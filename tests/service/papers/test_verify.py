@@ -58,7 +58,7 @@ def outcomes(found: Verification) -> dict[str, Outcome]:
 def key_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Key and certificate for trial."""
     file = tmp_path_factory.mktemp("seal") / "seal.pem"
-    file.write_bytes(seal_room().make_trial_key("Laboratory North", datetime.now(UTC)))
+    file.write_bytes(seal_room("trial").make_trial_key("Laboratory North", datetime.now(UTC)))
     return file
 
 
@@ -147,8 +147,29 @@ def test_whatever_is_changed_is_refused(
     assert passed == []
 
 
+@pytest.mark.parametrize(("reference", "calibrations"), [(None, 1), (RawFile("r.json", FAILED[0]), 2)])
+def test_each_file_is_calibrated_and_the_session_judged_once(
+    printed: bytes, monkeypatch: pytest.MonkeyPatch, reference: RawFile | None, calibrations: int
+) -> None:
+    called = list[str]()
+    for name in ("calibrate", "judge"):
+        monkeypatch.setattr(again, name, counted(getattr(again, name), called))
+    assert verify(printed, RAW, Beside(reference=reference), NOW).outcome is Outcome.AGREES
+    assert sorted(called) == ["calibrate"] * calibrations + ["judge"]
+
+
+def counted(step: Callable[..., Any], called: list[str]) -> Callable[..., Any]:
+    """The same, with its name noted at every call."""
+
+    def answered(*given: Any, **named: Any) -> Any:
+        called.append(step.__name__)
+        return step(*given, **named)
+
+    return answered
+
+
 def test_a_seal_of_somebody_else_is_refused(printed: bytes, seal: Seal, tmp_path: Path) -> None:
-    (tmp_path / "other.pem").write_bytes(seal_room().make_trial_key("Somebody", datetime.now(UTC)))
+    (tmp_path / "other.pem").write_bytes(seal_room("trial").make_trial_key("Somebody", datetime.now(UTC)))
     other = (tmp_path / "other.pem").read_bytes()
     own = b"-----BEGIN CERTIFICATE" + other.split(b"-----BEGIN CERTIFICATE")[1]
     assert outcomes(verify(seal.xml(printed), RAW, Beside(trusted=own), NOW))["seal"] is Outcome.DIFFERS
