@@ -1,4 +1,4 @@
-"""Causes of every family, hidden by an independent generator, are found over HTTP; `tests/blind` has all of them."""
+"""Causes hidden by an independent generator are found over HTTP; `tests/blind` has all of them."""
 
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
@@ -24,7 +24,7 @@ LONGEST = 16
 SEED = 400
 TRIES = 12
 """A case in which the cause is told apart from every rival is looked for among so many."""
-HIDDEN = list(CATALOGUE)[3::6]
+HIDDEN = list(CATALOGUE)[3::15]
 
 
 @pytest.fixture(scope="module")
