@@ -1,4 +1,4 @@
-"""Pure functions worked out once for what they are given: many tests upload the same sessions, print the same charts."""
+"""Pure functions worked out once for what they are given: many tests upload the same sessions and print the same."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
