@@ -35,7 +35,7 @@ def trials():
     """Errors (n, P) and covariances (n, P, P) of repeated sessions; four sensors, twelve orientations."""
     rng, true = np.random.default_rng(11), truth(4, seed=3)
     directions = sphere(14, np.random.default_rng(5))
-    results = [calibrate_free(session(true, directions, noise=1e-3, rng=rng), quadratic=False) for _ in range(400)]
+    results = [calibrate_free(session(true, directions, noise=1e-3, rng=rng), quadratic=False) for _ in range(700)]
     free = np.isfinite(np.diagonal(results[0].covariance))
     return np.array([errors(r, true)[free] for r in results]), np.array(
         [r.covariance[np.ix_(free, free)] for r in results]
