@@ -31,9 +31,11 @@ run: setup
 browser:
 	@sh tests/install_chromium.sh
 
-# Every service that a test starts has threads of its own, and each thread would keep memory for itself.
+# Every service that a test starts has threads of its own, and each thread would keep memory for itself; so would polars.
 test: export MALLOC_ARENA_MAX ?= 2
+test: export _RJEM_MALLOC_CONF ?= dirty_decay_ms:0,muzzy_decay_ms:0
 test: setup browser
+	$(BIN)/python -m compileall -q -j 0 estimator service benchmarks
 	$(BIN)/pytest -n $(WORKERS) --dist worksteal
 
 lint: setup

@@ -119,7 +119,7 @@ class PostgresDatabases(Databases):
 
     def __init__(self, server: PostgresServer) -> None:
         self.server = server
-        for setting in ("fsync", "full_page_writes"):  # no test cuts the power
+        for setting in ("fsync", "full_page_writes", "autovacuum"):  # no test cuts the power, no database lives long
             self._run(sql.SQL("ALTER SYSTEM SET {} = off").format(sql.Identifier(setting)))
         self._run(sql.SQL("SELECT pg_reload_conf()"))
         self._template = self.empty()

@@ -136,7 +136,7 @@ HOSTILE = (
     Hostile("xlsx-sheet-without-ending", lambda: workbook(FAR, place="other/readings"), "1048576 rows"),
     Hostile("xlsx-sheet-called-a-picture", lambda: workbook(FAR, place="xl/media/image1.png"), "cannot be read with"),
     Hostile("xlsx-row-of-a-million", lambda: workbook("<row>" + "<c><v>1</v></c>" * 1_000_000 + "</row>"), "columns"),
-    Hostile("xlsx-unpacks", lambda: workbook("", more={"a.xml": b"<a>" + b" " * 300_000_000}), "unpacks to more"),
+    Hostile("xlsx-unpacks", lambda: workbook("", more={"a.xml": b"<a>".ljust(150_000_000)}), "unpacks to more"),
     Hostile("xlsx-shared-text", shared_text, "far too much text"),
     Hostile(
         "xlsx-entities", lambda: workbook("", more={"a.xml": b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>"}), "damaged"
@@ -144,7 +144,7 @@ HOSTILE = (
     Hostile("parquet-many-rows", lambda: parquet(pl.select(pl.repeat(1.0, 180_000_000).alias("A1"))), "180000000 rows"),
     Hostile(
         "parquet-long-texts",
-        lambda: parquet(pl.select(pl.repeat("n" * 1_000_000, 200, dtype=pl.String).alias("A1"))),
+        lambda: parquet(pl.select(pl.repeat("n" * 1_000_000, 150, dtype=pl.String).alias("A1"))),
         "far too much text|cannot be read with",
     ),
     Hostile("hdf5-many-cells", lambda: hdf5(5_000_000, 1), "5000000 rows"),

@@ -1,4 +1,5 @@
-"""Causes of every family, hidden by an independent generator, are found over HTTP; `tests/blind` has all of them."""
+"""Causes hidden by an independent generator are found over HTTP; `tests/blind` has all of them, and
+`tests/test_hidden_effect.py` what is without a name."""
 
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
@@ -24,7 +25,7 @@ LONGEST = 16
 SEED = 400
 TRIES = 12
 """A case in which the cause is told apart from every rival is looked for among so many."""
-HIDDEN = list(CATALOGUE)[3::6]
+HIDDEN = list(CATALOGUE)[3::15]
 
 
 @pytest.fixture(scope="module")
@@ -61,14 +62,3 @@ def test_a_hidden_cause_is_found_over_http(diagnosed: Diagnosed, cause: str) -> 
     outcome = score(case, diagnosed(case), 0.0)
     assert outcome.listed, outcome
     assert outcome.first or not outcome.separated, outcome
-
-
-def test_a_session_without_an_effect_gets_no_name(diagnosed: Diagnosed) -> None:
-    found = diagnosed(draw_case("none", (SEED, 1), None, LONGEST))
-    assert (found["findings"], found["unexplained"], found["state"]) == ([], False, "nothing wrong")
-
-
-def test_structure_outside_the_catalogue_is_unexplained_over_http(diagnosed: Diagnosed) -> None:
-    found = diagnosed(draw_case("outside", (5, 1), "fifth-harmonic", LONGEST))
-    assert (found["findings"], found["unexplained"]) == ([], True)
-    assert "harmonic 5" in found["summary"]

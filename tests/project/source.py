@@ -35,7 +35,15 @@ class Module:
     @cached_property
     def imports(self) -> frozenset[str]:
         """Dotted names that it imports; of ``from x import y`` the module x, and x.y where that is a module."""
-        return frozenset(name for node in ast.walk(self.tree) for name in _imported(node))
+        return frozenset(name for node in statements(self.tree) for name in _imported(node))
+
+
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Those inside, at every depth, without their expressions, which are most of a tree."""
+    for name in ("body", "handlers", "orelse", "finalbody", "cases"):
+        for inner in getattr(node, name, ()):
+            yield inner
+            yield from statements(inner)
 
 
 def _imported(node: ast.AST) -> Iterator[str]:

@@ -10,7 +10,7 @@ from importlib import import_module
 import pytest
 
 from estimator.on_demand import ModuleOnDemand
-from tests.project.source import PACKAGES, Module, modules
+from tests.project.source import PACKAGES, Module, modules, statements
 
 SUBJECTS = (
     "errors", "settings", "languages", "kit", "client", "storage", "queue", "ingest", "sessions", "web", "units",
@@ -141,9 +141,9 @@ def test_no_import_stands_inside_a_function() -> None:
     found = [
         f"{module.name}:{inner.lineno}"
         for module in ALL
-        for node in ast.walk(module.tree)
+        for node in statements(module.tree)
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
-        for inner in ast.walk(node)
+        for inner in statements(node)
         if isinstance(inner, ast.Import | ast.ImportFrom)
     ]
     assert found == []

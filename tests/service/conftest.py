@@ -1,5 +1,5 @@
-"""What the tests of the service share: a service with a flag, the log as programs read it, and dates that are worked
-out with little effort."""
+"""What the tests of the service share: a service with a flag, the log as programs read it, dates that are worked
+out with little effort, and what is worked out once."""
 
 import io
 import logging
@@ -7,10 +7,14 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
+import vl_convert
 
 from estimator.health import odds, posterior
 from service.kit.log import write_log
+from service.outlook import changes as outlooks
+from service.records import diagnose as diagnoses
 from tests.conftest import Holding
+from tests.once import once
 from tests.service.made_sessions import FAILED
 
 
@@ -20,6 +24,15 @@ def light_forecasts() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(posterior, "DRAWS", posterior.DRAWS // 5)
         patch.setattr(odds, "DRAWS", odds.FEW)
+        yield
+
+
+@pytest.fixture(scope="package", autouse=True)
+def worked_out_once() -> Iterator[None]:
+    """Causes, outlooks and charts of what was met before."""
+    with pytest.MonkeyPatch.context() as patch:
+        for room, name in ((diagnoses, "find_causes"), (outlooks, "forecast"), (vl_convert, "vegalite_to_svg")):
+            patch.setattr(room, name, once(getattr(room, name)))
         yield
 
 

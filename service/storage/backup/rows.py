@@ -39,9 +39,10 @@ class _Written(UserDefinedType[str]):
 
 
 def tables_of(connection: Connection) -> list[Table]:
-    """The tables of a database; one that refers to another comes after it."""
+    """The tables of a database; one that refers to another comes after it. Statements on them are not kept: the next
+    ones have tables of their own."""
     metadata = MetaData()
-    metadata.reflect(connection)
+    metadata.reflect(connection.execution_options(compiled_cache=None))
     return [table for table in metadata.sorted_tables if table.name != BOOKKEEPING]
 
 

@@ -104,11 +104,11 @@ FAULTS: dict[str, Any] = {"resultTypes": ["violations"]}
 COLOURS = FAULTS | {"runOnly": ["color-contrast"]}
 """What dark colours decide, of axe's rules."""
 COLOURLESS = FAULTS | {"rules": {"color-contrast": {"enabled": False}}}
-"""All others: no colour depends on the language."""
+"""All others: no colour depends on the language, and hardly any on the width."""
 EVERYTHING, NARROW = "html", ".cards, .filter"
 """What is looked at, and of it what is shown or coloured otherwise on a narrow screen, where rows become cards."""
 SCANS: dict[int, tuple[tuple[Literal["light", "dark"], dict[str, Any], str], ...]] = {
-    390: (("light", FAULTS, EVERYTHING), ("dark", COLOURS, NARROW)),
+    390: (("light", COLOURLESS, EVERYTHING), ("light", COLOURS, NARROW), ("dark", COLOURS, NARROW)),
     1280: (("light", FAULTS, EVERYTHING), ("dark", COLOURS, EVERYTHING)),
 }
 VIOLATIONS = """async ([place, options]) => {

@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from estimator.reading import read_session
-from service.commands.serve import _fill as finish
+from service.commands import serve
 from service.demo.cast import CAST, END
 from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
@@ -33,7 +33,7 @@ from service.uploads.receive import upload
 from service.work.watch import update_outlooks
 from tests.conftest import StockOf
 from tests.databases import Databases
-from tests.service.commands.conftest import COMMAND, Run, started
+from tests.service.commands.conftest import Run
 from tests.service.commands.said_alike import check_unit, fleet_of
 from tests.serving import serving
 from tests.stock import stores
@@ -67,7 +67,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     upgrade(settings.database)
     with stores(settings) as storage:
         begin(storage, sum(member.files for member in BEGUN))
-    finish(settings)
+    serve._fill(settings)
     return settings
 
 
@@ -152,10 +152,17 @@ def test_a_unit_has_one_flag_at_most_and_none_where_it_is_fit_without_a_reservat
     assert (about[Scope.UNIT], about[Scope.STAND]) == (sum(flags.values()), 3)
 
 
-def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Settings) -> None:
-    with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", served.data_folder) as address:
-        assert address.startswith("http://127.0.0.1:")
-        assert httpx.get(f"{address}/readyz").status_code == 200
+def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(
+    served: Settings, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As `serve --demo` does before it listens."""
+    listening = list[Settings]()
+    monkeypatch.setattr(serve._Server, "__init__", lambda self, settings, first: listening.append(settings))
+    monkeypatch.setattr(serve._Server, "run", lambda self: None)
+    monkeypatch.setattr(serve, "write_log", lambda: None)
+    assert run("serve", "--demo", "--port", 0, "--data-folder", served.data_folder).code == 0
+    assert [settings.database for settings in listening] == [served.database]
+    with serving(served) as address:
         fleet = httpx.get(f"{address}/api/v1/fleet").json()
         sessions = httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]
     assert (fleet["units"], fleet["simulated"], len(sessions)) == (len(CAST), len(CAST), FILES)

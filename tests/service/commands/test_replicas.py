@@ -1,27 +1,29 @@
-"""Two of the service behind one address, as the compose file starts them, on one PostgreSQL and one folder."""
+"""Two of the service behind one address, on one PostgreSQL and one folder: a process as the compose file starts it, and
+this one."""
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
 
 import httpx
 import pytest
 
+from service.settings import Settings
 from tests.databases import PostgresDatabases
 from tests.service.commands.conftest import ENTRYPOINT, started
 from tests.service.made_sessions import session_bytes
+from tests.serving import serving
 
 
 @pytest.fixture(scope="module")
 def replicas(postgresql: PostgresDatabases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
     """Their addresses; the schema is there, as it is when a second one joins."""
-    shared = {
+    shared = Settings(database_url=postgresql.migrated(), data_folder=tmp_path_factory.mktemp("shared"))
+    own = {
         "IMU_HEALTH_PORT": "0",
-        "IMU_HEALTH_DATABASE_URL": postgresql.migrated(),
-        "IMU_HEALTH_DATA_FOLDER": str(tmp_path_factory.mktemp("shared")),
+        "IMU_HEALTH_DATABASE_URL": shared.database,
+        "IMU_HEALTH_DATA_FOLDER": str(shared.data_folder),
     }
-    with ExitStack() as opened:
-        one, other = (opened.enter_context(started("/bin/sh", ENTRYPOINT, **shared)) for _ in range(2))
+    with started("/bin/sh", ENTRYPOINT, **own) as one, serving(shared) as other:
         yield one, other
 
 

@@ -1,4 +1,4 @@
-"""`imu-health serve` and `db`, as processes of their own."""
+"""`imu-health serve`, as a process of its own, and `db`."""
 
 import re
 import signal
@@ -10,9 +10,12 @@ from typing import Any
 import httpx
 import pytest
 
+from service.commands.serve import _first_link as first_link
 from service.opening import open_database
+from service.settings import Settings
 from tests.databases import Databases
 from tests.service.commands.conftest import COMMAND, ENTRYPOINT, READY, Run
+from tests.serving import serving
 
 
 @dataclass(frozen=True)
@@ -51,9 +54,11 @@ def test_an_empty_service_starts_and_prints_a_link_only_until_somebody_has_an_ac
     assert (first.ready, first.fleet["units"]) == (200, 0)
     assert re.search(r"make the first account: http://127\.0\.0\.1:\d+/sign-in/\S{43}", first.printed)
     assert run("user", "add", "k.ito", "--role", "admin", "--data-folder", tmp_path).code == 0
-    again = start(tmp_path)
-    assert (again.ready, again.fleet["status"]) == (200, 401)
-    assert "sign-in/" not in again.printed
+    settings = Settings(data_folder=tmp_path)
+    assert first_link(settings) is None
+    with serving(settings) as address:
+        assert httpx.get(f"{address}/readyz").status_code == 200
+        assert httpx.get(f"{address}/api/v1/fleet").status_code == 401
 
 
 def test_the_container_s_entrypoint_runs_other_commands() -> None:

@@ -20,15 +20,18 @@ from service.records.flagging.acts import Occasion, raise_flag
 from service.records.flagging.lasting import COVERED, flag_lasting
 from service.records.models import accept_lasting, withdraw_model
 from service.records.refresh_group import current, members_of, refresh_group
+from service.settings import Settings
 from service.storage import Storage
 from service.storage.queries import Store
 from service.storage.schema import downgrade, upgrade
 from service.units.store import Units
 from service.uploads.receive import upload
+from tests.conftest import SettingsFilled
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
 from tests.service.made_records import step, way
 from tests.service.made_sessions import session_id
+from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 GROUP = tuple(cubic_session(number, cubic=4 * CUBIC) for number in range(5))
@@ -50,12 +53,22 @@ def refreshed(storage: Storage) -> list[Flag]:
     return flags(storage)
 
 
+def shown(settings: Settings) -> None:
+    """A unit whose four sessions show a cubic term, and its flag."""
+    with stores(settings) as storage:
+        for content in GROUP[:4]:
+            upload(storage, content, "a.json", NOW)
+        refresh_group(storage, group(storage), NOW)
+
+
+@pytest.fixture
+def settings(settings_filled: SettingsFilled) -> Settings:
+    return settings_filled(shown)
+
+
 @pytest.fixture
 def flagged(storage: Storage) -> Storage:
-    """A store of a unit whose four sessions show a cubic term, and its flag."""
-    for content in GROUP[:4]:
-        upload(storage, content, "a.json", NOW)
-    refresh_group(storage, group(storage), NOW)
+    """The stores of that unit."""
     return storage
 
 

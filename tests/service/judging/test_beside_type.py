@@ -12,6 +12,7 @@ from service.storage import Storage
 from service.uploads.correct import correct_session
 from service.uploads.receive import upload
 from tests.builders import Document
+from tests.conftest import Filled
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.made_records import NOW
 from tests.service.made_sessions import session_bytes
@@ -20,14 +21,17 @@ from tests.service.uploads.test_questioned import slipped, times
 TYPE = "BA-6"
 
 
-@pytest.fixture
-def fleet(storage: Storage) -> Storage:
+def fill(storage: Storage) -> None:
     """As many units of one type as say what is usual."""
     for number in range(FEWEST):
         upload(
             storage, session_bytes(unit_type=TYPE, unit=f"OK-{number}", seed=20 + number), "a.json", NOW, outlook=False
         )
-    return storage
+
+
+@pytest.fixture
+def fleet(filled: Filled) -> Storage:
+    return filled(fill)
 
 
 def in_mv(document: Document) -> None:

@@ -1,35 +1,47 @@
 """The fleet report as a workbook and on paper, as it comes over HTTP."""
 
 import io
+from collections.abc import Iterator
 from datetime import UTC, datetime
 
 import httpx
 import polars as pl
 import pytest
 
+from service.app import create_app
 from service.papers.fleet.paper import fleet_pdf
 from service.papers.fleet.report import fleet_report
 from service.papers.fleet.workbook import MOST_HISTORY_ROWS, fleet_xlsx
+from service.settings import Settings
 from service.storage import Storage
 from service.storage.queries import Store
+from tests.conftest import SettingsFilled
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import session_bytes
 from tests.service.pages.test_queries import queries
 from tests.service.papers.documents import pages_of, text_of
+from tests.serving import http_client
+from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 FORMULA = '=HYPERLINK("mailto:x","BA-018")'
 
 
+def three_units(settings: Settings) -> None:
+    """One that failed, one that passed, and one whose names a spreadsheet would work out."""
+    with stores(settings) as storage:
+        for unit, moved in (("BA-017", 200.0), ("BA-020", 0.0)):
+            upload_and_date(storage, session_bytes(unit=unit, seed=1), "a.json", NOW)
+            upload_and_date(storage, session_bytes(unit=unit, seed=2, month=5, a3_moved=moved), "b.json", NOW)
+        upload_and_date(storage, session_bytes(unit=FORMULA, seed=3, unit_type="@SUM(A1)"), "c.json", NOW)
+
+
 @pytest.fixture
-def fleet(storage: Storage, client: httpx.Client) -> httpx.Client:
-    """A unit that failed, one that passed, and one whose names a spreadsheet would work out."""
-    for unit, moved in (("BA-017", 200.0), ("BA-020", 0.0)):
-        upload_and_date(storage, session_bytes(unit=unit, seed=1), "a.json", NOW)
-        upload_and_date(storage, session_bytes(unit=unit, seed=2, month=5, a3_moved=moved), "b.json", NOW)
-    upload_and_date(storage, session_bytes(unit=FORMULA, seed=3, unit_type="@SUM(A1)"), "c.json", NOW)
-    return client
+def fleet(settings_filled: SettingsFilled) -> Iterator[httpx.Client]:
+    """A service with three units."""
+    with http_client(create_app(settings_filled(three_units))) as client:
+        yield client
 
 
 def workbook(client: httpx.Client) -> dict[str, pl.DataFrame]:

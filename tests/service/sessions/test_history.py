@@ -9,6 +9,7 @@ from service.sessions.records import HistoryPoint
 from service.storage import Storage
 from service.uploads.receive import upload
 from tests.builders import ARCSEC
+from tests.conftest import Filled
 from tests.service.made_sessions import session_bytes
 from tests.service.stands.test_stands import measured_on
 
@@ -17,12 +18,15 @@ POINTS = 24
 """Of one session with six sensors."""
 
 
-@pytest.fixture
-def measured(storage: Storage) -> Storage:
+def measure(storage: Storage) -> None:
     """A unit with three sessions, the latest uploaded first."""
     for month in (7, 3, 5):
         upload(storage, session_bytes(seed=month, month=month), "session.json", NOW)
-    return storage
+
+
+@pytest.fixture
+def measured(filled: Filled) -> Storage:
+    return filled(measure)
 
 
 @pytest.mark.parametrize(("most", "months"), [(3 * POINTS, [3, 5, 7]), (3 * POINTS - 1, [5, 7]), (POINTS, [7])])

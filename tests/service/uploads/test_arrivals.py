@@ -11,20 +11,24 @@ from service.storage import Storage
 from service.uploads.receive import upload
 from service.uploads.records import Arrival, ArrivalQuery
 from service.uploads.store import Arrivals
+from tests.conftest import Filled
 from tests.service.made_sessions import session_bytes
 
 NOON = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 
-@pytest.fixture
-def stored(storage: Storage) -> Storage:
+def arrive(storage: Storage) -> None:
     """Two sessions and two refusals at noon, one of each an hour later."""
     for month, hour, name in ((1, 0, "a"), (2, 0, "b"), (3, 1, "c")):
         upload(storage, session_bytes(month=month, seed=month), f"{name}.json", NOON + timedelta(hours=hour))
     for text, hour, name in ((b"1", 0, "d"), (b"2", 0, "e"), (b"3", 1, "f")):
         with suppress(RefusedError):
             upload(storage, text, f"{name}.json", NOON + timedelta(hours=hour))
-    return storage
+
+
+@pytest.fixture
+def stored(filled: Filled) -> Storage:
+    return filled(arrive)
 
 
 def letter(arrival: Arrival) -> str:

@@ -26,31 +26,47 @@ from service.uploads.receive import upload
 from service.work.helper import Helper, KeepGoing
 from service.work.kinds import JOBS, LEASE, MOST_ATTEMPTS, Kind, work_piece
 from service.work.loop import Worker, work_next
+from tests.conftest import Filled, SettingsFilled
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 from tests.service.made_sessions import session_bytes
 from tests.service.work.test_given_up import accepted
+from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 AGAIN = NewJob(JobKind.RECALIBRATION, "K. Ito")
 REPORT = NewJob(JobKind.REPORT, "K. Ito", form="xlsx", language="en")
 
 
-@pytest.fixture
-def three(storage: Storage) -> Storage:
-    """Three units of one session each."""
-    for unit in ("B-1", "B-2", "B-3"):
-        upload(storage, session_bytes(unit=unit), "a.json", NOW)
-    return storage
+def three_units(settings: Settings) -> None:
+    """Of one session each."""
+    with stores(settings) as storage:
+        for unit in ("B-1", "B-2", "B-3"):
+            upload(storage, session_bytes(unit=unit), "a.json", NOW)
 
 
-@pytest.fixture
-def two_sessions(storage: Storage) -> Storage:
-    """A unit with two sessions."""
+def one_unit(storage: Storage) -> None:
+    """With two sessions."""
     for content in GROUP[:2]:
         upload(storage, content, "a.json", NOW)
+
+
+@pytest.fixture
+def settings(settings_filled: SettingsFilled) -> Settings:
+    return settings_filled(three_units)
+
+
+@pytest.fixture
+def three(storage: Storage) -> Storage:
+    """The stores of three units."""
     return storage
+
+
+@pytest.fixture
+def two_sessions(filled: Filled) -> Storage:
+    """The stores of one unit."""
+    return filled(one_unit)
 
 
 def change_model(storage: Storage) -> tuple[ModelRevision, Job]:

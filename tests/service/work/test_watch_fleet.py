@@ -14,6 +14,7 @@ from service.flags.store import FlagQuery, Flags
 from service.kit.metrics import Metrics
 from service.storage import Storage
 from service.work.watch import Pace, look, watch_fleet
+from tests.conftest import Filled
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.patience import LONG
 from tests.service.dated import upload_and_date
@@ -53,11 +54,14 @@ def watched(storage: Storage, metrics: Metrics) -> Iterator[tuple[Thread, Event]
     thread.join(LONG)
 
 
-@pytest.fixture
-def two_units(storage: Storage) -> Storage:
+def fill(storage: Storage) -> None:
     for number in range(2):
         upload_and_date(storage, session_bytes(unit=f"BA-{number}", seed=number), "a.json", LATE)
-    return storage
+
+
+@pytest.fixture
+def two_units(filled: Filled) -> Storage:
+    return filled(fill)
 
 
 def test_a_unit_whose_outlook_is_damaged_does_not_end_the_watch(two_units: Storage) -> None:
