@@ -40,27 +40,27 @@ APART = 10.0
 
 
 @dataclass(frozen=True, eq=False)
-class MeanVariances:
+class MeanErrors:
     """Of the means of n rests of m channels."""
 
     own: Array
-    """(n, m) of what each channel has alone, unit of the readings squared."""
+    """(n, m) standard error of what each channel has alone, unit of the readings."""
     turn: Array
-    """(n,) of the block's mean turn about each axis across gravity, rad²; 0 where it shows none."""
+    """(n,) standard error of the block's mean turn about each axis across gravity, rad; 0 where it shows none."""
 
 
-def mean_variances(waves: Waves, answer: Array | None) -> MeanVariances:
+def errors_of_means(waves: Waves, answer: Array | None) -> MeanErrors:
     """Of rests in which two turns move the readings by ``answer`` (n, m, 2), their unit per rad; None: none does."""
     plain = rest_noise(waves)
     count = 0 if answer is None else turning_waves(waves, plain, answer)
     if answer is None or not count:
-        return MeanVariances(plain.variance, np.zeros(len(waves.samples)))
+        return MeanErrors(np.sqrt(plain.variance), np.zeros(len(waves.samples)))
     own = rest_noise(replace(waves, least=waves.inside), Turning(answer, count))
     turns = np.full((*waves.value.shape[:2], 2), np.nan)
     turns[waves.known] = turns_of(waves.value[waves.known], own.spectrum, answer[waves.known])[0]
     least = np.zeros((len(turns), 2))
     turn = rest_noise(Waves(turns, waves.samples, least, least)).variance
-    return MeanVariances(own.variance, turn.mean(axis=1))
+    return MeanErrors(np.sqrt(own.variance), np.sqrt(turn.mean(axis=1)))
 
 
 def turning_waves(waves: Waves, plain: RestNoise, answer: Array) -> int:

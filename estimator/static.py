@@ -20,7 +20,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.rest_noise import Indices, waves
-from estimator.rest_turns import MeanVariances, mean_variances
+from estimator.rest_turns import MeanErrors, errors_of_means
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
 WINDOW = 1.0
@@ -361,19 +361,19 @@ def contiguous(session: CalibrationSession) -> bool:
     return session.count_time is not None and abs(session.count_time * session.sample_rate - 1.0) < SAME_TIME
 
 
-def mean_errors(readings: Array, intervals: Intervals, answer: Array | None = None) -> MeanVariances:
+def mean_errors(readings: Array, intervals: Intervals, answer: Array | None = None) -> MeanErrors:
     """Of the means of readings (R, m) of sensors of one kind; ``answer`` (n, m, 2) as in `Turns`.
 
     NaN where every interval is a single sample.
     """
     shown = waves(readings, intervals.start, intervals.stop)
     if shown is None:
-        return MeanVariances(np.full((len(intervals), readings.shape[1]), np.nan), np.zeros(len(intervals)))
-    return mean_variances(shown, answer)
+        return MeanErrors(np.full((len(intervals), readings.shape[1]), np.nan), np.zeros(len(intervals)))
+    return errors_of_means(shown, answer)
 
 
 def errors_of_kinds(
-    session: CalibrationSession, found: Callable[[list[int], Array | None], MeanVariances], answer: Array | None
+    session: CalibrationSession, found: Callable[[list[int], Array | None], MeanErrors], answer: Array | None
 ) -> dict[str, Array | None]:
     """Fields of the averaged session: standard errors (n, m), reading units, and turns (n,), rad; those of the channels
     of every kind, identified by their numbers, are ``found`` together."""
@@ -383,8 +383,8 @@ def errors_of_kinds(
         one = found(channels, None if answer is None or kind != ACCELEROMETER else answer[:, channels])
         if not errors.size:
             errors = np.full((len(one.own), len(session.sensors)), np.nan)
-        errors[:, channels] = np.sqrt(one.own)
-        turn = np.sqrt(one.turn) if one.turn.any() else turn
+        errors[:, channels] = one.own
+        turn = one.turn if one.turn.any() else turn
     return {"standard_errors": errors, "turn_error": turn}
 
 
