@@ -62,6 +62,8 @@ class Truth:
     axes: Array
     noise: Array
     """(n, m) error of the mean of each rest by the sensors' own noise, m/s² at the input."""
+    gyro_bias: Array
+    """rad/s."""
 
 
 def turned(walk: Array, bound: float) -> Array:
@@ -126,7 +128,7 @@ def twin(world: World, seed: int) -> tuple[CalibrationSession, Truth]:
     )
     trim = int(0.05 * n)
     means = own.reshape(POSES, n, m)[:, trim : n - trim].mean(axis=1)
-    return session, Truth(scale, bias, axes @ nearest_turn(axes, nominal).T, means)
+    return session, Truth(scale, bias, axes @ nearest_turn(axes, nominal).T, means, gyro_bias)
 
 
 def errors(result: Calibration, truth: Truth) -> Iterator[tuple[str, float, float, float]]:
@@ -183,7 +185,9 @@ def recorded() -> str:
         rows = averaged(log.session)
         fit = calibrate(rows, quadratic=False).fit
         error = np.nanmedian(rows.standard_errors[:, [s.kind == ACCELEROMETER for s in rows.sensors]])
-        body.append([log.name, str(len(rows.readings)), f"{1000 * error:.2f}", f"{fit.chi2 / fit.dof:.3f}", str(fit.dof)])
+        body.append(
+            [log.name, str(len(rows.readings)), f"{1000 * error:.2f}", f"{fit.chi2 / fit.dof:.3f}", str(fit.dof)]
+        )
     return table(["recording", "rests", "stated error, mm/s²", "χ² / degrees of freedom", "degrees of freedom"], body)
 
 

@@ -6,8 +6,8 @@ grid is tried, and the one whose positions calibrate with the least residual per
 Pretto and Menegatti, ICRA 2014, choose it the same way).
 
 The standard error of a mean allows for noise that hangs together: it is taken from the spectrum that all positions
-show, and not from the scatter of samples (`estimator.rest_noise`). Where the calibration says how the readings answer
-to a turn of the block, a slow turn within a rest is no sensor's own error (`estimator.rest_turns`).
+show, and not from the scatter of samples (`estimator.rest_noise`). Where the calibration says how the readings response
+to a tilt of the block, a slow tilt within a rest is no sensor's own error (`estimator.rest_tilt`).
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.rest_noise import Indices, waves
-from estimator.rest_turns import MeanErrors, errors_of_means
+from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
 WINDOW = 1.0
@@ -94,13 +94,13 @@ class Intervals:
         return sums / self.samples.reshape(-1, *[1] * (sums.ndim - 1))
 
 
-Turns = Callable[[CalibrationSession], Array | None]
-"""Of an averaged session: (n, m, 2) change of every reading, in its unit per rad, with two turns of its row across
-gravity, 0 of gyros; None where what turns the block is an error of its rows."""
+TiltResponse = Callable[[CalibrationSession], Array | None]
+"""Of an averaged session: (n, m, 2) change of every reading, in its unit per rad, with the two tilts of its row, 0 of
+gyros; None where a tilt is an error of its row."""
 
 
 def average(
-    session: CalibrationSession, residual: Callable[[CalibrationSession], float], turns: Turns | None = None
+    session: CalibrationSession, residual: Callable[[CalibrationSession], float], tilts: TiltResponse | None = None
 ) -> CalibrationSession:
     """The averaged session of a raw log: one row a position, with standard errors.
 
@@ -109,7 +109,7 @@ def average(
     session : a raw log (`is_raw`).
     residual : residual per degree of freedom of an averaged session, by which the threshold is chosen; infinite
         where the positions do not determine the calibration.
-    turns : how the rows answer to a turn of the block; None: all noise is taken for the sensors' own.
+    tilts : how the rows respond to a tilt of the block; None: all noise is taken for the sensors' own.
 
     Raises
     ------
@@ -125,8 +125,8 @@ def average(
     else:
         intervals = best(session, residual)
     rows = averaged(session, intervals)
-    answer = None if turns is None else turns(rows)
-    return rows if answer is None else replace(rows, **errors_by_kind(session, intervals, answer))
+    response = None if tilts is None else tilts(rows)
+    return rows if response is None else replace(rows, **errors_by_kind(session, intervals, response))
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
@@ -361,37 +361,37 @@ def contiguous(session: CalibrationSession) -> bool:
     return session.count_time is not None and abs(session.count_time * session.sample_rate - 1.0) < SAME_TIME
 
 
-def mean_errors(readings: Array, intervals: Intervals, answer: Array | None = None) -> MeanErrors:
-    """Of the means of readings (R, m) of sensors of one kind; ``answer`` (n, m, 2) as in `Turns`.
+def mean_errors(readings: Array, intervals: Intervals, response: Array | None = None) -> MeanErrors:
+    """Of the means of readings (R, m) of sensors of one kind; ``response`` (n, m, 2) as in `TiltResponse`.
 
     NaN where every interval is a single sample.
     """
     shown = waves(readings, intervals.start, intervals.stop)
     if shown is None:
         return MeanErrors(np.full((len(intervals), readings.shape[1]), np.nan), np.zeros(len(intervals)))
-    return errors_of_means(shown, answer)
+    return errors_of_means(shown, response)
 
 
 def errors_of_kinds(
-    session: CalibrationSession, found: Callable[[list[int], Array | None], MeanErrors], answer: Array | None
+    session: CalibrationSession, found: Callable[[list[int], Array | None], MeanErrors], response: Array | None
 ) -> dict[str, Array | None]:
-    """Fields of the averaged session: standard errors (n, m), reading units, and turns (n,), rad; those of the channels
+    """Fields of the averaged session: standard errors (n, m), reading units, and tilts (n,), rad; those of the channels
     of every kind, identified by their numbers, are ``found`` together."""
-    errors, turn = np.empty((0, 0)), None
+    errors, tilt = np.empty((0, 0)), None
     for kind in sorted({s.kind for s in session.sensors}):
         channels = [i for i, sensor in enumerate(session.sensors) if sensor.kind == kind]
-        one = found(channels, None if answer is None or kind != ACCELEROMETER else answer[:, channels])
+        one = found(channels, None if response is None or kind != ACCELEROMETER else response[:, channels])
         if not errors.size:
             errors = np.full((len(one.own), len(session.sensors)), np.nan)
         errors[:, channels] = one.own
-        turn = one.turn if one.turn.any() else turn
-    return {"standard_errors": errors, "turn_error": turn}
+        tilt = one.tilt if one.tilt.any() else tilt
+    return {"standard_errors": errors, "tilt_error": tilt}
 
 
 def errors_by_kind(
-    session: CalibrationSession, intervals: Intervals, answer: Array | None = None
+    session: CalibrationSession, intervals: Intervals, response: Array | None = None
 ) -> dict[str, Array | None]:
     """`errors_of_kinds` over the intervals."""
     return errors_of_kinds(
-        session, lambda channels, own: mean_errors(session.readings[:, channels], intervals, own), answer
+        session, lambda channels, own: mean_errors(session.readings[:, channels], intervals, own), response
     )

@@ -18,7 +18,7 @@ from estimator.static import (
     THRESHOLDS,
     Intervals,
     Quietness,
-    Turns,
+    TiltResponse,
     block_length,
     moments,
     no_rests_message,
@@ -78,7 +78,7 @@ Mask = NDArray[np.bool_]
 
 
 def average_long(
-    log: LongLog, residual: Callable[[CalibrationSession], float], turns: Turns | None = None
+    log: LongLog, residual: Callable[[CalibrationSession], float], tilts: TiltResponse | None = None
 ) -> CalibrationSession:
     """The averaged session of a raw log in parts: what `estimator.static.average` makes of it in one piece.
 
@@ -89,7 +89,7 @@ def average_long(
     ScheduleError
         The log holds no position, too many, or too few that stand still.
     """
-    session = (_labelled(log) if log.labels is not None else _chosen(log, residual)).session(turns)
+    session = (_labelled(log) if log.labels is not None else _chosen(log, residual)).session(tilts)
     problems = Problems(None)
     kinds = {sensor.kind for sensor in session.sensors}
     check_schedule(session.programme, session, kinds, raw=True, problems=problems)

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from estimator.errors import FormatError, Problem
 from estimator.message import say
 from estimator.rest_noise import block_count, waves_of
-from estimator.rest_turns import MeanErrors, errors_of_means
+from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 from estimator.static import (
     PIECES,
     Intervals,
-    Turns,
+    TiltResponse,
     contiguous,
     errors_of_kinds,
     far_turn,
@@ -129,11 +129,11 @@ class RowTally:
     def _accelerometers(self) -> list[tuple[int, Sensor]]:
         return [(i, sensor) for i, sensor in enumerate(self.head.sensors) if sensor.kind == ACCELEROMETER]
 
-    def session(self, turns: Turns | None = None) -> CalibrationSession:
+    def session(self, tilts: TiltResponse | None = None) -> CalibrationSession:
         """One row a rest, as `estimator.static.average` makes of its intervals."""
         rows = self._averaged_rows()
-        answer = None if turns is None else turns(rows)
-        return rows if answer is None else replace(rows, **self._errors(answer))
+        response = None if tilts is None else tilts(rows)
+        return rows if response is None else replace(rows, **self._errors(response))
 
     @property
     def _spread(self) -> Array:
@@ -166,10 +166,10 @@ class RowTally:
             **self._errors(),
         )
 
-    def _errors(self, answer: Array | None = None) -> dict[str, Array | None]:
-        return errors_of_kinds(self.head, self._errors_of_kind, answer)
+    def _errors(self, response: Array | None = None) -> dict[str, Array | None]:
+        return errors_of_kinds(self.head, self._errors_of_kind, response)
 
-    def _errors_of_kind(self, channels: list[int], answer: Array | None) -> MeanErrors:
+    def _errors_of_kind(self, channels: list[int], response: Array | None) -> MeanErrors:
         """Of the means of some channels, as `estimator.static.mean_errors`."""
         samples = self.rests.samples
         if samples.max() < 2:
@@ -179,7 +179,7 @@ class RowTally:
         means = np.diff(self._between()[:, : self.blocks + 1, channels], axis=1) / length[:, None, None]
         variance = self._spread[:, channels] / np.maximum(samples - 1, 1)[:, None]
         means[single], variance[single] = np.nan, np.nan
-        return errors_of_means(waves_of(means, variance, samples), answer)
+        return errors_of_means(waves_of(means, variance, samples), response)
 
 
 def edges(rests: Intervals, blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

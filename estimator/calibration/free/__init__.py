@@ -30,7 +30,15 @@ from estimator.parameters import names
 from estimator.results import NOMINAL_AXES, Calibration
 from estimator.session import ACCELEROMETER, ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 
-__all__ = ["accelerometer_rows", "calibrate_free", "check", "gyro_biases", "residual_per_freedom", "rest_turns", "solve"]
+__all__ = [
+    "accelerometer_rows",
+    "calibrate_free",
+    "check",
+    "gyro_biases",
+    "residual_per_freedom",
+    "solve",
+    "tilt_response",
+]
 
 UNSTATED_NOISE = 1e-4
 """g; noise to begin with where none is stated. Estimated from the residuals afterwards, so only its order counts."""
@@ -90,8 +98,8 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     return float(np.sqrt(squares.sum() / solution.dof) * (1 + 1 / np.sqrt(2 * solution.dof)))
 
 
-def rest_turns(session: CalibrationSession) -> Array | None:
-    """(R, m, 2) change of every reading, its unit per rad, with the two turns of its row across gravity, 0 of gyros.
+def tilt_response(session: CalibrationSession) -> Array | None:
+    """(R, m, 2) change of every reading, its unit per rad, with the two tilts of its row, 0 of gyros.
 
     None of other programmes, where the direction of a row is no unknown of its own, and where nothing can be estimated.
     """
@@ -106,9 +114,9 @@ def rest_turns(session: CalibrationSession) -> Array | None:
     g = gravity(session.site)
     rows, stated = accelerometer_rows(session, live, g)
     scale = np.array([s.nominal_scale for s in session.sensors])
-    answer = np.zeros((*session.readings.shape, 2))
-    answer[:, live] = jacobian(solve(rows, stated, quadratic=False).unknowns)[1] * g * scale[live, None]
-    return answer
+    response = np.zeros((*session.readings.shape, 2))
+    response[:, live] = jacobian(solve(rows, stated, quadratic=False).unknowns)[1] * g * scale[live, None]
+    return response
 
 
 def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> tuple[ModelRows, bool]:
@@ -142,7 +150,8 @@ def stated_directions(session: CalibrationSession) -> tuple[Array, Array]:
     directions = np.where(stated[:, None], session.directions, 0.0)
     if np.linalg.svd(directions, compute_uv=False)[1] < 0.1:
         return np.zeros((R, 3)), np.zeros(R)
-    return directions, stated / session.direction_sigma**2
+    tilt = 0.0 if session.tilt_error is None else session.tilt_error
+    return directions, stated / (session.direction_sigma**2 + tilt**2)
 
 
 def gyro_biases(session: CalibrationSession, chosen: Mask) -> GyroBiases:
