@@ -36,7 +36,7 @@ PARAMETERS = ("scale", "bias", "axis", "gyro bias")
 """Whose errors the table shows."""
 NORMAL = 1.959964
 """Of 95 %."""
-LOGS = 40
+LOGS = 24
 
 
 @dataclass(frozen=True)
@@ -189,8 +189,8 @@ stated standard errors over that of the true errors, of the means of the rests a
 *Tilt as noise*: every sensor's mean takes what the block does for noise of its own. The intervals are those of the
 accelerometers' scales, biases and axes; ± is their 95 % interval by the scatter of the logs.
 """
-RECORDED = """Five MPU-9150 turned by hand: median standard error of an accelerometer's mean, χ² per degree of freedom of
-the calibration, and the median standard error of a rest's mean tilt."""
+RECORDED = """Five MPU-9150 turned by hand: median standard error of an accelerometer's mean, χ² per degree of freedom
+of the calibration, and the median standard error of a rest's mean tilt."""
 HEAD = ("block, tilt", "mean, tilt as noise", "mean", *PARAMETERS, "95 % intervals that hold the truth, %")
 
 
