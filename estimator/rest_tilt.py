@@ -38,6 +38,12 @@ that is missed makes them a third too large."""
 APART = 10.0
 """Degrees of freedom that the own noise of every sensor must keep: its sigma is then known to a fifth."""
 
+FLATTEST = 1e-6
+"""Ratio of the responses to the two tilts below which the sensors show but one of them."""
+
+TINY = float(np.finfo(float).tiny)
+"""Keeps readings that never change from a division by nothing."""
+
 
 @dataclass(frozen=True, eq=False)
 class MeanErrors:
@@ -75,7 +81,7 @@ def tilting_waves(waves: Waves, plain: RestNoise, response: Array) -> int:
     for first in 2 ** np.arange(np.log2(z.shape[1] + 1)).astype(int):
         octave = np.s_[:, first - 1 : 2 * first - 1]
         freedom = 2 * along[octave].size
-        ratio = (m - 2) / 2 * along[octave].sum() / across[octave].sum()
+        ratio = (m - 2) / 2 * along[octave].sum() / max(across[octave].sum(), TINY)
         if special.fdtrc(freedom, freedom * (m - 2) / 2, ratio) < CHANCE:
             tilting = min(2 * first - 1, z.shape[1])
     return tilting
@@ -84,8 +90,8 @@ def tilting_waves(waves: Waves, plain: RestNoise, response: Array) -> int:
 def told_apart(response: Array, count: int) -> bool:
     """Whether ``count`` waves a rest tell the sensors' own noises apart, beside a tilt that moves the readings by
     ``response`` (n, m, 2), their standard deviations per rad."""
-    m = response.shape[1]
-    if m < 3 or not np.isfinite(response).all():
+    m, spread = response.shape[1], np.linalg.svd(response, compute_uv=False)
+    if m < 3 or (spread[:, 1] <= FLATTEST * spread[:, 0]).any():
         return False
     complement = np.eye(m) - response @ np.linalg.pinv(response)
     overlap = (complement**2).sum(axis=0)

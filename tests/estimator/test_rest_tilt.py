@@ -127,3 +127,11 @@ def test_on_a_stand_the_tilt_is_noise_of_every_reading():
     stated = replace(session, tilt_error=np.full(len(session.readings), 1e-3))
     before, after = (calibrate(s).sensors[0] for s in (session, stated))
     assert after.bias.sigma > 3 * before.bias.sigma
+
+
+def test_readings_that_never_change_have_no_error_and_no_tilt():
+    still, up = np.zeros((12, BLOCKS - 1, 4)), unit(np.random.default_rng(0).standard_normal((12, 3)))
+    response = np.random.default_rng(1).standard_normal((4, 3)) @ tangents(up)
+    found = errors_of_means(Waves(still, np.full(12, 160), np.zeros((12, 4)), np.zeros((12, 4))), response)
+    assert not found.own.any()
+    assert not found.tilt.any()
