@@ -196,14 +196,17 @@ HEAD = ("block, tilt", "mean, tilt as noise", "mean", *PARAMETERS, "95 % interva
 
 def recorded() -> str:
     """Residuals against stated errors of the five MPU-9150: tilt counted as noise, and as it is."""
-    body = []
+    body, together = [], np.zeros((2, 2))
     for log in logs("mpu9150-five")[:5]:
         cells = []
-        for rows in (average(log.session, residual_per_freedom), averaged(log.session)):
+        for k, rows in enumerate((average(log.session, residual_per_freedom), averaged(log.session))):
             fit = calibrate(rows, quadratic=False).fit
+            together[k] += fit.chi2, fit.dof
             cells += [f"{1000 * np.median(rows.standard_errors[:, :3]):.2f}", f"{fit.chi2 / fit.dof:.3f}"]
         tilt = np.zeros(1) if rows.tilt_error is None else rows.tilt_error
         body.append([log.name, *cells, f"{np.degrees(np.median(tilt)):.2f}"])
+    before, after = together[:, 0] / together[:, 1]
+    body.append(["all five", "", f"{before:.3f}", "", f"{after:.3f}", ""])
     head = ["recording", "error, tilt as noise", "χ² / freedom", "error, mm/s²", "χ² / freedom", "tilt, °"]
     return table(head, body)
 

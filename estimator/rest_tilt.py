@@ -51,8 +51,8 @@ class MeanErrors:
 
     own: Array
     """(n, m) standard error of what each channel has alone, unit of the readings."""
-    tilt: Array
-    """(n,) standard error of each component of the block's mean tilt, rad; 0 where it shows none."""
+    tilt: Array | None = None
+    """(n,) standard error of each component of the block's mean tilt, rad; None where it shows none."""
 
 
 def errors_of_means(waves: Waves, response: Array | None) -> MeanErrors:
@@ -60,7 +60,7 @@ def errors_of_means(waves: Waves, response: Array | None) -> MeanErrors:
     plain = rest_noise(waves)
     count = 0 if response is None else tilting_waves(waves, plain, response)
     if response is None or not count:
-        return MeanErrors(np.sqrt(plain.variance), np.zeros(len(waves.samples)))
+        return MeanErrors(np.sqrt(plain.variance))
     own = rest_noise(replace(waves, least=waves.inside), Tilting(response, count))
     tilts = np.full((*waves.value.shape[:2], 2), np.nan)
     tilts[waves.known] = tilts_of(waves.value[waves.known], own.spectrum, response[waves.known])[0]

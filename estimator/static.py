@@ -126,7 +126,10 @@ def average(
         intervals = best(session, residual)
     rows = averaged(session, intervals)
     response = None if tilts is None else tilts(rows)
-    return rows if response is None else replace(rows, **errors_by_kind(session, intervals, response))
+    if response is None:
+        return rows
+    errors = errors_by_kind(session, intervals, response)
+    return replace(rows, standard_errors=errors.own, tilt_error=errors.tilt)
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
@@ -329,6 +332,7 @@ def averaged(session: CalibrationSession, intervals: Intervals) -> CalibrationSe
     return replace(
         session,
         readings=intervals.means(session.readings),
+        standard_errors=errors_by_kind(session, intervals).own,
         at_ends=intervals.means(ends(session.readings)),
         vibration=variances(session, intervals),
         time=middle if session.time is None else intervals.means(session.time),
@@ -339,7 +343,6 @@ def averaged(session: CalibrationSession, intervals: Intervals) -> CalibrationSe
         position=None if session.position is None else session.position[start],
         sample_rate=None,
         counts_averaged=intervals.samples.astype(float) if contiguous(session) else None,
-        **errors_by_kind(session, intervals),
     )
 
 
@@ -368,30 +371,27 @@ def mean_errors(readings: Array, intervals: Intervals, response: Array | None = 
     """
     shown = waves(readings, intervals.start, intervals.stop)
     if shown is None:
-        return MeanErrors(np.full((len(intervals), readings.shape[1]), np.nan), np.zeros(len(intervals)))
+        return MeanErrors(np.full((len(intervals), readings.shape[1]), np.nan))
     return errors_of_means(shown, response)
 
 
 def errors_of_kinds(
     session: CalibrationSession, found: Callable[[list[int], Array | None], MeanErrors], response: Array | None
-) -> dict[str, Array | None]:
-    """Fields of the averaged session: standard errors (n, m), reading units, and tilts (n,), rad; those of the channels
-    of every kind, identified by their numbers, are ``found`` together."""
-    errors, tilt = np.empty((0, 0)), None
-    for kind in sorted({s.kind for s in session.sensors}):
-        channels = [i for i, sensor in enumerate(session.sensors) if sensor.kind == kind]
-        one = found(channels, None if response is None or kind != ACCELEROMETER else response[:, channels])
-        if not errors.size:
-            errors = np.full((len(one.own), len(session.sensors)), np.nan)
-        errors[:, channels] = one.own
-        tilt = one.tilt if one.tilt.any() else tilt
-    return {"standard_errors": errors, "tilt_error": tilt}
+) -> MeanErrors:
+    """Of the means of all channels: those of the channels of every kind, by their numbers, are ``found`` together."""
+    kinds = [s.kind for s in session.sensors]
+    alike = {kind: [i for i, other in enumerate(kinds) if other == kind] for kind in sorted(set(kinds))}
+    parts = [
+        found(channels, None if response is None or kind != ACCELEROMETER else response[:, channels])
+        for kind, channels in alike.items()
+    ]
+    own = np.concatenate([part.own for part in parts], axis=1)
+    tilt = next((part.tilt for part in parts if part.tilt is not None), None)
+    return MeanErrors(own[:, np.argsort([i for channels in alike.values() for i in channels])], tilt)
 
 
-def errors_by_kind(
-    session: CalibrationSession, intervals: Intervals, response: Array | None = None
-) -> dict[str, Array | None]:
-    """`errors_of_kinds` over the intervals."""
+def errors_by_kind(session: CalibrationSession, intervals: Intervals, response: Array | None = None) -> MeanErrors:
+    """`errors_of_kinds` over the intervals, reading units."""
     return errors_of_kinds(
         session, lambda channels, own: mean_errors(session.readings[:, channels], intervals, own), response
     )

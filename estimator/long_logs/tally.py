@@ -133,7 +133,10 @@ class RowTally:
         """One row a rest, as `estimator.static.average` makes of its intervals."""
         rows = self._averaged_rows()
         response = None if tilts is None else tilts(rows)
-        return rows if response is None else replace(rows, **self._errors(response))
+        if response is None:
+            return rows
+        errors = self._errors(response)
+        return replace(rows, standard_errors=errors.own, tilt_error=errors.tilt)
 
     @property
     def _spread(self) -> Array:
@@ -151,6 +154,7 @@ class RowTally:
         return replace(
             head,
             readings=means[:, :m],
+            standard_errors=self._errors().own,
             at_ends=self._ends / samples[:, None, None],
             vibration=self._spread / samples[:, None] / scale**2,
             time=averages.get("time", middle),
@@ -163,17 +167,16 @@ class RowTally:
             turn_rate=None,
             sample_rate=None,
             counts_averaged=samples.astype(float) if contiguous(head) else None,
-            **self._errors(),
         )
 
-    def _errors(self, response: Array | None = None) -> dict[str, Array | None]:
+    def _errors(self, response: Array | None = None) -> MeanErrors:
         return errors_of_kinds(self.head, self._errors_of_kind, response)
 
     def _errors_of_kind(self, channels: list[int], response: Array | None) -> MeanErrors:
         """Of the means of some channels, as `estimator.static.mean_errors`."""
         samples = self.rests.samples
         if samples.max() < 2:
-            return MeanErrors(np.full((len(samples), len(channels)), np.nan), np.zeros(len(samples)))
+            return MeanErrors(np.full((len(samples), len(channels)), np.nan))
         single = samples < 2
         length = np.maximum(samples // self.blocks, 1)
         means = np.diff(self._between()[:, : self.blocks + 1, channels], axis=1) / length[:, None, None]

@@ -82,7 +82,7 @@ def test_three_sensors_that_always_lie_alike_cannot_be_told_apart():
     least = np.zeros((POSES, 3))
     waves = Waves(z, np.full(POSES, STILL), least, least)
     found = errors_of_means(waves, response)
-    assert not found.tilt.any()
+    assert found.tilt is None
     np.testing.assert_array_equal(found.own, np.sqrt(rest_noise(waves, STEADY).variance))
 
 
@@ -134,4 +134,4 @@ def test_readings_that_never_change_have_no_error_and_no_tilt():
     response = np.random.default_rng(1).standard_normal((4, 3)) @ tangents(up)
     found = errors_of_means(Waves(still, np.full(12, 160), np.zeros((12, 4)), np.zeros((12, 4))), response)
     assert not found.own.any()
-    assert not found.tilt.any()
+    assert found.tilt is None
