@@ -21,7 +21,7 @@ from benchmarks.recordings.sets import FILES, FOLDER, folder, logs, recordings
 from benchmarks.recordings.tables import literature, ours, start_of
 from benchmarks.recordings.triad import Triad, triad_of
 from estimator.calibration import calibrate
-from estimator.calibration.free import residual_per_freedom
+from estimator.calibration.free import residual_per_freedom, tilt_response
 from estimator.results import Calibration
 from estimator.session import Array, CalibrationSession
 from estimator.static import average
@@ -56,7 +56,7 @@ def against_imucal() -> Iterator[Figure]:
     times = side_by_side(partial(by_ours, log.session), partial(by_imucal, table), ROUNDS)
     yield Figure("rivals, imucal, time", work, "imucal", *times, "—")
     first, second = halves(np.asarray(log.session.position))
-    held = average(rows(log.session, second), residual_per_freedom)
+    held = average(rows(log.session, second), residual_per_freedom, tilt_response)
     found = triad_of(by_ours(rows(log.session, first)), log.triads[0]), by_imucal(first_halves(table))
     residuals = [1e3 * rms(misses([one], held.readings, log.g)) for one in found]
     work = "residual of the second halves of six rests, calibrated by the first"
@@ -84,7 +84,7 @@ def by_imucal(table: pd.DataFrame) -> Triad:
 
 def by_ours(log: CalibrationSession) -> Calibration:
     """Ours, from samples."""
-    return calibrate(average(log, residual_per_freedom), quadratic=False)
+    return calibrate(average(log, residual_per_freedom, tilt_response), quadratic=False)
 
 
 def rows(session: CalibrationSession, chosen: Array) -> CalibrationSession:

@@ -46,16 +46,27 @@ PASSES = 3
 """Times that the restless are looked for: one hides another only once or twice."""
 
 
+MOST = 256
+"""Rests that the sizes are fitted to, evenly chosen where there are more: sizes of a sensor are then known to 3 %."""
+
+
 @dataclass(frozen=True, eq=False)
-class Energies:
+class Waves:
     """What n rests of m channels show. B blocks a rest."""
 
     value: Array
-    """(n, B − 1, m) I, unit of the readings squared."""
+    """(n, B − 1, m) cosine transform z of the block means, unit of the readings; I = z²."""
     samples: Array
     """(n,) samples of each rest, without unit."""
     least: Array
     """(n, m) variance of the mean if the samples were independent, unit of the readings squared."""
+    inside: Array
+    """(n, m) the same, by the scatter within the blocks: of what is faster than they are."""
+
+    @property
+    def known(self) -> Array:
+        """(n,) bool: rests of more than a single sample."""
+        return np.asarray(np.isfinite(self.value).all(axis=(1, 2)))
 
 
 def block_count(samples: Indices) -> int | None:
@@ -63,7 +74,7 @@ def block_count(samples: Indices) -> int | None:
     return None if samples.max() < 2 else int(np.clip(samples[samples > 1].min(), 2, BLOCKS))
 
 
-def energies(readings: Array, start: Indices, stop: Indices) -> Energies | None:
+def waves(readings: Array, start: Indices, stop: Indices) -> Waves | None:
     """Of readings (R, m), any unit, in rests from ``start`` to ``stop`` (n,), without unit; None where all are too
     short to have a scatter."""
     samples = stop - start
@@ -77,15 +88,17 @@ def energies(readings: Array, start: Indices, stop: Indices) -> Energies | None:
         length = samples[i] // count
         means[i] = rest[: length * count].reshape(count, length, -1).mean(axis=1)
         variance[i] = rest.var(axis=0, ddof=1)
-    return energies_of(means, variance, samples)
+    return waves_of(means, variance, samples)
 
 
-def energies_of(means: Array, variance: Array, samples: Indices) -> Energies:
+def waves_of(means: Array, variance: Array, samples: Indices) -> Waves:
     """Of block means (n, B, m), variances (n, m) of one sample, units of the readings (squared), and ``samples`` (n,).
 
     NaN where a rest is a single sample.
     """
-    return Energies(dct(means, norm="ortho", axis=1)[:, 1:] ** 2, samples, variance / samples[:, None])
+    z, n, count = dct(means, norm="ortho", axis=1)[:, 1:], samples[:, None], means.shape[1]
+    within = (n - 1) * variance - (n // count) * (z**2).sum(axis=1)
+    return Waves(z, samples, variance / n, np.maximum(within, 0.0) / (np.maximum(n - count, 1) * n))
 
 
 def mixture(samples: Array, count: int) -> tuple[Array, Array]:
@@ -109,22 +122,74 @@ def mixture(samples: Array, count: int) -> tuple[Array, Array]:
     return np.concatenate([white, correlated], axis=-1), np.concatenate([1 / samples[:, None], mean], axis=-1)
 
 
-def fitted(energy: Array, spectra: Array) -> Array:
-    """(J, m) the a_j of greatest likelihood of energies (n, B − 1, m) under spectra (n, B − 1, J), units squared."""
+@dataclass(frozen=True, eq=False)
+class Tilting:
+    """How the block may tilt within its rests (`estimator.rest_tilt`)."""
+
+    response: Array
+    """(n, m, 2) L, change of the readings with the two components of the tilt, unit of the readings per rad."""
+    count: int
+    """Waves k = 1 … that a tilt may explain; the others are the sensors' own."""
+
+    def at(self, chosen: Array) -> "Tilting":
+        """Of the ``chosen`` rests, as they index (n,)."""
+        return self if not self.count else Tilting(self.response[chosen], self.count)
+
+
+STEADY = Tilting(np.zeros((0, 0, 2)), 0)
+"""A block that does not tilt."""
+
+
+@dataclass(frozen=True, eq=False)
+class WeighedWaves:
+    """Waves (n, B − 1, m) weighed by their spectrum, what a tilt may explain left out."""
+
+    pull: Array
+    """(n, B − 1, m) P·z, per unit of the readings."""
+    left: Array
+    """(n, B − 1, m) diagonal of P, per unit of the readings squared."""
+    log: float
+    """ln det of the covariance of what is left, but for a constant."""
+
+
+def tilts_of(z: Array, S: Array, response: Array) -> tuple[Array, Array, Array]:
+    """Tilts (n, k, 2) that fit waves z (n, k, m) of spectrum S best, rad; how they lean on z (n, k, m, 2), and their
+    information (n, k, 2, 2), rad⁻²."""
+    weighted = response[:, None] / S[..., None]
+    information = np.swapaxes(weighted, -1, -2) @ response[:, None]
+    lean = weighted @ np.linalg.inv(information)
+    return (z[..., None, :] @ lean)[..., 0, :], lean, information
+
+
+def weighed(z: Array, S: Array, tilting: Tilting) -> WeighedWaves:
+    """Of waves z (n, B − 1, m), any unit, of spectrum S, its square."""
+    S = np.where(S > 0, S, 1.0)  # readings that never change
+    pull, left, log = z / S, 1 / S, float(np.log(S).sum())
+    if tilting.count:
+        low = np.s_[:, : tilting.count]
+        tilts, lean, information = tilts_of(z[low], S[low], tilting.response)
+        explained = (tilting.response[:, None] @ tilts[..., None])[..., 0]
+        pull[low] -= explained / S[low]
+        left[low] -= (lean * tilting.response[:, None]).sum(axis=-1) / S[low]
+        log += float(np.linalg.slogdet(information)[1].sum())
+    return WeighedWaves(pull, left, log)
+
+
+def fitted(z: Array, spectra: Array, tilting: Tilting) -> Array:
+    """(J, m) the a_j of greatest likelihood of waves z (n, B − 1, m) under spectra (n, B − 1, J), units squared."""
     share = spectra.mean(axis=(0, 1))
-    a = energy.mean(axis=(0, 1)) / (share[:, None] * len(share))
-    for _ in range(ROUNDS if len(share) > 1 else 1):
-        S = spectra @ a
-        S = np.where(S > 0, S, 1.0)  # readings that never change
-        up = np.tensordot(spectra, energy / S**2, axes=([0, 1], [0, 1]))
-        a = a * np.sqrt(up / np.tensordot(spectra, 1 / S, axes=([0, 1], [0, 1])))
+    a = (z**2).mean(axis=(0, 1)) / (share[:, None] * len(share))
+    for _ in range(ROUNDS if len(share) > 1 or tilting.count else 1):
+        w = weighed(z, spectra @ a, tilting)
+        up = np.tensordot(spectra, w.pull**2, axes=([0, 1], [0, 1]))
+        a = a * np.sqrt(up / np.tensordot(spectra, w.left, axes=([0, 1], [0, 1])))
     return a
 
 
-def log_likelihood(energy: Array, S: Array) -> float:
-    """Of energies (n, B − 1, m) under a spectrum of the same shape, units squared; all channels together."""
-    S = np.where(S > 0, S, 1.0)
-    return float(-0.5 * (np.log(S) + energy / S).sum())
+def log_likelihood(z: Array, S: Array, tilting: Tilting) -> float:
+    """Of waves z (n, B − 1, m) under a spectrum of the same shape, units squared; all channels together."""
+    w = weighed(z, S, tilting)
+    return -0.5 * (w.log + float((z * w.pull).sum()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,30 +206,45 @@ class Noises:
         return np.tensordot(shapes, np.tensordot(self.weight, self.amplitude, axes=1), axes=1)
 
 
-def noises(energy: Array, spectra: Array) -> Noises:
-    """The models under which energies (n, B − 1, m) are likely; spectra (n, B − 1, J) of one noise each."""
-    K, m = spectra.shape[-1], energy.shape[-1]
+def noises(z: Array, spectra: Array, tilting: Tilting) -> Noises:
+    """The models under which waves z (n, B − 1, m) are likely; spectra (n, B − 1, J) of one noise each."""
+    K, m = spectra.shape[-1], z.shape[-1]
     amplitude, score = np.zeros((K, K, m)), np.zeros(K)
     for k in range(K):
         used = [0, k] if k else [0]
-        amplitude[k, used] = fitted(energy, spectra[..., used])
-        prior = 0.5 * m * np.log(energy[..., 0].size) + np.log(K - 1) if k else 0.0
-        score[k] = log_likelihood(energy, spectra @ amplitude[k]) - prior
+        amplitude[k, used] = fitted(z, spectra[..., used], tilting)
+        prior = 0.5 * m * np.log(z[..., 0].size) + np.log(K - 1) if k else 0.0
+        score[k] = log_likelihood(z, spectra @ amplitude[k], tilting) - prior
     weight = np.exp(score - score.max())
     return Noises(amplitude, weight / weight.sum())
 
 
-def mean_variance(energies: Energies) -> Array:
-    """(n, m) variance of the mean of each rest, unit of the readings squared; a restless one has its own scale."""
-    known = np.asarray(np.isfinite(energies.value).all(axis=(1, 2)))
-    spectra, means = mixture(energies.samples.astype(float), energies.value.shape[1] + 1)
-    unrest, variance = np.ones(len(known)), np.zeros_like(energies.least)
+@dataclass(frozen=True, eq=False)
+class RestNoise:
+    """What the waves of n rests say of their m channels."""
+
+    variance: Array
+    """(n, m) of the mean of each rest, unit of the readings squared."""
+    spectrum: Array
+    """(k, B − 1, m) of the k rests of more than a single sample, the same unit; 1 of readings that never change."""
+
+
+def rest_noise(waves: Waves, tilting: Tilting = STEADY) -> RestNoise:
+    """Spectrum and variance of the means; a restless rest has its own scale."""
+    known, z = waves.known, waves.value
+    spectra, means = mixture(waves.samples.astype(float), z.shape[1] + 1)
+    unrest, variance = np.ones(len(known)), np.zeros_like(waves.least)
+    freedom = z[0].size - 2 * tilting.count
     for _ in range(PASSES):
         calm = known & (unrest < RESTLESS)
-        likely = noises(energies.value[calm], spectra[calm])
+        some = np.flatnonzero(calm)[:: -(-np.count_nonzero(calm) // MOST)]
+        likely = noises(z[some], spectra[some], tilting.at(some))
         variance, S = likely.over(means), likely.over(spectra[known])
-        unrest[known] = (energies.value[known] / np.where(S > 0, S, 1.0)).mean(axis=(1, 2))
+        w = weighed(z[known], S, tilting.at(known))
+        unrest[known] = (z[known] * w.pull).sum(axis=(1, 2)) / freedom
         if np.array_equal(calm, known & (unrest < RESTLESS)) or not (known & (unrest < RESTLESS)).any():
             break
-    scale = np.where(unrest < RESTLESS, 1.0, unrest)[:, None]
-    return np.maximum(variance * scale, np.where(known[:, None], energies.least, 0.0))
+    scale = np.where(unrest < RESTLESS, 1.0, unrest)
+    least = np.where(known[:, None], waves.least, 0.0)
+    S = np.where(S > 0, S, 1.0) * scale[known, None, None]
+    return RestNoise(np.maximum(variance * scale[:, None], least), S)

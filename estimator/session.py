@@ -136,6 +136,9 @@ class CalibrationSession:
     """(R,) °C."""
     vibration: Array | None = None
     """(R, m) variance of the input within the row, (m/s²)² or (rad/s)²."""
+    tilt_error: Array | None = None
+    """(R,) rad, standard error of the block's mean tilt, each of the two components across gravity; all sensors share
+    it, and ``standard_errors`` are without it. None where none is stated."""
     turn_angle: Array | None = None
     """(R,) rad, of a turntable about the block's Z axis at the end of the row, right-handed."""
     turn_rate: Array | None = None

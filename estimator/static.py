@@ -6,7 +6,8 @@ grid is tried, and the one whose positions calibrate with the least residual per
 Pretto and Menegatti, ICRA 2014, choose it the same way).
 
 The standard error of a mean allows for noise that hangs together: it is taken from the spectrum that all positions
-show, and not from the scatter of samples (`estimator.rest_noise`).
+show, and not from the scatter of samples (`estimator.rest_noise`). Where the calibration says how the readings response
+to a tilt of the block, a slow tilt within a rest is no sensor's own error (`estimator.rest_tilt`).
 """
 
 from collections.abc import Callable
@@ -18,7 +19,8 @@ from numpy.typing import NDArray
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
-from estimator.rest_noise import Indices, energies, mean_variance
+from estimator.rest_noise import Indices, waves
+from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
 WINDOW = 1.0
@@ -92,7 +94,14 @@ class Intervals:
         return sums / self.samples.reshape(-1, *[1] * (sums.ndim - 1))
 
 
-def average(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
+TiltResponse = Callable[[CalibrationSession], Array | None]
+"""Of an averaged session: (n, m, 2) change of every reading, in its unit per rad, with the two tilts of its row, 0 of
+gyros; None where a tilt is an error of its row."""
+
+
+def average(
+    session: CalibrationSession, residual: Callable[[CalibrationSession], float], tilts: TiltResponse | None = None
+) -> CalibrationSession:
     """The averaged session of a raw log: one row a position, with standard errors.
 
     Parameters
@@ -100,6 +109,7 @@ def average(session: CalibrationSession, residual: Callable[[CalibrationSession]
     session : a raw log (`is_raw`).
     residual : residual per degree of freedom of an averaged session, by which the threshold is chosen; infinite
         where the positions do not determine the calibration.
+    tilts : how the rows respond to a tilt of the block; None: all noise is taken for the sensors' own.
 
     Raises
     ------
@@ -107,12 +117,19 @@ def average(session: CalibrationSession, residual: Callable[[CalibrationSession]
         The log holds no position, or too few that stand still.
     """
     if session.position is not None:
-        return averaged(session, at_rest(session, labelled(session.position)))
-    if session.beta is not None and session.flipped is not None:
+        intervals = at_rest(session, labelled(session.position))
+    elif session.beta is not None and session.flipped is not None:
         setting = np.column_stack([session.beta, session.flipped])
         changed = np.any(np.diff(setting, axis=0) != 0, axis=1)
-        return averaged(session, at_rest(session, labelled(np.concatenate([[0], np.cumsum(changed)]))))
-    return average_best(session, residual)
+        intervals = at_rest(session, labelled(np.concatenate([[0], np.cumsum(changed)])))
+    else:
+        intervals = best(session, residual)
+    rows = averaged(session, intervals)
+    response = None if tilts is None else tilts(rows)
+    if response is None:
+        return rows
+    errors = errors_by_kind(session, intervals, response)
+    return replace(rows, standard_errors=errors.own, tilt_error=errors.tilt)
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
@@ -274,18 +291,17 @@ def still(quiet: Quietness, threshold: float, rate: float) -> Intervals:
     return Intervals(start[enough], stop[enough])
 
 
-def average_best(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
-    """The averaged session under the threshold that calibrates best; ScheduleError where none finds enough rests."""
+def best(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> Intervals:
+    """The rests under the threshold that calibrates best; ScheduleError where none finds enough of them."""
     assert session.sample_rate is not None
     quiet = quietness(session.readings[:, watched_for_rest(session)], session.sample_rate)
-    tried: dict[tuple[int, ...], tuple[float, CalibrationSession]] = {}
+    tried: dict[tuple[int, ...], tuple[float, Intervals]] = {}
     for threshold in THRESHOLDS:
         intervals = still(quiet, threshold, session.sample_rate)
         intervals = intervals.at(~moving(session, intervals))
         key = (*intervals.start.tolist(), *intervals.stop.tolist())
         if len(intervals) >= FEWEST and key not in tried:
-            candidate = averaged(session, intervals)
-            tried[key] = (residual(candidate), candidate)
+            tried[key] = (residual(averaged(session, intervals)), intervals)
     if not tried:
         raise ScheduleError([Problem("table", no_rests_message(len(session.readings)))])
     return min(tried.values(), key=lambda pair: pair[0])[1]
@@ -316,7 +332,7 @@ def averaged(session: CalibrationSession, intervals: Intervals) -> CalibrationSe
     return replace(
         session,
         readings=intervals.means(session.readings),
-        standard_errors=errors_by_kind(session, intervals),
+        standard_errors=errors_by_kind(session, intervals).own,
         at_ends=intervals.means(ends(session.readings)),
         vibration=variances(session, intervals),
         time=middle if session.time is None else intervals.means(session.time),
@@ -348,24 +364,34 @@ def contiguous(session: CalibrationSession) -> bool:
     return session.count_time is not None and abs(session.count_time * session.sample_rate - 1.0) < SAME_TIME
 
 
-def mean_errors(readings: Array, intervals: Intervals) -> Array:
-    """(n, m) standard errors of the means of readings (R, m) of sensors of one kind, in their unit.
+def mean_errors(readings: Array, intervals: Intervals, response: Array | None = None) -> MeanErrors:
+    """Of the means of readings (R, m) of sensors of one kind; ``response`` (n, m, 2) as in `TiltResponse`.
 
     NaN where every interval is a single sample.
     """
-    shown = energies(readings, intervals.start, intervals.stop)
-    return np.full((len(intervals), readings.shape[1]), np.nan) if shown is None else np.sqrt(mean_variance(shown))
+    shown = waves(readings, intervals.start, intervals.stop)
+    if shown is None:
+        return MeanErrors(np.full((len(intervals), readings.shape[1]), np.nan))
+    return errors_of_means(shown, response)
 
 
-def errors_of_kinds(session: CalibrationSession, errors: Callable[[list[int]], Array]) -> Array:
-    """(n, m) standard errors, reading units: those of the channels of every kind, identified by their numbers."""
+def errors_of_kinds(
+    session: CalibrationSession, found: Callable[[list[int], Array | None], MeanErrors], response: Array | None
+) -> MeanErrors:
+    """Of the means of all channels: those of the channels of every kind, by their numbers, are ``found`` together."""
     kinds = [s.kind for s in session.sensors]
-    alike = [[i for i, other in enumerate(kinds) if other == kind] for kind in sorted(set(kinds))]
-    return np.concatenate([errors(channels) for channels in alike], axis=1)[
-        :, np.argsort([i for channels in alike for i in channels])
+    alike = {kind: [i for i, other in enumerate(kinds) if other == kind] for kind in sorted(set(kinds))}
+    parts = [
+        found(channels, None if response is None or kind != ACCELEROMETER else response[:, channels])
+        for kind, channels in alike.items()
     ]
+    own = np.concatenate([part.own for part in parts], axis=1)
+    tilt = next((part.tilt for part in parts if part.tilt is not None), None)
+    return MeanErrors(own[:, np.argsort([i for channels in alike.values() for i in channels])], tilt)
 
 
-def errors_by_kind(session: CalibrationSession, intervals: Intervals) -> Array:
-    """(n, m) standard errors of the means over the intervals, reading units."""
-    return errors_of_kinds(session, lambda channels: mean_errors(session.readings[:, channels], intervals))
+def errors_by_kind(session: CalibrationSession, intervals: Intervals, response: Array | None = None) -> MeanErrors:
+    """`errors_of_kinds` over the intervals, reading units."""
+    return errors_of_kinds(
+        session, lambda channels, own: mean_errors(session.readings[:, channels], intervals, own), response
+    )

@@ -109,7 +109,12 @@ def _table(session: CalibrationSession) -> Json:
             table[name] = column.tolist()
     if session.vibration is not None and np.all(session.vibration == session.vibration[:, :1]):
         table["vibration_m_s2"] = np.sqrt(session.vibration[:, 0]).tolist()
-    for name, turning in (("turn_angle_deg", session.turn_angle), ("turn_rate_deg_s", session.turn_rate)):
+    in_degrees = {
+        "tilt_se_deg": session.tilt_error,
+        "turn_angle_deg": session.turn_angle,
+        "turn_rate_deg_s": session.turn_rate,
+    }
+    for name, turning in in_degrees.items():
         if turning is not None:
             table[name] = np.round(np.degrees(turning), ANGLE_DECIMALS).tolist()
     if session.position is not None:

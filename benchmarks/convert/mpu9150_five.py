@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.convert.contract import Converter, Document
 from benchmarks.convert.documents import Columns, columns, session, triad
 from benchmarks.convert.files import expect_count, read_numbers
-from estimator.calibration.free import residual_per_freedom
+from estimator.calibration.free import residual_per_freedom, tilt_response
 from estimator.errors import FormatError, Problem
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
@@ -87,7 +87,7 @@ def convert(paths: list[Path]) -> list[tuple[str, Document]]:
     """Five logs → five raw sessions of one IMU each, and one averaged session of the redundant block."""
     expect_count(paths, 5, FILES)
     singles = [single(path, k) for k, path in enumerate(sorted(paths), start=1)]
-    averaged = [average(read_session(document), residual_per_freedom) for _, document in singles]
+    averaged = [average(read_session(document), residual_per_freedom, tilt_response) for _, document in singles]
     return [*singles, ("mpu9150-five.json", together(averaged))]
 
 

@@ -27,6 +27,7 @@ def rows(session: CalibrationSession, chosen: Array) -> CalibrationSession:
         time=of(session.time),
         temperature=of(session.temperature),
         directions=of(session.directions),
+        tilt_error=of(session.tilt_error),
         position=None,
     )
 

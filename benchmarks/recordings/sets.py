@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from benchmarks.convert import convert
-from estimator.calibration.free import residual_per_freedom
+from estimator.calibration.free import residual_per_freedom, tilt_response
 from estimator.reading import read_session
 from estimator.session import ACCELEROMETER, CalibrationSession, Sensor
 from estimator.static import average
@@ -58,6 +58,6 @@ def logs(format_name: str, most: int | None = None) -> tuple[Recording, ...]:
 def recordings(format_name: str, most: int | None = None) -> tuple[Recording, ...]:
     """The averaged sessions of all files of a format, oldest first."""
     return tuple(
-        replace(log, session=average(log.session, residual_per_freedom)) if log.session.is_raw else log
+        replace(log, session=average(log.session, residual_per_freedom, tilt_response)) if log.session.is_raw else log
         for log in logs(format_name, most)
     )

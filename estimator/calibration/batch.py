@@ -58,6 +58,7 @@ def schedule(session: CalibrationSession) -> Hashable:
         session.flipped.tobytes(),
         session.mounting.tobytes(),
         session.flip_turn.tobytes(),
+        None if session.tilt_error is None else session.tilt_error.tobytes(),
     )
     return session.site, session.stand, session.count_time, sensors, arrays
 

@@ -11,12 +11,13 @@ from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, TWO_AXIS_STAND, CalibrationSession
 
 if TYPE_CHECKING:
-    from estimator.calibration.free import calibrate_free, residual_per_freedom
+    from estimator.calibration.free import calibrate_free, residual_per_freedom, tilt_response
     from estimator.static import average
 else:
     average = function_on_demand("estimator.static", "average")
     calibrate_free = function_on_demand("estimator.calibration.free", "calibrate_free")
     residual_per_freedom = function_on_demand("estimator.calibration.free", "residual_per_freedom")
+    tilt_response = function_on_demand("estimator.calibration.free", "tilt_response")
 
 
 def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:
@@ -49,7 +50,7 @@ def averaged(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRAT
                 )
             ]
         )
-    rows = average(session, residual_per_freedom) if session.is_raw else session
+    rows = average(session, residual_per_freedom, tilt_response) if session.is_raw else session
     if session.programme != TWO_AXIS_STAND:
         require_whole_range(rows)
     return rows

@@ -14,7 +14,7 @@ from estimator.calibration.analytic import answers, closed_form, linear_start
 from estimator.calibration.observability import Spectrum, spectrum
 from estimator.calibration.refine import RefinedFit, fit, input_variance
 from estimator.calibration.stand_report import Reports, Solved
-from estimator.forward import measured
+from estimator.forward import measured, projected
 from estimator.parameters import SensorParameters, nominal
 from estimator.session import Array, CalibrationSession
 from estimator.significance import p_value
@@ -85,9 +85,13 @@ def noise_variance(
 
     y, errors : (S, R, m) readings, offset taken off, and their standard errors, reading units. Where none is stated
     the variance is estimated; where, (S, R, m) bool, is returned too.
+    The block's tilt in a row, which the stand's setting does not know, counts as noise of each sensor.
     A sensor whose reading is constant answers to nothing: its noise is infinite, so that it takes no part.
     """
     variance = input_variance(start, errors, np.array([s.bias_repeatability for s in session.sensors]))
+    if session.tilt_error is not None:
+        across = geometry.norm**2 - projected(start.axis, geometry.n) ** 2
+        variance = variance + np.maximum(across, 0.0) * session.tilt_error[:, None] ** 2
     unstated = np.isnan(variance)
     variance = np.where(answers(y)[:, None, :], variance, np.inf)
     if np.isnan(variance).any():

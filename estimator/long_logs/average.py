@@ -18,6 +18,7 @@ from estimator.static import (
     THRESHOLDS,
     Intervals,
     Quietness,
+    TiltResponse,
     block_length,
     moments,
     no_rests_message,
@@ -76,7 +77,9 @@ def too_many(count: int) -> str:
 Mask = NDArray[np.bool_]
 
 
-def average_long(log: LongLog, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
+def average_long(
+    log: LongLog, residual: Callable[[CalibrationSession], float], tilts: TiltResponse | None = None
+) -> CalibrationSession:
     """The averaged session of a raw log in parts: what `estimator.static.average` makes of it in one piece.
 
     Raises
@@ -86,7 +89,7 @@ def average_long(log: LongLog, residual: Callable[[CalibrationSession], float]) 
     ScheduleError
         The log holds no position, too many, or too few that stand still.
     """
-    session = _labelled(log) if log.labels is not None else _chosen(log, residual)
+    session = (_labelled(log) if log.labels is not None else _chosen(log, residual)).session(tilts)
     problems = Problems(None)
     kinds = {sensor.kind for sensor in session.sensors}
     check_schedule(session.programme, session, kinds, raw=True, problems=problems)
@@ -94,13 +97,13 @@ def average_long(log: LongLog, residual: Callable[[CalibrationSession], float]) 
     return session
 
 
-def _labelled(log: LongLog) -> CalibrationSession:
+def _labelled(log: LongLog) -> RowTally:
     head = next(log.parts())
     rests = labelled_rests(log, positions=head.position is not None)
     (tally,) = _tallied(log, [rests])
     (moves,) = _moving(log, [tally])
     require_still(rests, moves)
-    return tally.session()
+    return tally
 
 
 def _rows(log: LongLog) -> Iterator[tuple[int, CalibrationSession]]:
@@ -156,15 +159,14 @@ def _jitters(log: LongLog, choices: Sequence[Intervals]) -> list[Array]:
     return sums
 
 
-def _chosen(log: LongLog, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
-    """Under the threshold that calibrates best, as `estimator.static.average_best`."""
+def _chosen(log: LongLog, residual: Callable[[CalibrationSession], float]) -> RowTally:
+    """Of the rests under the threshold that calibrates best, as `estimator.static.best`."""
     seen = _quietness(log)
-    tried: dict[tuple[int, ...], tuple[float, CalibrationSession]] = {}
+    tried: dict[tuple[int, ...], tuple[float, RowTally]] = {}
     for tally in _calm(log, [still(seen.quiet, threshold, seen.rate) for threshold in THRESHOLDS]):
         key = (*tally.rests.start.tolist(), *tally.rests.stop.tolist())
         if key not in tried:
-            candidate = tally.session()
-            tried[key] = (residual(candidate), candidate)
+            tried[key] = (residual(tally.session()), tally)
     if not tried:
         raise ScheduleError([Problem("table", no_rests_message(seen.samples))])
     return min(tried.values(), key=lambda pair: pair[0])[1]

@@ -11,9 +11,19 @@ from numpy.typing import NDArray
 
 from estimator.errors import FormatError, Problem
 from estimator.message import say
-from estimator.rest_noise import block_count, energies_of, mean_variance
+from estimator.rest_noise import block_count, waves_of
+from estimator.rest_tilt import MeanErrors, errors_of_means
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
-from estimator.static import PIECES, Intervals, contiguous, errors_of_kinds, far_turn, long_enough_to_move, turned
+from estimator.static import (
+    PIECES,
+    Intervals,
+    TiltResponse,
+    contiguous,
+    errors_of_kinds,
+    far_turn,
+    long_enough_to_move,
+    turned,
+)
 
 SET = ("flipped", "beta", "directions", "position")
 """What is set rather than read: taken from the first sample of a rest."""
@@ -119,22 +129,34 @@ class RowTally:
     def _accelerometers(self) -> list[tuple[int, Sensor]]:
         return [(i, sensor) for i, sensor in enumerate(self.head.sensors) if sensor.kind == ACCELEROMETER]
 
-    def session(self) -> CalibrationSession:
-        """One row a rest, as `estimator.static.averaged`."""
+    def session(self, tilts: TiltResponse | None = None) -> CalibrationSession:
+        """One row a rest, as `estimator.static.average` makes of its intervals."""
+        rows = self._averaged_rows()
+        response = None if tilts is None else tilts(rows)
+        if response is None:
+            return rows
+        errors = self._errors(response)
+        return replace(rows, standard_errors=errors.own, tilt_error=errors.tilt)
+
+    @property
+    def _spread(self) -> Array:
+        """(n, m) sums of squares about the mean, reading units squared."""
+        sums = self._sums[..., : self._squares.shape[1]].sum(axis=1)
+        return np.maximum(self._squares - sums**2 / self.rests.samples[:, None], 0.0)
+
+    def _averaged_rows(self) -> CalibrationSession:
         head, samples, m = self.head, self.rests.samples, len(self.head.sensors)
         assert head.sample_rate is not None
-        sums = self._sums.sum(axis=1)
-        means = self._first + sums / samples[:, None]
+        means = self._first + self._sums.sum(axis=1) / samples[:, None]
         scale = np.array([sensor.nominal_scale for sensor in head.sensors])
-        spread = np.maximum(self._squares - sums[:, :m] ** 2 / samples[:, None], 0.0)
         averages = dict(zip(self._averaged, means[:, m:].T, strict=True))
         middle = (self.rests.start + self.rests.stop - 1) / 2 / head.sample_rate
         return replace(
             head,
             readings=means[:, :m],
-            standard_errors=errors_of_kinds(head, lambda channels: self._errors(channels, spread[:, channels])),
+            standard_errors=self._errors().own,
             at_ends=self._ends / samples[:, None, None],
-            vibration=spread / samples[:, None] / scale**2,
+            vibration=self._spread / samples[:, None] / scale**2,
             time=averages.get("time", middle),
             temperature=averages.get("temperature"),
             flipped=self._set.get("flipped"),
@@ -147,17 +169,20 @@ class RowTally:
             counts_averaged=samples.astype(float) if contiguous(head) else None,
         )
 
-    def _errors(self, channels: list[int], spread: Array) -> Array:
-        """(n, own) standard errors of the means of some channels, from their sums of squares about the mean."""
+    def _errors(self, response: Array | None = None) -> MeanErrors:
+        return errors_of_kinds(self.head, self._errors_of_kind, response)
+
+    def _errors_of_kind(self, channels: list[int], response: Array | None) -> MeanErrors:
+        """Of the means of some channels, as `estimator.static.mean_errors`."""
         samples = self.rests.samples
         if samples.max() < 2:
-            return np.full((len(samples), len(channels)), np.nan)
+            return MeanErrors(np.full((len(samples), len(channels)), np.nan))
         single = samples < 2
         length = np.maximum(samples // self.blocks, 1)
         means = np.diff(self._between()[:, : self.blocks + 1, channels], axis=1) / length[:, None, None]
-        variance = spread / np.maximum(samples - 1, 1)[:, None]
+        variance = self._spread[:, channels] / np.maximum(samples - 1, 1)[:, None]
         means[single], variance[single] = np.nan, np.nan
-        return np.sqrt(mean_variance(energies_of(means, variance, samples)))
+        return errors_of_means(waves_of(means, variance, samples), response)
 
 
 def edges(rests: Intervals, blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

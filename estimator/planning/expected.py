@@ -56,6 +56,7 @@ def planned(
         flipped=np.repeat(np.array(runs), positions),
         time=request.time_per_position * np.arange(len(beta)),
         temperature=None,
+        tilt_error=None,
         position=None,
         directions=None,
         direction_sigma=None,

@@ -68,6 +68,7 @@ BOUNDS = (
     Bound("time_s", Interval(-1e12, 1e12, "s"), "seconds, or what a clock in milliseconds since 1970 said until 2001"),
     Bound("temperature_c", Interval(-100, 200, "°C"), "where electronics work"),
     Bound("vibration_m_s2", Interval(0, 1e4, "m/s²"), "a thousand g"),
+    Bound("tilt_se_deg", Interval(0, 10, "degrees"), "a block that tilts by more is not at rest"),
     Bound("turn_angle_deg", Interval(-3.6e7, 3.6e7, "degrees"), "a hundred thousand turns"),
     Bound("turn_rate_deg_s", Interval(-36_000, 36_000, "deg/s"), "a hundred turns a second"),
     Bound("position", Interval(-1, 1e9), "the number of a position; −1 where a row belongs to none"),

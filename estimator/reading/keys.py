@@ -28,8 +28,8 @@ SENSOR = (
 )  # fmt: skip
 DIRECTIONS = ("direction_x", "direction_y", "direction_z")
 COLUMNS = (
-    "run", "beta_deg", "time_s", "temperature_c", "vibration_m_s2", "turn_angle_deg", "turn_rate_deg_s", "position",
-    *DIRECTIONS,
+    "run", "beta_deg", "time_s", "temperature_c", "vibration_m_s2", "tilt_se_deg", "turn_angle_deg", "turn_rate_deg_s",
+    "position", *DIRECTIONS,
 )  # fmt: skip
 """The keys of every object of a session file, and the columns beside the sensors' own: docs/session-file.md."""
 

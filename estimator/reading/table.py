@@ -17,6 +17,8 @@ from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, THERMAL, TWO_AXIS_
 
 RUNS = ("direct", "flipped")
 """What the column ``run`` may say."""
+OF_MEANS = "standard errors belong to averaged readings; remove them from a raw log"
+"""What is wrong with them elsewhere."""
 SHORTEST_DIRECTION = 1e-3
 """Length, in whatever unit the components are written: shorter is a zero that was rounded."""
 
@@ -32,6 +34,7 @@ class Table:
     time: Array | None
     temperature: Array | None
     vibration: Array | None
+    tilt_error: Array | None
     turn_angle: Array | None
     turn_rate: Array | None
     position: NDArray[np.int64] | None
@@ -56,6 +59,7 @@ def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) ->
         time=_time(columns),
         temperature=(_required if programme == THERMAL else _optional)(columns, "temperature_c"),
         vibration=_vibration(columns, len(names)),
+        tilt_error=_tilt_error(columns, raw=document.has("sample_rate_hz")),
         turn_angle=_turning(columns, "turn_angle_deg", needed=programme == ROTATION_ALIGNMENT),
         turn_rate=_turning(columns, "turn_rate_deg_s", needed=programme == RATE_TABLE),
         position=columns.labels("position") if columns.has("position") else None,
@@ -81,6 +85,15 @@ def _vibration(columns: Columns, m: int) -> Array | None:
     return None if rms is None else np.repeat(rms[:, None] ** 2, m, axis=1)
 
 
+def _tilt_error(columns: Columns, *, raw: bool) -> Array | None:
+    """(R,) rad; 0 where none is stated."""
+    if not columns.has("tilt_se_deg"):
+        return None
+    if raw:
+        columns.problems.add("tilt_se_deg", OF_MEANS)
+    return np.nan_to_num(np.radians(columns.numbers("tilt_se_deg", WITHIN["tilt_se_deg"], holes=True)))
+
+
 def _turning(columns: Columns, name: str, *, needed: bool) -> Array | None:
     """(R,) rad or rad/s, of a turntable."""
     read = _required if needed else _optional
@@ -97,7 +110,7 @@ def _standard_errors(columns: Columns, names: list[str], *, raw: bool) -> Array:
     """(R, m), NaN where none is stated."""
     stated = [f"{name}_se" for name in names if columns.has(f"{name}_se")]
     if raw and stated:
-        columns.problems.add(stated[0], "standard errors belong to averaged readings; remove them from a raw log")
+        columns.problems.add(stated[0], OF_MEANS)
     empty = np.full(columns.rows, np.nan)
     return _stack(
         [

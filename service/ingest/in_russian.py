@@ -29,7 +29,8 @@ STEPS = {
 """Parts of a key: ``stand.alpha_deg`` is ``стенд.угол наклона α, °``."""
 COLUMNS = {
     "run": "прогон", "beta_deg": "β, °", "time_s": "время, с", "temperature_c": "температура, °C",
-    "vibration_m_s2": "вибрация, м/с²", "turn_angle_deg": "угол стола, °", "turn_rate_deg_s": "скорость стола, °/с",
+    "vibration_m_s2": "вибрация, м/с²", "tilt_se_deg": "СКО наклона, °",
+    "turn_angle_deg": "угол стола, °", "turn_rate_deg_s": "скорость стола, °/с",
     "position": "положение", "direction_x": "направление x", "direction_y": "направление y",
     "direction_z": "направление z",
 }  # fmt: skip

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 import polars as pl
 
-from estimator.calibration.free import residual_per_freedom
+from estimator.calibration.free import residual_per_freedom, tilt_response
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from estimator.long_logs import LongLog, average_long
 from estimator.message import say
@@ -322,4 +322,4 @@ def ahead(frames: Iterator[pl.DataFrame]) -> Iterator[pl.DataFrame]:
 
 def _averaged(scan: _Scan) -> CalibrationSession:
     scan.check_names()
-    return average_long(LongLog(scan.parts, scan.labels()), residual_per_freedom)
+    return average_long(LongLog(scan.parts, scan.labels()), residual_per_freedom, tilt_response)

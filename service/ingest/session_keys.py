@@ -51,6 +51,7 @@ COLUMN_HINTS = {
     "time_s": "Time since the first row, seconds. May stay empty.",
     "temperature_c": "Temperature, °C. May stay empty.",
     "vibration_m_s2": "Vibration while the row was averaged, rms, m/s². May stay empty.",
+    "tilt_se_deg": "Standard error of the block's mean tilt in the row, degrees. May stay empty.",
     "turn_angle_deg": "Angle of the turntable at the end of the row, degrees.",
     "turn_rate_deg_s": "Rate of the table during the row, degrees a second.",
     "position": "Which position the row belongs to: a whole number or a name.",

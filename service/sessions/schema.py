@@ -101,6 +101,7 @@ TABLE: Json = {
             "time_s": _column("Time since the start, s; never runs backwards.", "number"),
             "temperature_c": _column("Temperature, °C.", "number"),
             "vibration_m_s2": _column("Rms about the mean while the row is averaged, m/s².", "number"),
+            "tilt_se_deg": _column("Standard error of the block's mean tilt, degrees.", "number", "null"),
             "turn_angle_deg": _column("Angle of the turntable at the end of the row, degrees.", "number"),
             "turn_rate_deg_s": _column("Rate of the table during the row, degrees a second.", "number"),
             "position": _column("Position that the row belongs to; -1 or null: none.", "integer", "string", "null"),

@@ -61,7 +61,7 @@ FILLED_IN = ("unit", "started_at", "powered_on_at", "stage", "operator", "notes"
 """Fields that differ from session to session, in the order of the sheet."""
 NOT_COPIED = ("table", "origin", "time_since_power_on_s", *FILLED_IN)
 """Fields of the pattern that say nothing of the next session."""
-MEASURED = ("time_s", "temperature_c", "vibration_m_s2")
+MEASURED = ("time_s", "temperature_c", "vibration_m_s2", "tilt_se_deg")
 """Columns that are measured with the readings, and not planned."""
 CHOICES = {
     "block": (ACCELEROMETER, GYROSCOPE), "kind": (ACCELEROMETER, GYROSCOPE), "programme": PROGRAMMES,

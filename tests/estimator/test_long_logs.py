@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from estimator.calibration.free import residual_per_freedom
+from estimator.calibration.free import residual_per_freedom, tilt_response
 from estimator.errors import FormatError, ScheduleError
 from estimator.long_logs import LongLog, average_long
 from estimator.long_logs.average import MOST_RESTS
@@ -49,8 +49,8 @@ def labels_of(readings, places):
 
 def assert_same(session: CalibrationSession, rows: int) -> None:
     """In parts and in one piece it is averaged to the same."""
-    whole = average(session, residual_per_freedom)
-    parts = average_long(in_parts(session, rows), residual_per_freedom)
+    whole = average(session, residual_per_freedom, tilt_response)
+    parts = average_long(in_parts(session, rows), residual_per_freedom, tilt_response)
     for name in COMPARED:
         expected = getattr(whole, name)
         if expected is None:
@@ -94,33 +94,33 @@ def test_a_log_that_moves_while_it_should_rest_is_refused_in_parts_too():
     readings, places = tumble(poses=4, rest=2.0, turn=6.0)
     wrong = np.repeat(np.arange(4), np.diff([*places[:, 0], len(readings)]))
     with pytest.raises(ScheduleError, match="the block moves in"):
-        average_long(in_parts(raw(readings, position=wrong), 500), residual_per_freedom)
+        average_long(in_parts(raw(readings, position=wrong), 500), residual_per_freedom, tilt_response)
 
 
 def test_a_log_that_never_rests_is_refused_in_parts_too():
     rng = np.random.default_rng(0)
     log = raw(rng.normal(0, 5, (3000, 3)))
     with pytest.raises(ScheduleError, match=r"in 3000 samples the block is still for .* fewer than 4 times"):
-        average_long(in_parts(log, 999), residual_per_freedom)
+        average_long(in_parts(log, 999), residual_per_freedom, tilt_response)
 
 
 def test_a_single_position_is_refused_in_parts_too():
     log = raw(np.full((500, 3), 1.0), position=np.zeros(500, int))
     with pytest.raises(ScheduleError, match="a single position"):
-        average_long(in_parts(log, 100), residual_per_freedom)
+        average_long(in_parts(log, 100), residual_per_freedom, tilt_response)
 
 
 def test_labels_that_change_all_the_time_are_refused():
     log = raw(np.ones((3 * MOST_RESTS, 3)), position=np.arange(3 * MOST_RESTS))
     with pytest.raises(ScheduleError, match="so split it"):
-        average_long(in_parts(log, 1000), residual_per_freedom)
+        average_long(in_parts(log, 1000), residual_per_freedom, tilt_response)
 
 
 def test_a_time_that_goes_back_between_two_parts_is_named_with_its_row():
     log = drifting()
     log.time[1000:] -= 5.0
     with pytest.raises(FormatError, match="earlier than the row before") as refused:
-        average_long(in_parts(log, 1000), residual_per_freedom)
+        average_long(in_parts(log, 1000), residual_per_freedom, tilt_response)
     assert refused.value.problems[0].row == 1001
 
 
@@ -130,4 +130,4 @@ def test_a_column_that_ends_on_the_way_is_named():
     parts[2] = replace(parts[2], temperature=None)
     broken = LongLog(lambda: iter(parts), in_parts(log, 1000).labels)
     with pytest.raises(FormatError, match="temperature"):
-        average_long(broken, residual_per_freedom)
+        average_long(broken, residual_per_freedom, tilt_response)

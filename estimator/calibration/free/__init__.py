@@ -19,17 +19,26 @@ from estimator.applied_vector import gravity
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
-from estimator.calibration.free.model import ModelRows, predicted
+from estimator.calibration.free.model import ModelRows, jacobian, predicted
 from estimator.calibration.free.optional import solve
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
 from estimator.calibration.free.schedule import Mask, check, classified
 from estimator.calibration.free.start import start
+from estimator.errors import ScheduleError
 from estimator.forward import measured
 from estimator.parameters import names
 from estimator.results import NOMINAL_AXES, Calibration
-from estimator.session import ACCELEROMETER, Array, CalibrationSession
+from estimator.session import ACCELEROMETER, ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 
-__all__ = ["accelerometer_rows", "calibrate_free", "check", "gyro_biases", "residual_per_freedom", "solve"]
+__all__ = [
+    "accelerometer_rows",
+    "calibrate_free",
+    "check",
+    "gyro_biases",
+    "residual_per_freedom",
+    "solve",
+    "tilt_response",
+]
 
 UNSTATED_NOISE = 1e-4
 """g; noise to begin with where none is stated. Estimated from the residuals afterwards, so only its order counts."""
@@ -89,6 +98,27 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     return float(np.sqrt(squares.sum() / solution.dof) * (1 + 1 / np.sqrt(2 * solution.dof)))
 
 
+def tilt_response(session: CalibrationSession) -> Array | None:
+    """(R, m, 2) change of every reading, its unit per rad, with the two tilts of its row, 0 of gyros.
+
+    None of other programmes, where the direction of a row is no unknown of its own, and where nothing can be estimated.
+    """
+    if session.programme != ARBITRARY_ORIENTATIONS:
+        return None
+    try:
+        live, _, _ = classified(session)
+    except ScheduleError:
+        return None
+    if not live.any():
+        return None
+    g = gravity(session.site)
+    rows, stated = accelerometer_rows(session, live, g)
+    scale = np.array([s.nominal_scale for s in session.sensors])
+    response = np.zeros((*session.readings.shape, 2))
+    response[:, live] = jacobian(solve(rows, stated, quadratic=False).unknowns)[1] * g * scale[live, None]
+    return response
+
+
 def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> tuple[ModelRows, bool]:
     """Dimensionless rows of the accelerometers, and whether their noise is stated."""
     sensors = [s for s, is_chosen in zip(session.sensors, chosen, strict=True) if is_chosen]
@@ -120,7 +150,8 @@ def stated_directions(session: CalibrationSession) -> tuple[Array, Array]:
     directions = np.where(stated[:, None], session.directions, 0.0)
     if np.linalg.svd(directions, compute_uv=False)[1] < 0.1:
         return np.zeros((R, 3)), np.zeros(R)
-    return directions, stated / session.direction_sigma**2
+    tilt = 0.0 if session.tilt_error is None else session.tilt_error
+    return directions, stated / (session.direction_sigma**2 + tilt**2)
 
 
 def gyro_biases(session: CalibrationSession, chosen: Mask) -> GyroBiases:

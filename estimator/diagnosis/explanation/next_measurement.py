@@ -59,6 +59,7 @@ def schedule(session: CalibrationSession, beta: Array, flipped: Array) -> Calibr
         time=None if session.time is None else period * np.arange(rows),
         temperature=None if session.temperature is None else np.full(rows, float(session.temperature.mean())),
         vibration=None,
+        tilt_error=None,
         position=None,
     )
 

@@ -57,7 +57,10 @@ SHOWN = {
     "gal": "Gal",
 }  # fmt: skip
 """As they are written, where that is not in lower case."""
-TARGETS = {"beta_deg": "deg", "turn_angle_deg": "deg", "time_s": "s", "temperature_c": "°c", "vibration_m_s2": "m/s²"}
+TARGETS = {
+    "beta_deg": "deg", "turn_angle_deg": "deg", "tilt_se_deg": "deg", "time_s": "s", "temperature_c": "°c",
+    "vibration_m_s2": "m/s²",
+}  # fmt: skip
 """Columns of a session with the unit of each; rates of a table are in °/s."""
 
 
@@ -102,6 +105,7 @@ MEANINGS = {
     "time_s": "time t время elapsed timestamp секунды seconds clock datetime дата_время датавремя zeit uhrzeit",
     "temperature_c": "temperature temp temperatur температура темп tempc t°c t° термодатчик",
     "vibration_m_s2": "vibration вибрация",
+    "tilt_se_deg": "tiltse",
     "turn_angle_deg": "turnangle tableangle уголстола",
     "turn_rate_deg_s": "turnrate tablerate скоростьстола rate угловаяскорость",
     "position": "position pos lage положение позиция point точка",

@@ -10,7 +10,8 @@ from estimator.message import Message, say
 LABELS = {
     "run": "run: direct or flipped", "beta_deg": "β, turn of the head", "time_s": "time",
     "temperature_c": "temperature",
-    "vibration_m_s2": "vibration", "turn_angle_deg": "angle of the turntable", "turn_rate_deg_s": "rate of the table",
+    "vibration_m_s2": "vibration", "tilt_se_deg": "standard error of the tilt",
+    "turn_angle_deg": "angle of the turntable", "turn_rate_deg_s": "rate of the table",
     "position": "position", "direction_x": "direction x", "direction_y": "direction y", "direction_z": "direction z",
 }  # fmt: skip
 """Names of columns on this page."""
