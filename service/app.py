@@ -1,6 +1,6 @@
 """The one place where everything is joined."""
 
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from datetime import UTC, datetime
 from threading import Event, Thread
@@ -13,6 +13,7 @@ from service.flags.mail import MailServer
 from service.flags.messages import Ways, deliver_until
 from service.kit import limits
 from service.kit.bell import Bell
+from service.kit.filling import Filling
 from service.kit.metrics import Metrics
 from service.opening import open_storage
 from service.papers.sealing import Seal, seal_of
@@ -43,12 +44,16 @@ def utc_now() -> datetime:
 
 
 def create_app(
-    settings: Settings, clock: Callable[[], datetime] = utc_now, most: limits.Limits | None = None
+    settings: Settings,
+    clock: Callable[[], datetime] = utc_now,
+    most: limits.Limits | None = None,
+    filling: Filling | None = None,
 ) -> FastAPI:
     """The service on the database and the folder that the settings name; the schema must be up to date. ``most``:
-    limits instead of those of the settings' machine, for tests."""
+    limits instead of those of the settings' machine, for tests; ``filling``: what is stored beside the first
+    requests."""
     limits.use(most or limits.limits_of(settings))
-    application = _application(settings, clock)
+    application = _application(settings, clock, {} if filling is None else {Filling: filling})
     app = FastAPI(
         title="imu-health",
         version=VERSION,
@@ -66,11 +71,11 @@ def create_app(
     return app
 
 
-def _application(settings: Settings, clock: Callable[[], datetime]) -> Application:
+def _application(settings: Settings, clock: Callable[[], datetime], optional: dict[type, object]) -> Application:
     metrics, bell = Metrics(), Bell()
     storage = open_storage(settings, metrics.count_file_fault)
     k, workers = settings.coverage_factor, settings.diagnosis_workers
-    parts: dict[type, object] = {
+    parts = optional | {
         Gate: Gate(settings, provider_of(settings)),
         Reader: Reader(storage, clock, bell, metrics, k, workers),
         GroupReader: GroupReader(storage, clock, bell, metrics, workers),
@@ -91,16 +96,27 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
         threads = [
             Thread(target=work, args=(*own, stop), name=name, daemon=True) for name, work, own in _work(application)
         ]
-        for thread in threads:
-            thread.start()
+        begin = Thread(target=_begin, args=(application.find(Filling), threads, stop), name="begin", daemon=True)
+        begin.start()
         yield
         stop.set()
         application.bell.ring()
-        for thread in threads:
-            await run_in_threadpool(thread.join, LAST_WORK)
+        for thread in (begin, *threads):
+            if thread.ident is not None:
+                await run_in_threadpool(thread.join, LAST_WORK)
         application.storage.database.close()
 
     return lifespan
+
+
+def _begin(filling: Filling | None, threads: Iterable[Thread], stop: Event) -> None:
+    """What is done in the background, after the sessions that are to be stored first."""
+    try:
+        if filling is not None:
+            filling.run(stop)
+    finally:
+        for thread in threads:
+            thread.start()
 
 
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:

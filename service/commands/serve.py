@@ -1,15 +1,16 @@
 """`imu-health serve`: the service, with an upgraded schema, and the demonstration fleet if requested."""
 
 import socket
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from estimator.on_demand import ModuleOnDemand
 from service.app import create_app, utc_now
-from service.commands.console import progress
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import say
+from service.kit.filling import Filling
 from service.kit.log import write_log
 from service.opening import open_database
 from service.people.changes import make_link
@@ -46,17 +47,16 @@ def serve(
         say("It answers to addresses in digits only: IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS names it.")
     require_writable(settings.files)
     upgrade(settings.database)
-    if demo:
-        _fill(settings)
+    filling = _demonstration(settings) if demo else None
     write_log()
-    _Server(settings, _first_link(settings)).run()
+    _Server(settings, _first_link(settings), filling).run()
 
 
 class _Server(Server):
     """Prints its address once it listens, and how to make the first account."""
 
-    def __init__(self, settings: Settings, first: str | None) -> None:
-        super().__init__(create_app(settings), settings)
+    def __init__(self, settings: Settings, first: str | None, filling: Filling | None) -> None:
+        super().__init__(create_app(settings, filling=filling), settings)
         self._first = first
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -80,11 +80,24 @@ def _first_link(settings: Settings) -> str | None:
     return secret
 
 
-def _fill(settings: Settings) -> None:
-    """Uploads the demonstration fleet to an empty database."""
+def _demonstration(settings: Settings) -> Filling | None:
+    """What fills an empty database with the demonstration fleet; None where it holds units already."""
     storage = Storage(open_database(settings.database), Files(settings.files))
-    if demo_fleet.is_wanted(storage):
-        say(f"Filling the empty database with a simulated demonstration fleet, {demo_fleet.FILES} sessions.")
-        with progress(demo_fleet.FILES, "simulating, calibrating, storing") as advance:
-            demo_fleet.fill(storage, settings.coverage_factor, advance)
+    is_wanted = demo_fleet.is_wanted(storage)
     storage.database.close()
+    if not is_wanted:
+        return None
+
+    def store(advance: Callable[[], None]) -> None:
+        """Every session of the fleet."""
+        own = Storage(open_database(settings.database), Files(settings.files))
+        try:
+            demo_fleet.fill(own, settings.coverage_factor, advance)
+        finally:
+            own.database.close()
+
+    say(
+        f"Filling the empty database with a simulated demonstration fleet, {demo_fleet.FILES} sessions; "
+        "the fleet's page says how far it is."
+    )
+    return Filling(store, demo_fleet.FILES)

@@ -15,6 +15,7 @@ from service.ingest import is_own_layout
 from service.judging.reference import covered_at
 from service.judging.usable_reading import usable_of
 from service.kit.arriving_files import where
+from service.kit.filling import Filling
 from service.kit.limits import in_force
 from service.models.rules import model_as_of
 from service.models.store import Models
@@ -51,6 +52,7 @@ from service.uploads.pages import job_outcome, outcome_of, outcomes_of, table_ou
 from service.uploads.receive import receive_all
 from service.uploads.received import FormFiles
 from service.uploads.take_in import is_long
+from service.web.application import application_of
 from service.web.dependencies import Now, Reading, SettingsOf
 from service.web.render import SOONEST, follow_seconds, render
 from service.work.dependencies import JobDeskOf, ReadingFleet
@@ -74,6 +76,8 @@ def show_fleet(
     view: Annotated[FleetView, Query()],
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
+    filling = application_of(request).find(Filling)
+    being_filled = "" if filling is None else filling.in_words
     announced = Announcements(store).all(MOST_QUESTIONED, MOST_FOUND)
     condition, units = Fleet(store).condition_at(now), Fleet(store).units(view.query(now))
     shown = fleet_page(
@@ -87,7 +91,8 @@ def show_fleet(
         stands=announced.stands,
         questioned=announced.questioned,
         choices=Fleet(store).choices(),
-        pending=pending_in_words(PendingWork(store).counts()),
+        pending=being_filled or pending_in_words(PendingWork(store).counts()),
+        follow=SOONEST if being_filled else None,
         kept=saved(SavedViews(store).of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
     )
     return render(request, "fleet.html", shown)

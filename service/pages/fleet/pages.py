@@ -115,6 +115,8 @@ class FleetPage:
     """Choices of the next calibration's date, in words."""
     pending: str
     """What is still being worked out; empty where nothing is."""
+    follow: int | None
+    """Seconds until that line looks again; None where it need not."""
     saved: Saved
     """Views of the list that were kept."""
 
@@ -142,6 +144,7 @@ def fleet_page(
     questioned: Sequence[Questioned] = (),
     choices: FleetChoices = NO_CHOICES,
     pending: str = "",
+    follow: int | None = None,
     kept: Saved = NONE_SAVED,
 ) -> FleetPage:
     """One page of units."""
@@ -166,6 +169,7 @@ def fleet_page(
         dates=DUE,
         retired=RETIRED,
         pending=pending,
+        follow=follow,
         saved=kept,
     )
 

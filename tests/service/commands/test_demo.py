@@ -3,6 +3,8 @@
 from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
+from pathlib import Path
+from threading import Event
 
 import httpx
 import pytest
@@ -33,7 +35,8 @@ from service.uploads.receive import upload
 from service.work.watch import update_outlooks
 from tests.conftest import StockOf
 from tests.databases import Databases
-from tests.service.commands.conftest import Run
+from tests.patience import LONG
+from tests.service.commands.conftest import COMMAND, Run, started
 from tests.service.commands.said_alike import check_unit, fleet_of
 from tests.serving import serving
 from tests.stock import stores
@@ -67,7 +70,10 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     upgrade(settings.database)
     with stores(settings) as storage:
         begin(storage, sum(member.files for member in BEGUN))
-    serve._fill(settings)
+    filling = serve._demonstration(settings)
+    assert filling is not None
+    filling.run(Event())
+    assert filling.in_words == ""
     return settings
 
 
@@ -152,16 +158,18 @@ def test_a_unit_has_one_flag_at_most_and_none_where_it_is_fit_without_a_reservat
     assert (about[Scope.UNIT], about[Scope.STAND]) == (sum(flags.values()), 3)
 
 
-def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(
-    served: Settings, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """As `serve --demo` does before it listens."""
-    listening = list[Settings]()
-    monkeypatch.setattr(serve._Server, "__init__", lambda self, settings, first: listening.append(settings))
-    monkeypatch.setattr(serve._Server, "run", lambda self: None)
-    monkeypatch.setattr(serve, "write_log", lambda: None)
-    assert run("serve", "--demo", "--port", 0, "--data-folder", served.data_folder).code == 0
-    assert [settings.database for settings in listening] == [served.database]
+def test_the_first_page_does_not_wait_for_the_fleet(tmp_path: Path) -> None:
+    """It says how far the demonstration is; a service that stops meanwhile leaves one that the next start finishes."""
+    with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", tmp_path) as address:
+        page = httpx.get(address, timeout=LONG)
+    assert page.status_code == 200
+    assert f"of {FILES} sessions." in page.text
+    assert "data-follow" in page.text
+    assert serve._demonstration(Settings(data_folder=tmp_path)) is not None
+
+
+def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Settings) -> None:
+    assert serve._demonstration(served) is None
     with serving(served) as address:
         fleet = httpx.get(f"{address}/api/v1/fleet").json()
         sessions = httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]

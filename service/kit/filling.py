@@ -1,0 +1,45 @@
+"""Sessions that are stored beside the first requests, before any other work in the background."""
+
+from collections.abc import Callable
+from threading import Event
+
+from estimator.message import say
+
+
+class StoppedError(Exception):
+    """The service stops while sessions are still to be stored."""
+
+
+class Filling:
+    """How far it is. Its one thread writes, the pages read."""
+
+    def __init__(self, store: Callable[[Callable[[], None]], None], total: int) -> None:
+        """``store`` stores ``total`` sessions and calls what it is given after each."""
+        self._store, self._total = store, total
+        self._done, self._is_over = 0, False
+
+    def run(self, stop: Event) -> None:
+        """Until all are stored, or the service stops."""
+
+        def advance() -> None:
+            self._done += 1
+            if stop.is_set():
+                raise StoppedError
+
+        try:
+            self._store(advance)
+        except StoppedError:
+            pass
+        finally:
+            self._is_over = True
+
+    @property
+    def in_words(self) -> str:
+        """How far it is; empty at its end."""
+        if self._is_over:
+            return ""
+        return say(
+            "A simulated demonstration fleet is being stored: {done} of {total} sessions.",
+            done=self._done,
+            total=self._total,
+        )
