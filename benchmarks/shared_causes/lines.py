@@ -22,6 +22,7 @@ WHY = {
     "stated, and biases that wander each by itself are as likely.",
     "one shared course": "Slow rooms and ramps: biases that wander each by itself are about as likely.",
     "the same, where an oracle": "As above; the oracle knows the course and lacks only the sizes.",
+    "the same: one time constant": "Time constants that happen to lie close together.",
     "sound, ": "Large errors that fall together look like a step, or like one noisier sensor: the first is listed "
     "beside single readings. An oracle that knows the law of the errors names none.",
     "one sensor": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
