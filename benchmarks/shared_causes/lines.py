@@ -92,14 +92,21 @@ def verdict_of(target: str, measured: str) -> str:
     """Whether what is measured misses its target; of a rate by its interval too."""
     least, most = bounds(target)
     rate = re.match(r"([\d.]+) % \(([\d.]+)[–a-z ]+([\d.]+)\)", measured)
-    if rate:
-        value, low, high = map(float, rate.groups())
+    spread = re.fullmatch(r"([\d.]+) ± ([\d.]+)", measured)
+    if rate or spread:
+        value, low, high = map(float, rate.groups()) if rate else _interval(measured)
         return "missed" if low > most or high < least else "open" if not least <= value <= most else ""
     bare = re.sub(r"\([^()]*\)", "", re.sub(r"\([^()]*\)", "", measured))
     values = [float(x) for x in re.findall(r"\d+(?:\.\d+)?", bare)]
     if measured.startswith("no course"):
         return "missed"
     return "missed" if values and not (least <= min(values) and max(values) <= most) else ""
+
+
+def _interval(measured: str) -> tuple[float, float, float]:
+    """``94.1 ± 1.7`` and its ends."""
+    value, half = map(float, measured.split(" ± "))
+    return value, value - half, value + half
 
 
 def bounds(target: str) -> tuple[float, float]:
