@@ -25,8 +25,7 @@ QUIET = 5.0
 BETWEEN = 0.05
 """Seconds between two looks."""
 NOTE = """
-U1 misses its target: the address answers when the demonstration is stored, session after session; an empty service
-answers in a few seconds.
+U1: the demonstration is stored beside the first pages.
 
 U7 misses its target. By what each import adds, numpy and scipy are a quarter of it, the service's own modules with
 their routes and models a fifth, SQLAlchemy, FastAPI, pydantic and Alembic together as much. Charts, tables, paper,
