@@ -247,10 +247,10 @@ _WORST = (
 
 def _listed(retired: bool | None) -> Select[int]:
     """Keys of the units that a list may hold: those with an accepted session, and those in the register; retired or
-    not. Beside them, what a list is narrowed or ordered by."""
+    not. Beside them, what a list is narrowed or ordered by, in outer joins: a database leaves out those not used."""
     listed = (
         select(UnitRow.id)
-        .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        .outerjoin(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == ConditionRow.last_session)
