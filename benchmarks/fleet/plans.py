@@ -20,11 +20,13 @@ from service.fleet.records import FleetQuery, Order
 from service.fleet.store import Fleet
 from service.opening import open_database
 from service.outlook.store import Outlooks, Populations
+from service.sessions.history_store import History, HistoryQuery
 from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
 from service.stands.store import Stands
 from service.storage import Files, Storage
 from service.storage.queries import Store
+from service.units.store import Units
 from tests.databases import postgres_databases
 
 PAGE = RESULTS / "how-to" / "plans.md"
@@ -47,6 +49,7 @@ QUESTIONS: dict[str, Callable[[Store], object]] = {
     "How stands are used": lambda store: Stands(store).every(),
     "Open flags": lambda store: Flags(store).page(FlagQuery(unresolved=True, limit=101)),
     "Sessions, the newest first": lambda store: Sessions(store).wanted(SessionQuery(limit=51)),
+    "The history of a unit": lambda store: History(store).points(Units(store).key(UNIT), HistoryQuery()),
     "What the page of a unit begins with": lambda store: Fleet(store).unit_known(UNIT, NOW),
 }
 NODE = re.compile(r"(Seq Scan|Index Only Scan|Index Scan|Bitmap Index Scan)( Backward)?( using (\w+))?( on (\w+))?")

@@ -7,6 +7,7 @@ from typing import Any
 
 from sqlalchemy import (
     BindParameter,
+    FromClause,
     ScalarSelect,
     Select,
     bindparam,
@@ -17,7 +18,7 @@ from sqlalchemy import (
     union_all,
     update,
 )
-from sqlalchemy.orm import InstrumentedAttribute, aliased, load_only
+from sqlalchemy.orm import InstrumentedAttribute, aliased, join, load_only
 
 from estimator.session import PROGRAMMES
 from service.diagnosis.tables import DiagnosisRow
@@ -131,8 +132,8 @@ class Fleet(Queries):
         """The wanted units, worst first; one more query where the list goes on from a unit."""
         listed = _listed(wanted.retired)
         page = UNITS.page(self._session, listed, wanted)
-        ids = page.cut(listed.with_only_columns(UnitRow.id, maintain_column_froms=True)).subquery()
-        query = page.ordered(_summaries().join(ids, ids.c.id == UnitRow.id))
+        shown = page.cut(listed).subquery()
+        query = page.ordered(_summaries(join(shown, UnitRow, UnitRow.id == shown.c.id)))
         return page.forward(_summary(row) for row in self._session.execute(query))
 
     def dates(self, wanted: FleetQuery) -> tuple[datetime | None, ...]:
@@ -244,14 +245,24 @@ _WORST = (
 """What was decided of the parameter that a verdict hangs on."""
 
 
-def _listed(retired: bool | None) -> Summaries:
-    """Units that a list may hold: those with an accepted session, and those in the register; retired or not."""
-    listed = _summaries().where(ConditionRow.unit_id.is_not(None) | UnitRow.registered_at.is_not(None))
+def _listed(retired: bool | None) -> Select[int]:
+    """Keys of the units that a list may hold: those with an accepted session, and those in the register; retired or
+    not. Beside them, what a list is narrowed or ordered by, in outer joins: a database leaves out those not used."""
+    listed = (
+        select(UnitRow.id)
+        .outerjoin(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
+        .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
+        .outerjoin(DiagnosisRow, DiagnosisRow.session_id == ConditionRow.last_session)
+        .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
+        .where(ConditionRow.unit_id.is_not(None) | UnitRow.registered_at.is_not(None))
+    )
     return listed if retired is None else listed.where(UnitRow.retired_at.is_not(None) == retired)
 
 
-def _summaries() -> Summaries:
-    """Units with their latest accepted session, if any."""
+def _summaries(of: FromClause = UnitRow.__table__) -> Summaries:
+    """Units with their latest accepted session, if any. PostgreSQL joins so many tables in the order they are written
+    in, so that ``of``, the units to read, comes first."""
     return (
         select(
             UnitRow,
@@ -266,6 +277,7 @@ def _summaries() -> Summaries:
             func.abs(DecisionRow.deviation) / DecisionRow.tolerance,
         )
         .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
+        .select_from(of)
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)

@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import date, datetime, timedelta
+from functools import lru_cache
 from math import floor, isfinite, log10, pi
 
 from estimator.applied_vector import STANDARD_GRAVITY
@@ -235,7 +236,13 @@ def method_name(method: str) -> str:
 
 def day_of(at: date) -> str:
     """``7 Mar 2026``."""
-    return say("{day} {month} {year}", day=at.day, month=f"{at:%b}", year=at.year)
+    return _written(at.year, at.month, at.day)
+
+
+@lru_cache(maxsize=4096)
+def _written(year: int, month: int, day: int) -> str:
+    """A page writes one day at many points."""
+    return say("{day} {month} {year}", day=day, month=f"{date(year, month, day):%b}", year=year)
 
 
 def minute_of(at: datetime) -> str:

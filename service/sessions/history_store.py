@@ -221,7 +221,8 @@ class History(Queries):
             select(*POINT)
             .join(SessionRow, SessionRow.id == ParameterRow.session_id)
             .outerjoin(DecisionRow, DECIDED)
-            .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision), IS_ACCEPTED)
+            .where(ParameterRow.unit_id == unit, SessionRow.unit_id == unit, IS_ACCEPTED)
+            .where(ParameterRow.revision == _revision(wanted.revision))
         )
         if wanted.parameter is None and not wanted.noise:
             query = query.where(IS_JUDGED)
@@ -249,7 +250,7 @@ class History(Queries):
         query = (
             select(ParameterRow.session_id, *columns)
             .join(SessionRow, own)
-            .where(ParameterRow.unit_id == unit, IS_JUDGED)
+            .where(ParameterRow.unit_id == unit, SessionRow.unit_id == unit, IS_JUDGED)
         )
         found: dict[str, list[ParameterValue]] = {}
         rows: Iterable[Any] = self._session.execute(query)

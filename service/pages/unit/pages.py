@@ -1,8 +1,8 @@
 """The page of one unit: its verdict now, and how every parameter of every sensor got there."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, islice
 
 from estimator.allan.results import TERMS
 from estimator.message import say
@@ -21,7 +21,7 @@ from service.outlook.records import ParameterTrend, UnitOutlook
 from service.outlook.words import NextCalibration, next_calibration
 from service.pages.unit.events import KINDS, STEPS, StageTable, UnitEvent, events_of, stage_table
 from service.pages.unit.remarks import Remarks
-from service.pages.unit.report import UnitReport
+from service.pages.unit.report import LATEST, UnitReport
 from service.papers.found_and_left import FoundAndLeft
 from service.sessions.charts import ChartSet
 from service.sessions.lines import SessionLine, session_lines
@@ -169,6 +169,9 @@ class ParameterSection:
     charts: ChartSet
     sensors: tuple[str, ...]
     rows: tuple[TableRow, ...]
+    """Of the newest sessions."""
+    is_cut: bool
+    """Whether sessions before these are drawn."""
 
 
 @dataclass(frozen=True)
@@ -307,6 +310,7 @@ def _section(
     parameter = tracks[0].parameter
     kind = tracks[0].name.rpartition("-")[2]
     latest = [track.points[-1].condition for track in tracks]
+    rows = tuple(islice(_rows(tracks), LATEST + 1))
     judged = [condition for condition in latest if condition is not NOT_JUDGED]
     return ParameterSection(
         anchor=tracks[0].name,
@@ -322,15 +326,14 @@ def _section(
             sorted(tracks, key=lambda track: track.points[-1].condition.rank), services, notes, trends
         ),
         sensors=tuple(track.sensor for track in tracks),
-        rows=_rows(tracks),
+        rows=rows[:LATEST],
+        is_cut=len(rows) > LATEST,
     )
 
 
-def _rows(tracks: Sequence[ParameterCourse]) -> tuple[TableRow, ...]:
+def _rows(tracks: Sequence[ParameterCourse]) -> Iterator[TableRow]:
     """Sessions newest first, sensors across."""
     found = [{p.session: p for p in track.points} for track in tracks]
     sessions = {p.session: p.at for track in tracks for p in track.points}
-    return tuple(
-        TableRow(session, day_of(at), at.isoformat(), tuple(points.get(session) for points in found))
-        for session, at in sorted(sessions.items(), key=lambda item: item[1], reverse=True)
-    )
+    for session, at in sorted(sessions.items(), key=lambda item: item[1], reverse=True):
+        yield TableRow(session, day_of(at), at.isoformat(), tuple(points.get(session) for points in found))

@@ -53,7 +53,7 @@ def covered_now(store: Store, report: UnitReport) -> CoveredTemperatures | None:
 
 
 LATEST = 50
-"""Sessions in the list of a unit: some years of them."""
+"""Sessions in the list and in the tables of a unit: some years of them."""
 
 
 def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:

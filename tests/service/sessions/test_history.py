@@ -1,21 +1,22 @@
-"""What a unit's page draws: its newest sessions, whole."""
+"""What a unit's page draws: its newest sessions, whole; and what its tables hold."""
 
 from datetime import UTC, datetime
 
 import pytest
 
+from service.pages.unit import pages
 from service.papers.session_report import recent_history
 from service.sessions.records import HistoryPoint
 from service.storage import Storage
 from service.uploads.receive import upload
 from tests.builders import ARCSEC
-from tests.conftest import Filled
+from tests.conftest import Filled, Holding
 from tests.service.made_sessions import session_bytes
 from tests.service.stands.test_stands import measured_on
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-POINTS = 24
-"""Of one session with six sensors."""
+PARAMETERS, POINTS = 4, 24
+"""Of a sensor, and of one session with six."""
 
 
 def measure(storage: Storage) -> None:
@@ -50,3 +51,17 @@ def test_an_axis_is_shown_as_it_is_judged_and_as_it_was_measured_on_demand(stora
     assert (judged.value, measured.value) == (judged.deviation, measured.deviation)
     assert (judged.expanded or 0) < (measured.expanded or 0)
     assert judged.verdict is measured.verdict
+
+
+def test_a_table_holds_the_newest_sessions_and_says_where_the_others_are(
+    holding: Holding, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    service = holding(session_bytes(month=1), session_bytes(seed=2, month=2))
+
+    def found() -> tuple[int, int]:
+        page = service.get("/units/BA-017", headers={"Accept": "text/html"}).text
+        return page.count('<tr><th scope="row"><a href="/sessions/'), page.count("Earlier sessions: <a")
+
+    assert found() == (2 * PARAMETERS, 0)
+    monkeypatch.setattr(pages, "LATEST", 1)
+    assert found() == (PARAMETERS, PARAMETERS)
