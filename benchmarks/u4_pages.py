@@ -55,10 +55,8 @@ SELECT 'C-' || id, id, 0, started_at, 'U10', '' FROM sessions
 """
 """A certificate of every session."""
 NOTE = """
-U4 misses its target for the list of units, on the first page and on a stand's, by one statement: since registered units
-without a session are listed too, the database reads all 10,000 to put them in order, for half a second, where all else
-takes 60 ms together. It misses it for a unit with 500 sessions, whose page reads and shows them all, for a diagnosis,
-whose charts are made anew, and for a plan, which simulates the session that is asked for.
+U4 misses its target for a unit with 500 sessions, whose page draws ten thousand points, for a diagnosis, whose charts
+are made anew, and for a plan, which simulates the session that is asked for.
 """
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from service.settings import Settings
 from tests.databases import Databases
+from tests.patience import LONG
 from tests.service.commands.conftest import Run
 from tests.service.made_sessions import FAILED, session_bytes, session_id
 from tests.service.papers.documents import text_of
@@ -39,7 +40,7 @@ def test_certificates_on_a_stand_that_was_found_bad_are_listed(run: Run, address
     stand = ("stand-affected", "ODG-1", "--server", address, "--format", "table")
     assert "No certificate rests on it." in run(*stand).out
     id = session_id(FAILED[-1])
-    httpx.get(f"{address}/api/v1/sessions/{id}/certificate?format=dcc", timeout=60).raise_for_status()
+    httpx.get(f"{address}/api/v1/sessions/{id}/certificate?format=dcc", timeout=LONG).raise_for_status()
     assert id in run(*stand, "--since", "2026-02-01", "--until", "2026-02-01").out
     assert id not in run(*stand, "--until", "2025-12-31").out
 
