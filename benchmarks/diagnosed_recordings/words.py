@@ -27,7 +27,9 @@ def summary(diagnosis: Diagnosis) -> str:
 
 
 def many(finding: Finding) -> str:
-    """`` (Gx, Gy)``; a count where there are many."""
+    """`` (Gx, Gy)``; a count where there are many, and of those that share one course with all that follow it."""
+    if finding.shared is not None:
+        return f" ({len(finding.sensors) + len(finding.shared.more)} sensors together)"
     different = list(dict.fromkeys(finding.sensors))
     return f" ({spoken(different)})" if different else ""
 
