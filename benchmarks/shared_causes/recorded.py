@@ -7,9 +7,8 @@ from benchmarks.diagnosed_recordings.still import mpu6050
 from benchmarks.recordings.sets import FILES, folder
 from benchmarks.shared_causes.unlike import Line
 from estimator import diagnose, read_session
-from estimator.calibration.free import residual_per_freedom
+from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.results import Diagnosis
-from estimator.static import average
 
 BOARD = "kth-mimu"
 COLD = ("exp_1", "exp_6")
@@ -46,5 +45,4 @@ def course_of(found: Diagnosis) -> str:
 def _diagnosed(name: str) -> Diagnosis:
     files = [path for path in sorted(folder().glob(FILES[BOARD])) if path.name.startswith(f"{name}.")]
     ((_, document),) = convert(BOARD, files)
-    session = read_session(document)
-    return diagnose(average(session, residual_per_freedom) if session.is_raw else session)
+    return diagnose(averaged(read_session(document)))
