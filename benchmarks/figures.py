@@ -64,9 +64,9 @@ class Felt:
     def row(self) -> str:
         """One line of the table."""
         is_time = self.unit in ("m", "s")
-        told = self.value / self.m if self.unit == "m" else self.value
+        compared = self.value / self.m if self.unit == "m" else self.value
         target = "—" if self.most is None else f"≤ {self.most:g} {self.unit}".rstrip()
-        reached = "—" if self.most is None else "yes" if told <= self.most else "no"
+        reached = "—" if self.most is None else "yes" if compared <= self.most else "no"
         in_m = f"{self.value / self.m:.3g} m" if is_time else "—"
         value = shown(self.value, "s" if is_time else self.unit)
         return f"| {self.id} | {self.what} | {value} | {in_m} | {target} | {reached} |"

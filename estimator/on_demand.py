@@ -24,7 +24,7 @@ def names_on_demand(package: str, rooms: Mapping[str, str]) -> Callable[[str], A
 
 
 class ModuleOnDemand:
-    """Stands for a module, which is imported when the first of its names is looked up."""
+    """A module that is imported when the first of its names is looked up."""
 
     def __init__(self, home: str) -> None:
         self._home = home

@@ -16,7 +16,7 @@ no tilt explains (restricted; Patterson & Thompson 1971, Biometrika 58, 545): wi
 
 The spectra of greatest likelihood are found as before, with (P z)² for I/S² and the diagonal of P for 1/S (Zhou, Hu,
 Zhou & Lange 2019, J. Comput. Graph. Stat. 28, 350). Each wave keeps m − 2 combinations: of three accelerometers the one
-along gravity, which is another in every orientation. Where all rests lie alike the sensors cannot be told apart, and
+along gravity, which is another in every orientation. Where all rests lie alike the sensors cannot be separated, and
 nothing is taken out; nor is it in waves without a tilt, where the energy along L is to the rest as Fisher's F.
 
 The mean tilt itself varies as the waves of δ̂ = (LᵀD⁻¹L)⁻¹LᵀD⁻¹z show, followed to the mean like a reading's. Along
@@ -70,9 +70,9 @@ def errors_of_means(waves: Waves, response: Array | None) -> MeanErrors:
 
 
 def tilting_waves(waves: Waves, plain: RestNoise, response: Array) -> int:
-    """Waves k = 1 … up to the fastest octave in which the block plainly tilts; 0 where that cannot be told."""
+    """Waves k = 1 … up to the fastest octave in which the block plainly tilts; 0 where that cannot be estimated."""
     z, L = waves.value[waves.known], response[waves.known]
-    if not told_apart(L / np.sqrt(plain.spectrum.mean(axis=1))[..., None], z.shape[1]):
+    if not are_separable(L / np.sqrt(plain.spectrum.mean(axis=1))[..., None], z.shape[1]):
         return 0
     tilts, _, information = tilts_of(z, plain.spectrum, L)
     along = (tilts[..., None, :] @ information @ tilts[..., None])[..., 0, 0]
@@ -87,8 +87,8 @@ def tilting_waves(waves: Waves, plain: RestNoise, response: Array) -> int:
     return tilting
 
 
-def told_apart(response: Array, count: int) -> bool:
-    """Whether ``count`` waves a rest tell the sensors' own noises apart, beside a tilt that moves the readings by
+def are_separable(response: Array, count: int) -> bool:
+    """Whether ``count`` waves a rest separate the sensors' own noises, beside a tilt that moves the readings by
     ``response`` (n, m, 2), their standard deviations per rad."""
     m, spread = response.shape[1], np.linalg.svd(response, compute_uv=False)
     if m < 3 or (spread[:, 1] <= FLATTEST * spread[:, 0]).any():

@@ -14,6 +14,7 @@ from service.flags.messages import Ways, deliver_until
 from service.kit import limits
 from service.kit.bell import Bell
 from service.kit.filling import Filling
+from service.kit.guard import Guard
 from service.kit.metrics import Metrics
 from service.opening import open_storage
 from service.papers.sealing import Seal, seal_of
@@ -96,7 +97,7 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
         threads = [
             Thread(target=work, args=(*own, stop), name=name, daemon=True) for name, work, own in _work(application)
         ]
-        begin = Thread(target=_begin, args=(application.find(Filling), threads, stop), name="begin", daemon=True)
+        begin = Thread(target=_begin, args=(application, threads, stop), name="begin", daemon=True)
         begin.start()
         yield
         stop.set()
@@ -109,14 +110,14 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
     return lifespan
 
 
-def _begin(filling: Filling | None, threads: Iterable[Thread], stop: Event) -> None:
+def _begin(application: Application, threads: Iterable[Thread], stop: Event) -> None:
     """What is done in the background, after the sessions that are to be stored first."""
-    try:
-        if filling is not None:
+    filling = application.find(Filling)
+    if filling is not None:
+        with Guard(application.metrics).alone("filling", ""):
             filling.run(stop)
-    finally:
-        for thread in threads:
-            thread.start()
+    for thread in threads:
+        thread.start()
 
 
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:

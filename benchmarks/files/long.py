@@ -18,7 +18,7 @@ from service.ingest import apart, read_upload
 ROWS = 15_000_000
 """As CSV of 7 digits they take about a gigabyte."""
 ROUNDS = 3
-"""Of which the median is told."""
+"""Of which the median is reported."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What naming a cause gains, told to a person."""
+"""What naming a cause gains, in one sentence."""
 
 import re
 from collections.abc import Iterator

@@ -13,7 +13,7 @@ TITLES = {
     "recordings": "Recordings",
     "tails": "Errors with tails",
     "noisier": "Unequal noise",
-    "gain": "Gain, told to a person",
+    "gain": "Gain in one sentence",
 }
 RESTS = "block, tilt"
 """Head of the table of `benchmarks.rests`."""
@@ -28,8 +28,8 @@ WHY = {
     "sound, ": "Large errors that fall together look like a step, or like one noisier sensor: the first is listed "
     "beside single readings. An oracle that knows the law of the errors names none.",
     "stated errors over true ones, gyro bias": "A rotation that gyros share counts as the noise of each: its slow part "
-    "is no course that the rests tell apart from theirs.",
-    "95 % intervals": "Slow flicker within the rests, whose spectrum three sensors tell too little of.",
+    "cannot be separated from theirs within the rests.",
+    "95 % intervals": "Slow flicker within the rests, whose spectrum three sensors hardly determine.",
     "one sensor": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
     "time of a diagnosis": "A course is weighed against each sensor's own, against wandering biases and in every fold.",
     "seasons, line: units flagged": "One unit of twenty.",

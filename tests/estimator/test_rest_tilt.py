@@ -74,7 +74,7 @@ def test_stated_errors_explain_what_the_calibration_leaves():
     assert 0.3 < after.chi2 / after.dof < 2.0
 
 
-def test_three_sensors_that_always_lie_alike_cannot_be_told_apart():
+def test_three_sensors_that_always_lie_alike_cannot_be_are_separable():
     up = np.tile(unit(np.array([1.0, 2.0, 3.0])), (POSES, 1))
     z = np.random.default_rng(1).standard_normal((POSES, BLOCKS - 1, 3))
     response = np.tile(G * tangents(up[:1]), (POSES, 1, 1))

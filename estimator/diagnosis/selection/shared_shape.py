@@ -15,7 +15,7 @@ T_i(ψ) what a sensor's own trace explains beside those of the others at ψ̂, t
     ln mean_ψ exp ½w[T(ψ) − T(ψ̂)] − Σ_i ln mean_ψ exp ½w[T_i(ψ) − T_i(ψ̂)] > −ln 100,        w = g/(1 + g)
 
 with sizes N(0, g): the ln of the Bayes factor. Below that bound they are apart; between it and ln 100 the session does
-not tell, so that one misfortune is likelier than many, and it is said that each may have its own. No share of the
+not decide, so that one misfortune is likelier than many, and it is said that each may have its own. No share of the
 sensors decides, and no strong few: a weak one that fits ill speaks against it as loudly as it can.
 """
 
