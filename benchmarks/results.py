@@ -26,7 +26,7 @@ Written by `make bench`; `make bench ONLY="U2 P8"` measures these anew and leave
 
 ## What a user feels
 
-Machines differ by a factor of three, so that times are stated in **m** too, the time of `python -c "import numpy, scipy"`
+Machines differ by a factor of three, so that times are also in **m**, the time of `python -c "import numpy, scipy"`
 on the same machine in the same minute. Both are by the clock, or the processor's where a row says so.
 
 | id | what | measured | in m | target | reached |
