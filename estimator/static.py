@@ -6,7 +6,7 @@ grid is tried, and the one whose positions calibrate with the least residual per
 Pretto and Menegatti, ICRA 2014, choose it the same way).
 
 The standard error of a mean allows for noise that hangs together: it is taken from the spectrum that all positions
-show, and not from the scatter of samples (`estimator.rest_noise`). Where the calibration says how the readings response
+show, and not from the scatter of samples (`estimator.rest_noise`). Where the calibration says how the readings respond
 to a tilt of the block, a slow tilt within a rest is no sensor's own error (`estimator.rest_tilt`).
 """
 
