@@ -98,5 +98,5 @@ def test_the_page_has_a_tile_a_month_and_its_units(http: httpx.Client) -> None:
     assert "No unit matches" in http.get("/due?when=2031-01").text
     assert "/due" in http.get("/").text
     why = http.get("/api/v1/fleet/due", headers={"Accept-Language": "ru"}).json()["units"][0]["why"]
-    assert why.startswith("Последняя калибровка")
+    assert why.startswith("Риск выхода за допуск")
     assert why in http.get("/due?lang=ru").text
