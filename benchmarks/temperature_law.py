@@ -241,10 +241,17 @@ def without_interval(cell: str) -> str:
     return cell if found is None else found[1] if int(found[2]) >= FEW else f"{found[1]} of {found[2]}"
 
 
+def paired(own: Sequence[str], typed: Sequence[str]) -> list[str]:
+    """One row of both: by the unit's own sessions / with the laws of its type."""
+    law, before, _, measured, *rest = own
+    both = (f"{without_interval(a)} / {without_interval(b)}" for a, b in zip(rest, typed[4:], strict=True))
+    return [law, before, without_interval(measured), *both]
+
+
 def section(answers: Answers, command: str) -> str:
     """Markdown."""
     whole = list(rows(answers))
-    short = [list(map(without_interval, row)) for row in whole]
+    short = [paired(own, typed) for own, typed in zip(whole[::2], whole[1::2], strict=True)]
     return (
         f"{HEADING}\n\nMade by `{command}`. The reference is measured at {ROOM:.0f} °C, the other sessions before "
         f"between {COLDEST:.0f} and {WARMEST:.0f} °C, the judged one at {WARM:.0f} °C; nothing but temperature has "
@@ -253,8 +260,9 @@ def section(answers: Answers, command: str) -> str:
         f"{TYPE_SESSIONS} sessions each, which do with four sessions before. "
         f"*{LOOSE.capitalize()}*: a fifth of a parabola's bend, sensors {LAG:g} °C (one sigma) off the stated "
         "temperature. U is that of the corrected change. *Moved with the room*: a bias moves by 150 µg when the "
-        f"room becomes 15 °C warmer for good. Shares without intervals, of {FEW} or more unless stated:\n\n"
-        f"{table(COLUMNS, short)}\n\n{in_full(table(COLUMNS, whole))}\n"
+        f"room becomes 15 °C warmer for good. Here by the unit's own sessions / with the laws of the type, "
+        f"shares of {FEW} or more unless stated:\n\n"
+        f"{table((*COLUMNS[:2], *COLUMNS[3:]), short)}\n\n{in_full(table(COLUMNS, whole))}\n"
     )
 
 
