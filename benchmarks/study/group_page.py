@@ -58,7 +58,7 @@ cross-axis input, temperature, its square, rate and lag, time, waves of β, the 
 
 ## In the service
 
-A group's answer is made again, beside the requests, when one of its sessions is added or changes its state. The newest
+A group's answer is made again, in the background, when one of its sessions is added or changes its state. The newest
 60 accepted sessions are pooled, of a unit those since its last service; a stand's group adds up to 60 of the same units
 elsewhere. `left_out` counts older ones, `not_pooled` lists sessions without a record. It is shown on the pages of unit,
 type and stand, and by [the API](../api.md#diagnosis-and-models).
