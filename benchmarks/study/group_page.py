@@ -27,7 +27,7 @@ The amplitude of a group is â = (ΣF)⁻¹ΣU with covariance (ΣF)⁻¹.
 | type | the same of the sensor of one name in every unit, or of every sensor of a kind | one unit's, the stand's |
 | stand | of stand and fixture, over all units; a sensor cause that every sensor measured there shares | the units' |
 
-Only the same units on another stand separate two levels that explain alike.
+The same units on another stand separate two levels that explain alike.
 
 ## When a name is given
 
@@ -53,8 +53,8 @@ cross-axis input, temperature, its square, rate and lag, time, waves of β, the 
 | `e_value`, `strength` | evidence; norm of the pooled effect in standard errors |
 | `rivals` | what cannot be told from it, how far it is, which measurement would tell in how many sessions |
 | `sessions`, `limits` | every session's amplitude; what the pool finds with 95 % power |
-| `gain` | the amplitudes fixed on the first two thirds of the sessions, tried on the later ones |
-| `terms` | empirical terms, learned where the catalogue ends: equation, gain on the later sessions, nearest cause |
+| `gain` | the amplitudes of the first two thirds of the sessions, tried on the later ones |
+| `terms` | empirical terms where the catalogue ends: equation, gain on the later sessions, nearest cause |
 
 ## In the service
 
@@ -80,7 +80,7 @@ imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
   from a single session is estimated in each.
 * Stored sessions concerned are recomputed; the revision's page shows changed verdicts and the largest change in each
   unit. Withdrawal is a new revision.
-* A learned term is accepted as `empirical-term`; what a session lacks of it, such as temperature, is left out there.
+* A learned term is accepted as `empirical-term`, without what a session lacks, such as temperature.
 
 ## In the diagnosis of one session
 
@@ -115,9 +115,9 @@ the others show.
 
 ## Limits
 
-Record causes, outliers, jumps, clipping and excess noise belong to their session and are not pooled. Parameters
-between sessions are [no evidence here](../decisions/residuals-alone.md). Of two similar effects on one stand one may
-take the name of both.
+Record causes, outliers, jumps, clipping and excess noise belong to their session and are not pooled, nor are
+[parameters between sessions](../decisions/residuals-alone.md). Of two similar effects on one stand one may take the
+name of both.
 
 Effects of one sensor drawn from a hidden grammar of products, strength 6 in each of ten sessions (`python -m
 benchmarks.study.groups --groups 26 --seed 31 --part grammar`): a name without `unexplained` in 0.0 % (0.0–6.9) of 52.
