@@ -253,9 +253,9 @@ def learned(network: Path) -> str:
         "\nThe neural posterior learns signatures of its own, from attitude, time and temperature of the readings: "
         f"{had['minutes']:.0f} minutes ({had['processor_minutes']:.0f} of one processor), {had['sessions']} sessions, "
         f"{had['draws'] / 1e6:.1f} million draws; log loss of held-out sessions {had['loss']:.2f}, of the prior "
-        f"{had['prior_loss']:.2f} (`python -m benchmarks.study.neural`). Without the catalogue it finds most of what the "
-        "diagnosis finds and names fewer causes right: learned signatures blur steps, kinks and causes that resemble one "
-        "another.\n"
+        f"{had['prior_loss']:.2f} (`python -m benchmarks.study.neural`). Without the catalogue it finds most of what "
+        "the diagnosis finds and names fewer causes right: learned signatures blur steps, kinks and causes that "
+        "resemble one another.\n"
     )
 
 
