@@ -32,8 +32,6 @@ ABSORBED = 1e-4
 """Of a signature's square: less that the baseline leaves counts as nothing."""
 LAGS = (0.1, 0.4)
 """Time constants of late temperatures, of the session's length."""
-
-
 SIGNATURES, HIDDEN = 64, 96
 """Learned of one sensor and of all; width of the heads."""
 
