@@ -77,6 +77,8 @@ class Followed:
     """Against no effect, the choice of shape and sensors paid for."""
     shape_in_doubt: bool
     """Whether a shape of its own for every sensor may explain as much (`shared_shape.py`)."""
+    departing: tuple[int, ...]
+    """Of the shapes that sensors have that would follow but for their own, one each."""
 
 
 def with_shared_event(
@@ -186,7 +188,7 @@ def likeliest(start: SearchState, near: Sequence[EventCourse]) -> Followed | Non
 def without_departing(start: SearchState, course: EventCourse, members: CauseMembers) -> Followed | None:
     """A course with its members, but for those that have a shape of their own; None where all fit better apart."""
     every = courses(start.residuals, course.traces)
-    kept = course.of([course.numbers[k] for k in members.chosen])
+    kept, departing = course.of([course.numbers[k] for k in members.chosen]), list[int]()
     while len(kept.numbers) > 1:
         others = [other.on(kept.sensors) for other in every if set(kept.sensors) <= set(other.sensors)]
         apart, own = powers_apart(start, kept, others)
@@ -194,6 +196,7 @@ def without_departing(start: SearchState, course: EventCourse, members: CauseMem
         worst = int(np.argmax(gained))
         if gained[worst] - np.log(course.tried) < FURTHER:
             break
+        departing.append(others[int(np.argmax(apart[worst]))].numbers[worst])
         kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
     if len(kept.numbers) < 2:
         return None
@@ -203,7 +206,8 @@ def without_departing(start: SearchState, course: EventCourse, members: CauseMem
         return None
     sure = {course.sensors[k] for k in members.sure} & set(kept.sensors)
     in_doubt = len(together) > 1 and log_one_shape < -APART
-    return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)), in_doubt)
+    log_evidence = members.log_evidence - float(np.log(course.tried))
+    return Followed(kept, frozenset(sure), log_evidence, in_doubt, tuple(departing))
 
 
 def powers_apart(
@@ -272,9 +276,14 @@ def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
     whole block turned at one moment.
 
     Zeros that wander are a misfortune more at least, but where a course has no formula or the noise is not known, which
-    lets many things pass for a course. Beside zeros that wander a course must be plain.
+    lets many things pass for a course. Beside zeros that wander a course must be plain. Where most sensors follow it,
+    those that depart from it have their own shapes beside it, each of them a misfortune more.
     """
-    unit, price = unit_traces(followed.course), float(np.log(places_of(start, followed.course)))
+    course, price = followed.course, float(np.log(places_of(start, followed.course)))
+    if len(followed.departing) < len(course.numbers):
+        price += len(followed.departing) * (FURTHER + float(np.log(course.tried)))
+        course = course.of([*course.numbers, *followed.departing])
+    unit = unit_traces(course)
     alone = log_mean(log_marginal(start.residuals, unit, SIZES)) - price
     wandering, beside = log_beside_wandering(start.residuals, unit, SIZES)
     if log_turning(start.residuals, SIZES) > max(alone, beside - price):
