@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.selection.backward import FURTHER, penalised_log_evidence
 from estimator.diagnosis.selection.excess_noise import with_autocorrelation
 from estimator.diagnosis.selection.forward import with_structures
-from estimator.diagnosis.selection.membership import counts_of, log_sets
 from estimator.diagnosis.selection.ranking import extended_basis
 from estimator.diagnosis.selection.search_state import LEVEL, Detection, SearchState
 from estimator.diagnosis.signatures.noise import ExcessVariance, UnlikeNoise
@@ -28,6 +26,10 @@ else:
 MISFIT = 0.05
 """Share of the energy of names that structure beside them may hold: beyond a fifth in rms it is another effect that
 they are the nearest to, below it a cause described nearly, with something small beside it."""
+
+DEPARTURE = 1.0
+"""The same of a sensor that follows a shared course: it may depart from it besides by as much as it follows it. Without
+its share of the course in the model it would pull what all sensors share of a row."""
 
 DOUBTFUL = 0.02
 """p-value of normal noise below which scatter in excess is called none: one true excess in fifty loses its name."""
@@ -47,37 +49,16 @@ KNOWN = 0.5
 
 
 def without_misfits(state: SearchState) -> SearchState:
-    """The state without names beside which structure is left that they should have explained.
-
-    A sensor that follows a shared course may depart from it besides: it stays where that is likelier than a course of
-    its own.
-    """
-    for place in dict.fromkeys(f.best.sensors for f in state.detections):
-        names = tuple(f for f in state.detections if f.best.sensors == place)
+    """The state without names beside which structure is left that they should have explained."""
+    for place, shared in dict.fromkeys((f.best.sensors, bool(f.event)) for f in state.detections):
+        names = tuple(f for f in state.detections if f.best.sensors == place and bool(f.event) == shared)
         drifted = any(f.best.cause.moves_parameters for f in names)
         energy = remaining_energy(state, place) - (changed(state, place) if drifted else 0.0)
-        if energy > MISFIT * explained(state, names):
-            alone = tuple(f for f in names if not f.event)
-            rivals = [without_names_at(state, place, names)]
-            if len(alone) < len(names):
-                rivals.append(without_names_at(state, place, alone) if alone else state)
-            state = max(rivals, key=log_evidence_with_courses)
+        if energy > (DEPARTURE if shared else MISFIT) * explained(state, names):
+            rest = replace(state, detections=tuple(f for f in state.detections if f not in names))
+            again = with_autocorrelation(with_structures(replace(rest, structures=elsewhere(rest, place))))
+            state = again if remaining_energy(again, place) > 0 else rest
     return state
-
-
-def without_names_at(state: SearchState, place: tuple[int, ...], names: tuple[Detection, ...]) -> SearchState:
-    """The state without some names on a sensor, or in common, and with the structure that is there then."""
-    rest = replace(state, detections=tuple(f for f in state.detections if f not in names))
-    again = with_autocorrelation(with_structures(replace(rest, structures=elsewhere(rest, place))))
-    return again if remaining_energy(again, place) > 0 else rest
-
-
-def log_evidence_with_courses(state: SearchState) -> float:
-    """ln evidence of all that was found, smooth courses without a pattern among it; of a shared course the choice of
-    sensors is paid for anew."""
-    members, kinds = [f.best.sensors[0] for f in state.detections if f.event], state.baseline.setting.kinds
-    price = log_sets(counts_of(kinds), {kinds[i] for i in members}, len(members)) if members else 0.0
-    return penalised_log_evidence(state) + sum(a.log_evidence - FURTHER for a in state.autocorrelated) - price
 
 
 def without_common_rows(state: SearchState) -> SearchState:

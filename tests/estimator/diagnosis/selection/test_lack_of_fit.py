@@ -39,7 +39,7 @@ def test_a_cause_that_fits_stays() -> None:
         pytest.param(1.0, False, id="it has another course"),
     ],
 )
-def test_a_sensor_of_a_shared_course_goes_only_where_a_course_of_its_own_is_likelier(
+def test_a_sensor_of_a_shared_course_goes_only_where_it_departs_more_than_it_follows(
     followed: float, stays: bool
 ) -> None:
     place = np.linspace(-1, 1, ROWS)
