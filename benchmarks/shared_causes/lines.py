@@ -11,6 +11,7 @@ PAGE = DOCS / "diagnosis" / "shared-causes.md"
 OTHERS = {"shared courses": "shared.md", "temperature": "temperature.md", "noise of means": "../methods/noise.md"}
 TITLES = {
     "recordings": "Recordings",
+    "departing": "Departures from a course",
     "tails": "Errors with tails",
     "noisier": "Unequal noise",
     "gain": "Gain in one sentence",
