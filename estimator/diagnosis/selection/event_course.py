@@ -46,7 +46,7 @@ class EventCourse:
         """Those of some numbers."""
         return replace(self, numbers=tuple(numbers))
 
-    def with_(self, numbers: Sequence[int]) -> "EventCourse":
+    def with_others(self, numbers: Sequence[int]) -> "EventCourse":
         """Those and some others of the same cause."""
         return self.of([*self.numbers, *numbers])
 

@@ -209,12 +209,12 @@ def without_departing(start: SearchState, course: EventCourse, members: CauseMem
         worst = int(np.argmax(gained))
         if gained[worst] - np.log(course.tried) < FURTHER:
             break
-        departing = departing.with_(others[int(np.argmax(apart[worst]))].numbers[worst : worst + 1])
+        departing = departing.with_others(others[int(np.argmax(apart[worst]))].numbers[worst : worst + 1])
         kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
     if len(kept.numbers) < 2:
         return None
-    together = energies(start.residuals, [other.with_(departing.numbers) for other in others])[0]
-    shared = energy_of(start.residuals, kept.with_(departing.numbers))[0]
+    together = energies(start.residuals, [other.with_others(departing.numbers) for other in others])[0]
+    shared = energy_of(start.residuals, kept.with_others(departing.numbers))[0]
     log_one_shape = log_shared(together, shared, apart, own)
     if log_one_shape < APART:
         return None
@@ -298,7 +298,7 @@ def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
     departing = followed.departing.numbers
     if len(departing) < len(course.numbers):
         price += len(departing) * (FURTHER + float(np.log(course.tried)))
-        course = course.with_(departing)
+        course = course.with_others(departing)
     unit = unit_traces(course)
     alone = log_mean(log_marginal(start.residuals, unit, SIZES)) - price
     wandering, beside = log_beside_wandering(start.residuals, unit, SIZES)
