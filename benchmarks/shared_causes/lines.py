@@ -21,8 +21,8 @@ RESTS = "block, tilt"
 WHY = {
     "kth exp_1": "Its gyros settle with several time constants: beside one exponential for all, some scatter more than "
     "stated, and biases that wander each by itself are as likely.",
-    "kth exp_6: held": "A1z, A3z, A4z and G8x stay off by about twice their standard errors: one exponential is nearly, "
-    "not wholly, their course.",
+    "kth exp_6: held": "A1z, A3z, A4z and G8x stay off by about twice their standard errors: one exponential is "
+    "nearly, not wholly, their course.",
     "one shared course": "Slow rooms and ramps: biases that wander each by itself are about as likely.",
     "the same, where an oracle": "As above; the oracle knows the course and lacks only the sizes.",
     "the same: one time constant": "Time constants that happen to lie close together.",
