@@ -11,6 +11,7 @@ from service.kit.libraries import alt
 from service.kit.measures import Measure, day_of, deviation_measure, in_measure, limit, measured, signed
 from service.outlook.records import ParameterTrend
 from service.outlook.rules.histories import MeasuredChange, changes_of
+from service.outlook.rules.thinned import thinned
 from service.sessions.charts import (
     DATA_FORM,
     HIGH,
@@ -80,7 +81,8 @@ class ParameterCourse:
 
 
 def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> tuple[tuple[ParameterCourse, ...], ...]:
-    """The tracks of a unit, grouped by parameter and kind of sensor, sensors in the order they come."""
+    """The tracks of a unit as charts show them, grouped by parameter and kind of sensor, sensors in the order they
+    come."""
     groups: dict[tuple[int, str], dict[str, list[HistoryPoint]]] = {}
     for point in sorted(history, key=lambda p: p.at):
         group = groups.setdefault((ALL_PARAMETERS.index(point.parameter), point.kind), {})
@@ -95,7 +97,11 @@ def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]
     unit = deviation_measure(first.kind, first.parameter, largest)
     return tuple(
         ParameterCourse(
-            f"{first.parameter}-{first.kind}", name, first.parameter, unit, tuple(_track_point(c, unit) for c in course)
+            f"{first.parameter}-{first.kind}",
+            name,
+            first.parameter,
+            unit,
+            tuple(_track_point(c, unit) for c in thinned(course)),
         )
         for name, course in changes.items()
     )
@@ -120,10 +126,13 @@ def _track_point(change: MeasuredChange, unit: Measure) -> TrackPoint:
         limit_upper=allowed,
         epoch=change.epoch,
         text=_text(change, unit),
-        condition=NOT_JUDGED
-        if point.tolerance is None
-        else condition_of(point.verdict, is_reference=point.is_reference),
+        condition=judged_as(point),
     )
+
+
+def judged_as(point: HistoryPoint) -> Condition:
+    """What a point is marked as."""
+    return NOT_JUDGED if point.tolerance is None else condition_of(point.verdict, is_reference=point.is_reference)
 
 
 def _text(change: MeasuredChange, unit: Measure) -> str:
@@ -352,7 +361,7 @@ def _limits(track: ParameterCourse, span: list[str]) -> list[Json]:
 
 
 def _iso(at: datetime) -> str:
-    return at.strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+    return f"{at.replace(tzinfo=None).isoformat(timespec='microseconds')}Z"
 
 
 def _short(value: float | None) -> float | None:

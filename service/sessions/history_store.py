@@ -11,10 +11,12 @@ from math import hypot
 from typing import Any, NamedTuple
 
 from sqlalchemy import ColumnElement, delete, func, select, true
+from sqlalchemy.orm import aliased
 
 from estimator.allan.results import TERMS, interval_of
 from service.sessions.decision import Verdict
 from service.sessions.records import HistoryPoint, ParameterValue, StoredSession
+from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 from service.storage.queries import Queries
@@ -199,8 +201,11 @@ class HistoryQuery:
     """Whether offset and limit count from the newest point back."""
     raw: bool = False
     """Whether what the whole block did is left in."""
-    noise: bool = False
-    """Whether the terms of noise are wanted beside what is judged; one that is asked for by its name always is."""
+    noise: bool | None = False
+    """Whether the terms of noise are wanted, not what is judged; None for both. One that is asked for by its name
+    always is."""
+    kind: str | None = None
+    """Of the sensors."""
 
 
 class History(Queries):
@@ -224,10 +229,12 @@ class History(Queries):
             .where(ParameterRow.unit_id == unit, SessionRow.unit_id == unit, IS_ACCEPTED)
             .where(ParameterRow.revision == _revision(wanted.revision))
         )
-        if wanted.parameter is None and not wanted.noise:
-            query = query.where(IS_JUDGED)
         if wanted.parameter is not None:
             query = query.where(ParameterRow.parameter == wanted.parameter)
+        elif wanted.noise is not None:
+            query = query.where(ParameterRow.parameter.in_(TERMS) if wanted.noise else IS_JUDGED)
+        if wanted.kind is not None:
+            query = query.where(ParameterRow.kind == wanted.kind)
         if wanted.sensor is not None:
             query = query.where(ParameterRow.sensor == wanted.sensor)
         if wanted.since is not None:
@@ -241,6 +248,35 @@ class History(Queries):
             for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))
         ]
         return tuple(reversed(found)) if wanted.newest else tuple(found)
+
+    def latest(self, unit: int, *, raw: bool = False) -> tuple[HistoryPoint, ...]:
+        """The newest point of every parameter of every sensor, in one query."""
+        place = (ParameterRow.sensor, ParameterRow.kind, ParameterRow.parameter)
+        known = select(*place).where(ParameterRow.unit_id == unit, IS_JUDGED).distinct().subquery()
+        own, session = aliased(ParameterRow), aliased(SessionRow)
+        newest = (
+            select(own.session_id)
+            .join(session, (session.id == own.session_id) & (session.revision == own.revision))
+            .where(own.unit_id == unit, session.state == RecordState.ACCEPTED)
+            .where(own.sensor == known.c.sensor, own.kind == known.c.kind, own.parameter == known.c.parameter)
+            .order_by(own.at.desc(), own.session_id.desc())
+            .limit(1)
+            .correlate(known)
+            .scalar_subquery()
+        )
+        is_newest = ParameterRow.session_id == newest
+        for column in place:
+            is_newest &= column == known.c[column.key]
+        query = (
+            select(*POINT)
+            .select_from(known)
+            .join(ParameterRow, is_newest)
+            .join(
+                SessionRow, (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
+            )
+            .outerjoin(DecisionRow, DECIDED)
+        )
+        return tuple(point_record(StoredPoint._make(row), raw=raw) for row in self._session.execute(query))
 
     def in_force(self, unit: int) -> dict[str, tuple[ParameterValue, ...]]:
         """The parameters of a unit's sessions under their revisions in force, by session."""

@@ -147,9 +147,18 @@ def draw_all(page: Page) -> None:
 
     Nothing here waits for a frame: on a busy machine a headless browser may stop to paint for minutes.
     """
+    page.wait_for_function(FETCHED, polling=100)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     page.wait_for_function(DRAWN, polling=100)
 
 
+def open_all(page: Page) -> None:
+    """Opens every fold, and those that come with what an opened one holds."""
+    page.evaluate(OPEN_ALL)
+    page.wait_for_function(FETCHED, polling=100)
+    page.evaluate(OPEN_ALL)
+
+
 OPEN_ALL = "document.querySelectorAll('details').forEach((one) => { one.open = true; })"
+FETCHED = "!document.querySelector('details[open] > .awaited')"
 DRAWN = "[...document.querySelectorAll('.chart:not(.drawn)')].every((c) => c.closest('details:not([open])'))"
