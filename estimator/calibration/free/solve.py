@@ -3,7 +3,9 @@
 The damping acts on the parameters alone: given them, the orientations are well determined by every row.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 
@@ -46,13 +48,19 @@ class Solution:
     quadratic: bool
     """Whether the quadratic term was estimated."""
     chi2: float
-    knowledge: Information
+    learned: Callable[[], Information]
+    """`knowledge`, worked out when it is first asked for: of most searches only χ² is."""
     iterations: int
     converged: bool
     freedom: float = np.inf
     """Degrees of freedom that the noise is known to; infinite where it was stated and explains the residuals."""
     borrows: Mask | None = None
     """(m,) where each sensor's noise was estimated: whether it is taken as like the others'."""
+
+    @property
+    def knowledge(self) -> Information:
+        """What the readings tell of the parameters."""
+        return self.learned()
 
     @property
     def knows_noise(self) -> bool:
@@ -79,10 +87,10 @@ def search(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Solution:
     unknowns = held_frame(rows, unknowns)
     damping, chi2 = FIRST_DAMPING, cost(rows, unknowns)
     linear, iterations, converged = linearise(rows, unknowns), 0, False
-    basis = movable(rows, unknowns, quadratic)
+    modes = Modes.later(rows, unknowns, quadratic, linear)
     while not converged and iterations < MAX_ITERATIONS:
         iterations += 1
-        step, turns, fall = proposal(linear, basis, damping)
+        step, turns, fall = proposal(linear, modes(), damping)
         trial = held_frame(rows, unknowns.stepped(step, turns))
         trial_cost = cost(rows, trial)
         small = max(np.abs(step).max(), np.abs(turns).max()) < STILL
@@ -90,25 +98,48 @@ def search(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Solution:
         if trial_cost < chi2:
             unknowns, chi2, damping = trial, trial_cost, max(damping / 10, LEAST_DAMPING)
             linear = linearise(rows, unknowns)
-            basis = movable(rows, unknowns, quadratic)
+            modes = Modes.later(rows, unknowns, quadratic, linear)
         else:
             damping *= 10
-    knowledge = information(rows, unknowns, quadratic, linear)
-    return Solution(rows, unknowns, quadratic, chi2, knowledge, iterations, converged)
+    learned = cache(partial(information, rows, unknowns, quadratic, linear))
+    return Solution(rows, unknowns, quadratic, chi2, learned, iterations, converged)
 
 
-def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """The eigenvectors of what one linearisation tells of the parameters."""
+
+    basis: Array
+    """(5 m, F) as in `movable`, dimensionless."""
+    values: Array
+    """(F,) rising."""
+    vectors: Array
+    """(F, F) columns, in the basis."""
+    right: Array
+    """(F,) the right-hand side along them."""
+
+    @staticmethod
+    def later(rows: ModelRows, unknowns: Unknowns, quadratic: bool, linear: Linear) -> Callable[[], "Modes"]:
+        """Worked out when first asked for, and once however often a step is tried again."""
+
+        def now() -> Modes:
+            basis = movable(rows, unknowns, quadratic)
+            values, vectors = eigh(basis.T @ linear.schur @ basis)
+            return Modes(basis, values, vectors, vectors.T @ (basis.T @ linear.reduced))
+
+        return cache(now)
+
+
+def proposal(linear: Linear, modes: Modes, damping: float) -> tuple[Array, Array, float]:
     """Damped step of the parameters (5 m,), turns of the orientations (R, 2), rad, and the fall of χ² they promise.
 
-    ``basis`` (5 m, F), dimensionless as in `movable`. Directions that the set does not determine stay where they are.
+    Directions that the set does not determine stay where they are.
     """
-    values, vectors = eigh(basis.T @ linear.schur @ basis)
-    right = vectors.T @ (basis.T @ linear.reduced)
-    inside = np.where(values > unseen_below(values), right, 0.0) / (
-        np.maximum(values, 0.0) + damping * linear.full.max()
+    inside = np.where(modes.values > unseen_below(modes.values), modes.right, 0.0) / (
+        np.maximum(modes.values, 0.0) + damping * linear.full.max()
     )
     inside = inside * min(1.0, LONGEST / max(float(np.abs(inside).max()), LONGEST))
-    step = basis @ (vectors @ inside)
+    step = modes.basis @ (modes.vectors @ inside)
     turns = linear.turns(step)
     turns = turns * min(1.0, LONGEST / max(float(np.abs(turns).max()), LONGEST))
-    return step, turns, float(right @ inside + (linear.turn_gradient * linear.alone).sum())
+    return step, turns, float(modes.right @ inside + (linear.turn_gradient * linear.alone).sum())
