@@ -11,7 +11,7 @@ from service.kit.libraries import alt
 from service.kit.measures import Measure, day_of, deviation_measure, in_measure, limit, measured, signed
 from service.outlook.records import ParameterTrend
 from service.outlook.rules.histories import MeasuredChange, changes_of
-from service.outlook.rules.thinned import thinned
+from service.outlook.rules.thinned import kept
 from service.sessions.charts import (
     DATA_FORM,
     HIGH,
@@ -45,6 +45,8 @@ class TrackPoint:
     """Counts the service events before the session: a line never runs across one."""
     text: str
     condition: Condition
+    is_drawn: bool = True
+    """Whether a chart shows it; others that are close may stand for it."""
 
     @property
     def limits(self) -> tuple[float, float] | None:
@@ -95,15 +97,10 @@ def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]
     first = next(iter(changes.values()))[0].point
     largest = max(change.largest for course in changes.values() for change in course)
     unit = deviation_measure(first.kind, first.parameter, largest)
+    name = f"{first.parameter}-{first.kind}"
     return tuple(
-        ParameterCourse(
-            f"{first.parameter}-{first.kind}",
-            name,
-            first.parameter,
-            unit,
-            tuple(_track_point(c, unit) for c in thinned(course)),
-        )
-        for name, course in changes.items()
+        ParameterCourse(name, sensor, first.parameter, unit, tuple(_track_point(*one, unit) for one in kept(course)))
+        for sensor, course in changes.items()
     )
 
 
@@ -113,7 +110,7 @@ def _natural(name: str) -> tuple[str, int, str]:
     return name.rstrip("0123456789"), int(digits or 0), name
 
 
-def _track_point(change: MeasuredChange, unit: Measure) -> TrackPoint:
+def _track_point(change: MeasuredChange, is_drawn: bool, unit: Measure) -> TrackPoint:
     point, allowed = change.point, in_measure(change.tolerance, unit)
     floor = None if allowed is None else -allowed
     return TrackPoint(
@@ -127,6 +124,7 @@ def _track_point(change: MeasuredChange, unit: Measure) -> TrackPoint:
         epoch=change.epoch,
         text=_text(change, unit),
         condition=judged_as(point),
+        is_drawn=is_drawn,
     )
 
 
@@ -329,7 +327,7 @@ def _panel(
         description=track.points[-1].text,
         condition=track.points[-1].condition if track.points[-1].limits else None,
         datasets={
-            DATA_FORM: [_point(p) for p in track.points if p.shown is not None],
+            DATA_FORM: [_point(p) for p in track.points if p.shown is not None and p.is_drawn],
             "limits": _limits(track, span),
             **forecast_data(track, trends, _iso, _short),
             "services": [{"t": _iso(s.at), "what": s.kind, "note": s.note} for s in services],

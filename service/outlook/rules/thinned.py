@@ -4,34 +4,42 @@ A mark is some eight pixels wide and a chart some three hundred: of sessions tha
 others.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from operator import attrgetter
 from typing import NamedTuple
 
 from service.outlook.rules.histories import MeasuredChange
 
-WHOLE = 50
-"""Newest changes of which every one is kept, for the table beside the chart too."""
+MOST = 120
+"""Changes up to which every one is drawn."""
 STRETCHES = 40
 """Of time, each about as wide as a mark."""
 
 
-def thinned(changes: Sequence[MeasuredChange]) -> tuple[MeasuredChange, ...]:
-    """Of changes of one parameter, oldest first: the newest ones; of the others the first, the lowest and the highest,
-    by value and by the ends of the band, of every stretch, epoch, verdict and tolerance."""
-    old, new = changes[:-WHOLE], changes[-WHOLE:]
-    if not old:
-        return tuple(new)
-    start, whole = old[0].point.at, new[-1].point.at - old[0].point.at
+LISTED = 50
+"""Newest changes that a table lists, drawn or not."""
+
+
+def kept(changes: Sequence[MeasuredChange]) -> Iterator[tuple[MeasuredChange, bool]]:
+    """The changes of one parameter that a chart shows or a table lists, and whether a chart does; oldest first."""
+    seen, oldest = drawn(changes), len(changes) - LISTED
+    return ((change, i in seen) for i, change in enumerate(changes) if i in seen or i >= oldest)
+
+
+def drawn(changes: Sequence[MeasuredChange]) -> frozenset[int]:
+    """Which changes of one parameter, oldest first, a chart shows: the last one and, of every stretch, epoch, verdict
+    and tolerance, the first, the lowest and the highest, by value and by the ends of the band."""
+    if len(changes) <= MOST:
+        return frozenset(range(len(changes)))
+    start, whole = changes[0].point.at, changes[-1].point.at - changes[0].point.at
     groups: dict[tuple[object, ...], list[_Band]] = {}
-    for i, change in enumerate(old):
+    for i, change in enumerate(changes):
         if (value := change.value) is not None:
             point, spread = change.point, change.expanded or 0.0
             stretch = int(STRETCHES * ((point.at - start) / whole)) if whole else 0
             key = (stretch, change.epoch, point.verdict, point.is_reference, point.tolerance)
             groups.setdefault(key, []).append(_Band(i, value, value - spread, value + spread))
-    kept = {band.index for group in groups.values() for band in _extremes(group)}
-    return (*(old[i] for i in sorted(kept)), *new)
+    return frozenset({len(changes) - 1, *(band.index for group in groups.values() for band in _extremes(group))})
 
 
 class _Band(NamedTuple):

@@ -15,7 +15,7 @@ from service.outlook.charts import (
     tracks_of,
 )
 from service.outlook.records import UnitOutlook
-from service.pages.unit.report import LATEST
+from service.outlook.rules.thinned import LISTED
 from service.sessions.charts import ChartSet
 from service.sessions.records import ALL_PARAMETERS, HistoryPoint
 from service.sessions.states import RecordState
@@ -125,7 +125,7 @@ def parameter_page(
     """The charts and the table of at most so many points of one parameter."""
     services = tuple(service for service in said.services if service.state is RecordState.ACCEPTED)
     (tracks,) = tracks_of(points, services)
-    rows = tuple(islice(_rows(tracks), LATEST + 1))
+    rows = tuple(islice(_rows(tracks), LISTED + 1))
     worst_first = sorted(tracks, key=lambda track: track.points[-1].condition.rank)
     return ParameterPage(
         serial,
@@ -138,10 +138,10 @@ def parameter_page(
             worst_first, services, valid(said.notes), () if outlook is None or raw else outlook.trends
         ),
         sensors=tuple(track.sensor for track in tracks),
-        rows=rows[:LATEST],
-        is_cut=len(rows) > LATEST,
+        rows=rows[:LISTED],
+        is_cut=len(rows) > LISTED,
         newest=len({point.session for point in points}) if len(points) > most - len(tracks) else None,
-        is_thinned=sum(len(track.points) for track in tracks) < len(points),
+        is_thinned=sum(point.is_drawn for track in tracks for point in track.points) < len(points),
     )
 
 

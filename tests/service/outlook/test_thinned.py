@@ -8,7 +8,7 @@ import numpy as np
 
 from service.outlook.charts import history_charts, tracks_of
 from service.outlook.rules.histories import MeasuredChange, changes_of
-from service.outlook.rules.thinned import STRETCHES, WHOLE, thinned
+from service.outlook.rules.thinned import LISTED, MOST, STRETCHES, drawn
 from service.sessions.decision import Verdict
 from service.sessions.records import HistoryPoint
 from service.units.records import Service
@@ -20,18 +20,25 @@ POINTS = [bias_point(3 * i, float(value)) for i, value in enumerate(VALUES)]
 
 
 def shown(points: Sequence[HistoryPoint], services: Sequence[Service] = ()) -> tuple[MeasuredChange, ...]:
-    return thinned(changes_of(points, services))
+    changes = changes_of(points, services)
+    return tuple(changes[i] for i in sorted(drawn(changes)))
 
 
-def test_a_history_that_a_table_holds_is_shown_whole() -> None:
-    assert [change.point for change in shown(POINTS[:WHOLE])] == POINTS[:WHOLE]
+def test_a_short_history_is_shown_whole() -> None:
+    assert [change.point for change in shown(POINTS[:MOST])] == POINTS[:MOST]
 
 
-def test_a_long_one_is_shown_by_a_few_marks_a_stretch_and_the_newest() -> None:
+def test_a_long_one_is_shown_by_a_few_marks_a_stretch() -> None:
     found = [change.point for change in shown(POINTS)]
-    assert len(found) <= 3 * STRETCHES + WHOLE + 3
-    assert found[-WHOLE:] == POINTS[-WHOLE:]
-    assert found == sorted(found, key=lambda point: point.at)
+    assert len(found) <= 3 * (STRETCHES + 1)
+    assert found[-1] == POINTS[-1]
+
+
+def test_the_newest_points_are_kept_for_the_table() -> None:
+    ((track,),) = tracks_of(POINTS, ())
+    assert [point.session for point in track.points[-LISTED:]] == [point.session for point in POINTS[-LISTED:]]
+    data = history_charts([track], ()).panels[0].datasets["points"]
+    assert len(data) == len(shown(POINTS)) < len(track.points)
 
 
 def test_no_session_lies_outside_what_is_shown_near_it() -> None:

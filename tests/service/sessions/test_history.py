@@ -74,5 +74,5 @@ def test_a_table_holds_the_newest_sessions_and_says_where_the_others_are(
         return page.count('<tr><th scope="row"><a href="/sessions/'), page.count("Earlier sessions: <a")
 
     assert found() == (2, 0)
-    monkeypatch.setattr(parameters, "LATEST", 1)
+    monkeypatch.setattr(parameters, "LISTED", 1)
     assert found() == (1, 1)
