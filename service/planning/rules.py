@@ -29,8 +29,6 @@ from service.units.store import Units
 AMOUNTS = ("theta", "alpha_error", "beta_error", "noise", "variation")
 TOO_FAR_APART = "This cannot be planned: errors of the stand and noise lie too many orders of magnitude apart."
 APART = "bring it nearer to the others"
-KEPT = 64
-"""Plans that are kept."""
 MOST_TYPES = 500
 """Types that are offered for a choice."""
 
@@ -48,7 +46,7 @@ def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
     return whole, _planned(whole, whole.block(sensors_of(unit_type)), whole.kind)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=64)
 def _of_cone(question: PlanQuestion) -> Plan:
     """For sensors on a cone: the question alone decides it, and the empty one of the page is everybody's first."""
     return _planned(question, question.cone(), question.kind)

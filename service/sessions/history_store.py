@@ -10,7 +10,7 @@ from datetime import datetime
 from math import hypot
 from typing import Any, NamedTuple
 
-from sqlalchemy import ColumnElement, delete, func, select, true
+from sqlalchemy import ColumnElement, and_, delete, func, select, true
 from sqlalchemy.orm import aliased
 
 from estimator.allan.results import TERMS, interval_of
@@ -264,13 +264,11 @@ class History(Queries):
             .correlate(known)
             .scalar_subquery()
         )
-        is_newest = ParameterRow.session_id == newest
-        for column in place:
-            is_newest &= column == known.c[column.key]
+        there = and_(*(column == known.c[column.key] for column in place), ParameterRow.session_id == newest)
         query = (
             select(*POINT)
             .select_from(known)
-            .join(ParameterRow, is_newest)
+            .join(ParameterRow, there)
             .join(
                 SessionRow, (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
             )

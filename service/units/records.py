@@ -1,6 +1,5 @@
 """Services, notes and attachments of a unit, and its entry in the register."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
@@ -120,11 +119,6 @@ class Note:
     """Why it no longer holds; null while it does."""
     session: str | None = None
     """The session that it is about; null for the unit as a whole."""
-
-
-def valid(notes: Sequence[Note]) -> tuple[Note, ...]:
-    """Those that were not withdrawn."""
-    return tuple(note for note in notes if note.withdrawal is None)
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,11 @@ NO_FREEDOM = 0.5
 numbers; half of one is left where loosely labelled ones spend it on the labels."""
 
 
+Modes = tuple[Array, Array, Array, Array]
+"""Basis (5 m, F) of what may move, eigenvalues (F,), rising, and eigenvectors (F, F) of the information within it, and
+the right-hand side along these (F,)."""
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """Where the search ended."""
@@ -87,47 +92,28 @@ def search(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Solution:
     unknowns = held_frame(rows, unknowns)
     damping, chi2 = FIRST_DAMPING, cost(rows, unknowns)
     linear, iterations, converged = linearise(rows, unknowns), 0, False
-    modes = Modes.later(rows, unknowns, quadratic, linear)
+    modes: Modes | None = None
     while not converged and iterations < MAX_ITERATIONS:
         iterations += 1
-        step, turns, fall = proposal(linear, modes(), damping)
+        modes = modes or modes_of(linear, movable(rows, unknowns, quadratic))
+        step, turns, fall = proposal(linear, modes, damping)
         trial = held_frame(rows, unknowns.stepped(step, turns))
         trial_cost = cost(rows, trial)
         small = max(np.abs(step).max(), np.abs(turns).max()) < STILL
         converged = bool(small or fall < CONVERGED * max(1.0, chi2 * CONVERGED))
         if trial_cost < chi2:
             unknowns, chi2, damping = trial, trial_cost, max(damping / 10, LEAST_DAMPING)
-            linear = linearise(rows, unknowns)
-            modes = Modes.later(rows, unknowns, quadratic, linear)
+            linear, modes = linearise(rows, unknowns), None
         else:
             damping *= 10
     learned = cache(partial(information, rows, unknowns, quadratic, linear))
     return Solution(rows, unknowns, quadratic, chi2, learned, iterations, converged)
 
 
-@dataclass(frozen=True, eq=False)
-class Modes:
-    """The eigenvectors of what one linearisation tells of the parameters."""
-
-    basis: Array
-    """(5 m, F) as in `movable`, dimensionless."""
-    values: Array
-    """(F,) rising."""
-    vectors: Array
-    """(F, F) columns, in the basis."""
-    right: Array
-    """(F,) the right-hand side along them."""
-
-    @staticmethod
-    def later(rows: ModelRows, unknowns: Unknowns, quadratic: bool, linear: Linear) -> Callable[[], "Modes"]:
-        """Worked out when first asked for, and once however often a step is tried again."""
-
-        def now() -> Modes:
-            basis = movable(rows, unknowns, quadratic)
-            values, vectors = eigh(basis.T @ linear.schur @ basis)
-            return Modes(basis, values, vectors, vectors.T @ (basis.T @ linear.reduced))
-
-        return cache(now)
+def modes_of(linear: Linear, basis: Array) -> Modes:
+    """``basis`` (5 m, F), dimensionless as in `movable`, and what ``linear`` tells within it."""
+    values, vectors = eigh(basis.T @ linear.schur @ basis)
+    return basis, values, vectors, vectors.T @ (basis.T @ linear.reduced)
 
 
 def proposal(linear: Linear, modes: Modes, damping: float) -> tuple[Array, Array, float]:
@@ -135,11 +121,12 @@ def proposal(linear: Linear, modes: Modes, damping: float) -> tuple[Array, Array
 
     Directions that the set does not determine stay where they are.
     """
-    inside = np.where(modes.values > unseen_below(modes.values), modes.right, 0.0) / (
-        np.maximum(modes.values, 0.0) + damping * linear.full.max()
+    basis, values, vectors, right = modes
+    inside = np.where(values > unseen_below(values), right, 0.0) / (
+        np.maximum(values, 0.0) + damping * linear.full.max()
     )
     inside = inside * min(1.0, LONGEST / max(float(np.abs(inside).max()), LONGEST))
-    step = modes.basis @ (modes.vectors @ inside)
+    step = basis @ (vectors @ inside)
     turns = linear.turns(step)
     turns = turns * min(1.0, LONGEST / max(float(np.abs(turns).max()), LONGEST))
-    return step, turns, float(modes.right @ inside + (linear.turn_gradient * linear.alone).sum())
+    return step, turns, float(right @ inside + (linear.turn_gradient * linear.alone).sum())

@@ -5,8 +5,6 @@ others.
 """
 
 from collections.abc import Iterator, Sequence
-from operator import attrgetter
-from typing import NamedTuple
 
 from service.outlook.rules.histories import MeasuredChange
 
@@ -26,30 +24,19 @@ def kept(changes: Sequence[MeasuredChange]) -> Iterator[tuple[MeasuredChange, bo
     return ((change, i in seen) for i, change in enumerate(changes) if i in seen or i >= oldest)
 
 
-def drawn(changes: Sequence[MeasuredChange]) -> frozenset[int]:
+def drawn(changes: Sequence[MeasuredChange]) -> set[int]:
     """Which changes of one parameter, oldest first, a chart shows: the last one and, of every stretch, epoch, verdict
     and tolerance, the first, the lowest and the highest, by value and by the ends of the band."""
     if len(changes) <= MOST:
-        return frozenset(range(len(changes)))
+        return set(range(len(changes)))
     start, whole = changes[0].point.at, changes[-1].point.at - changes[0].point.at
-    groups: dict[tuple[object, ...], list[_Band]] = {}
+    groups: dict[tuple[object, ...], list[tuple[int, float, float]]] = {}
     for i, change in enumerate(changes):
         if (value := change.value) is not None:
-            point, spread = change.point, change.expanded or 0.0
+            point = change.point
             stretch = int(STRETCHES * ((point.at - start) / whole)) if whole else 0
             key = (stretch, change.epoch, point.verdict, point.is_reference, point.tolerance)
-            groups.setdefault(key, []).append(_Band(i, value, value - spread, value + spread))
-    return frozenset({len(changes) - 1, *(band.index for group in groups.values() for band in _extremes(group))})
-
-
-class _Band(NamedTuple):
-    index: int
-    value: float
-    lower: float
-    upper: float
-
-
-def _extremes(group: Sequence[_Band]) -> tuple[_Band, ...]:
-    by_value, lower, upper = attrgetter("value"), attrgetter("lower"), attrgetter("upper")
-    ends = min(group, key=by_value), max(group, key=by_value)
-    return group[0], *ends, min(group, key=lower), max(group, key=upper)
+            groups.setdefault(key, []).append((i, value, change.expanded or 0.0))
+    ends = (lambda one: one[1], lambda one: one[1] - one[2], lambda one: one[1] + one[2])
+    extremes = (pick(group, key=end)[0] for group in groups.values() for end in ends for pick in (min, max))
+    return {len(changes) - 1, *(group[0][0] for group in groups.values()), *extremes}

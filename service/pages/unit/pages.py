@@ -28,7 +28,7 @@ from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import HistoryPoint
 from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of
 from service.sessions.words.noise import MEANINGS, NAMES, grown, term_in_words
-from service.units.records import Custody, CustodyStep, Note, Service, valid
+from service.units.records import Custody, CustodyStep, Note, Service
 
 
 @dataclass(frozen=True)
@@ -215,7 +215,7 @@ def unit_page(
         headline=next_in_words(usable),
         next=None if outlook is None else next_calibration(outlook, usable.as_of),
         raw=raw,
-        noise=noise_part(noise, report.services, valid(notes)),
+        noise=noise_part(noise, report.services, [note for note in notes if note.withdrawal is None]),
         group=group,
         remarks=said,
         custody=tuple(history_of_custody),

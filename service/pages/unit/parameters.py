@@ -1,26 +1,19 @@
 """The history of every parameter of a unit's sensors: a head on the unit's page, and a page of its own."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby, islice
+from itertools import islice
 
 from estimator.message import say
 from service.kit.measures import day_of, heading
-from service.outlook.charts import (
-    ParameterCourse,
-    TrackPoint,
-    history_charts,
-    judged_as,
-    tolerance_text,
-    tracks_of,
-)
+from service.outlook.charts import ParameterCourse, TrackPoint, history_charts, judged_as, tolerance_text, tracks_of
 from service.outlook.records import UnitOutlook
 from service.outlook.rules.thinned import LISTED
 from service.sessions.charts import ChartSet
 from service.sessions.records import ALL_PARAMETERS, HistoryPoint
 from service.sessions.states import RecordState
 from service.sessions.words.conditions import NOT_JUDGED, Condition
-from service.units.records import UnitEvents, valid
+from service.units.records import UnitEvents
 
 PARAMETER_MEANINGS = {
     "scale": "Change of the scale factor since the reference of its epoch.",
@@ -87,29 +80,22 @@ def parameter_heads(latest: Sequence[HistoryPoint], worst: str | None) -> tuple[
     """Of the newest point of every parameter of every sensor; by condition, among equals the parameter nearest to its
     tolerance leads."""
     several = len({point.kind for point in latest}) > 1
-    groups = groupby(sorted(latest, key=_place), key=_place)
-    heads = [_head(list(points), several) for _, points in groups]
+    groups: dict[tuple[int, str], list[HistoryPoint]] = {}
+    for point in latest:
+        groups.setdefault((ALL_PARAMETERS.index(point.parameter), point.kind), []).append(point)
+    heads = [_head(groups[key], several) for key in sorted(groups)]
     return tuple(sorted(heads, key=lambda one: (one.worst.rank, one.parameter != worst)))
-
-
-def _place(point: HistoryPoint) -> tuple[int, str]:
-    return ALL_PARAMETERS.index(point.parameter), point.kind
 
 
 def _head(points: Sequence[HistoryPoint], several: bool) -> ParameterHead:
     parameter, kind = points[0].parameter, points[0].kind
-    name = heading(parameter)
+    name, judged = heading(parameter), [one for one in map(judged_as, points) if one is not NOT_JUDGED]
     return ParameterHead(
         parameter,
         kind,
         heading=say("{heading}, {kind}", heading=name, kind=f"{kind}s") if several else name,
-        worst=_worst(map(judged_as, points)),
+        worst=min(judged, key=lambda condition: condition.rank, default=NOT_JUDGED),
     )
-
-
-def _worst(conditions: Iterable[Condition]) -> Condition:
-    judged = (condition for condition in conditions if condition is not NOT_JUDGED)
-    return min(judged, key=lambda condition: condition.rank, default=NOT_JUDGED)
 
 
 def parameter_page(
@@ -123,7 +109,9 @@ def parameter_page(
     raw: bool,
 ) -> ParameterPage:
     """The charts and the table of at most so many points of one parameter."""
-    services = tuple(service for service in said.services if service.state is RecordState.ACCEPTED)
+    services = [service for service in said.services if service.state is RecordState.ACCEPTED]
+    notes = [note for note in said.notes if note.withdrawal is None]
+    trends = () if outlook is None or raw else outlook.trends
     (tracks,) = tracks_of(points, services)
     rows = tuple(islice(_rows(tracks), LISTED + 1))
     worst_first = sorted(tracks, key=lambda track: track.points[-1].condition.rank)
@@ -134,9 +122,7 @@ def parameter_page(
         meaning=PARAMETER_MEANINGS[head.parameter],
         together=TOGETHER.get(head.parameter, ""),
         tolerance=tolerance_text(tracks[0]),
-        charts=history_charts(
-            worst_first, services, valid(said.notes), () if outlook is None or raw else outlook.trends
-        ),
+        charts=history_charts(worst_first, services, notes, trends),
         sensors=tuple(track.sensor for track in tracks),
         rows=rows[:LISTED],
         is_cut=len(rows) > LISTED,
