@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
+from estimator.allan.results import TERMS
 from estimator.message import say
 from service.diagnosis.store import Diagnoses
 from service.errors import NotFoundError
@@ -129,6 +130,8 @@ def show_unit(
 ) -> HTMLResponse:
     """One unit; ``raw``: histories of its parameters with what the whole block did left in."""
     report = unit_report(store, serial, now)
+    latest = History(store).latest(Units(store).key(serial))
+    is_heard = any(point.parameter in TERMS for point in latest)
     is_judged_later = report.waiting and not report.summary.failed
     is_pending = report.summary.is_undated and not report.summary.failed
     return render(
@@ -136,10 +139,10 @@ def show_unit(
         "unit.html",
         unit_page(
             report,
-            History(store).latest(Units(store).key(serial)),
+            latest,
             usable_of(store, (report.summary,), now)[serial],
             raw=raw,
-            noise=recent_history(store, serial, HISTORY_LIMIT, HistoryQuery(noise=True)),
+            noise=recent_history(store, serial, HISTORY_LIMIT, HistoryQuery(noise=True)) if is_heard else (),
             flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,
             pair=found_and_left(store, report.unit_type, report.sessions, settings.coverage_factor),

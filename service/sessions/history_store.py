@@ -250,9 +250,9 @@ class History(Queries):
         return tuple(reversed(found)) if wanted.newest else tuple(found)
 
     def latest(self, unit: int, *, raw: bool = False) -> tuple[HistoryPoint, ...]:
-        """The newest point of every parameter of every sensor, in one query."""
+        """The newest point of every parameter of every sensor, and of every term of noise, in one query."""
         place = (ParameterRow.sensor, ParameterRow.kind, ParameterRow.parameter)
-        known = select(*place).where(ParameterRow.unit_id == unit, IS_JUDGED).distinct().subquery()
+        known = select(*place).where(ParameterRow.unit_id == unit).distinct().subquery()
         own, session = aliased(ParameterRow), aliased(SessionRow)
         newest = (
             select(own.session_id)

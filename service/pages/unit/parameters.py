@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from estimator.allan.results import TERMS
 from estimator.message import say
 from service.kit.measures import day_of, heading
 from service.outlook.charts import ParameterCourse, TrackPoint, history_charts, judged_as, tolerance_text, tracks_of
@@ -77,12 +78,13 @@ class ParameterPage:
 
 
 def parameter_heads(latest: Sequence[HistoryPoint], worst: str | None) -> tuple[ParameterHead, ...]:
-    """Of the newest point of every parameter of every sensor; by condition, among equals the parameter nearest to its
-    tolerance leads."""
-    several = len({point.kind for point in latest}) > 1
+    """Of the newest point of every parameter of every sensor, without the terms of noise; by condition, among equals
+    the parameter nearest to its tolerance leads."""
     groups: dict[tuple[int, str], list[HistoryPoint]] = {}
     for point in latest:
-        groups.setdefault((ALL_PARAMETERS.index(point.parameter), point.kind), []).append(point)
+        if point.parameter not in TERMS:
+            groups.setdefault((ALL_PARAMETERS.index(point.parameter), point.kind), []).append(point)
+    several = len({kind for _, kind in groups}) > 1
     heads = [_head(groups[key], several) for key in sorted(groups)]
     return tuple(sorted(heads, key=lambda one: (one.worst.rank, one.parameter != worst)))
 
