@@ -124,12 +124,12 @@ def catalogue(moments: PlaceMoments, names: Sequence[Found], further: float) -> 
     shared: list[Key] = []
     free: list[Key] = []
     for number, f in enumerate(names):
-        key, own = key_of(f.hypothesis), free if f.form == VARYING else shared
+        key, chosen = key_of(f.hypothesis), free if f.form == VARYING else shared
         last = number == len(names) - 1
         asked = [k for k in moments.causes if k not in (*shared, *free)] if last else [key]
         each = moments.given(shared, free).evidence(asked)
         chain += float(log_sum(np.array([log_sum(v) + share(moments, k) for k, (v, _) in each.items()])))
-        own.append(key)
+        chosen.append(key)
         chain += between_shapes(moments, f, shared, free)
     return chain - further * (len(names) - 1)
 
@@ -150,8 +150,8 @@ def shapes_of(moments: PlaceMoments, name: Found) -> list[Key]:
 
 def explained_by(moments: PlaceMoments, names: Sequence[Found]) -> float:
     """χ² beyond its degrees of freedom that names explain together, each session by itself."""
-    own = np.concatenate([moments.slots[key_of(f.hypothesis)] for f in names])
-    U, F = moments.U[:, own], moments.F[:, own[:, None], own]
+    slots = np.concatenate([moments.slots[key_of(f.hypothesis)] for f in names])
+    U, F = moments.U[:, slots], moments.F[:, slots[:, None], slots]
     statistic, freedom = batch(U, F)
     return float((statistic - freedom).sum())
 
@@ -197,12 +197,12 @@ def held(moments: PlaceMoments, names: Sequence[Found], chain: Sequence[Key]) ->
     kept = []
     for f in names:
         key = key_of(f.hypothesis)
-        own = float(log_sum(moments.given(shared=chain).evidence([key])[key][0])) + share(moments, key)
+        log_odds = float(log_sum(moments.given(shared=chain).evidence([key])[key][0])) + share(moments, key)
         terms, done = 0.0, list[Key]()
         for term in chain:
             terms += float(moments.given(shared=done, free=[key]).evidence([term])[term][0][SAME])
             done.append(term)
-        if own > ENOUGH + FURTHER and own > terms:
+        if log_odds > ENOUGH + FURTHER and log_odds > terms:
             kept.append(f)
     return tuple(kept)
 

@@ -246,7 +246,7 @@ def _witnesses(seating: Seating, e: int) -> _Witnesses:
                 pulled.reshape(-1, size),
             )
         )
-    return _Witnesses(seating.value[e], *(np.concatenate(each) for each in zip(*rows, strict=True)))
+    return _Witnesses(seating.value[e], *(np.concatenate(values) for values in zip(*rows, strict=True)))
 
 
 def _overlapping(seating: Seating, e: int) -> list[int]:
