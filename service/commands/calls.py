@@ -113,9 +113,9 @@ class Call:
             if context is None or context.invoked_subcommand is None:
                 self.run(given)
 
-        signature = inspect.Signature([_parameter(key, one) for key, one in parameters.items()])
+        signature = inspect.Signature([_parameter(key, parameter) for key, parameter in parameters.items()])
         command.__signature__ = signature  # type: ignore[attr-defined]  # which Typer reads
-        command.__annotations__ = {key: one.annotation for key, one in signature.parameters.items()}
+        command.__annotations__ = {key: parameter.annotation for key, parameter in signature.parameters.items()}
         command.__doc__ = self.help or CATALOGUE[name].says
         return command
 

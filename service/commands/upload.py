@@ -209,7 +209,7 @@ def _outcome(answer: Json) -> str:
 
 def _counts(outcomes: Counter[str]) -> str:
     """``1 not read yet, 3 stored``."""
-    return ", ".join(f"{outcomes[one]} {one}" for one in (UNFINISHED, STORED, BEFORE) if outcomes[one])
+    return ", ".join(f"{outcomes[outcome]} {outcome}" for outcome in (UNFINISHED, STORED, BEFORE) if outcomes[outcome])
 
 
 def _verdict_of(uploader: Uploader, file: Path) -> Json:

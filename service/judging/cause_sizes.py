@@ -90,31 +90,31 @@ def size_of_structure(structure: Structure, by: Yardstick) -> Size | None:
 def _sizes(finding: Finding, by: Yardstick) -> Iterator[Size]:
     """Of every sensor that the cause acts on, or of all together."""
     count = max(1, len(finding.sensors))
-    each = len(finding.amplitude) // count
+    width = len(finding.amplitude) // count
     known = find(finding.cause)
-    if not each or known is None or known.clips or "vibration" in known.needs:
+    if not width or known is None or known.clips or "vibration" in known.needs:
         size = _by_strength(finding.sensors, finding.strength, by)
         yield from () if size is None else (size,)
         return
     for k in range(count):
-        sensors, own = finding.sensors[k : k + 1], slice(k * each, (k + 1) * each)
+        sensors, part = finding.sensors[k : k + 1], slice(k * width, (k + 1) * width)
         kind = by.calibration.sensor(sensors[0]).kind if sensors else _leading(by)
-        found = _of_sensor(finding, own, kind, by, _left(finding, k))
+        found = _of_sensor(finding, part, kind, by, _left(finding, k))
         size = None if found is None else _beside(by, sensors, kind, *found)
         yield from () if size is None else (size,)
 
 
 def _of_sensor(
-    finding: Finding, own: slice, kind: str, by: Yardstick, left: float
+    finding: Finding, part: slice, kind: str, by: Yardstick, left: float
 ) -> tuple[str, tuple[float, float | None]] | None:
     """The parameter, and the length of a sensor's amplitudes with its sigma, of which a share is left in the session;
     None where it is nothing."""
-    parameter, times = _effect(finding.cause, finding.units[own][0], kind, by.residuals)
+    parameter, times = _effect(finding.cause, finding.units[part][0], kind, by.residuals)
     times *= left
-    value = hypot(*(x for x in finding.amplitude[own] if isfinite(x)))
+    value = hypot(*(x for x in finding.amplitude[part] if isfinite(x)))
     if parameter is None or value == 0:
         return None
-    spread = hypot(*(a * s / value for a, s in zip(finding.amplitude[own], finding.sigma[own], strict=True)))
+    spread = hypot(*(a * s / value for a, s in zip(finding.amplitude[part], finding.sigma[part], strict=True)))
     return parameter, (value * times, spread * times if isfinite(spread) else None)
 
 
@@ -122,8 +122,8 @@ def _left(finding: Finding, k: int) -> float:
     """The share of the k-th sensor's amplitude that is left at the first row: 1 but of what settles since power-on."""
     if finding.since_power_on is None:
         return 1.0
-    each = finding.nonlinear_each
-    return exp(-finding.since_power_on / each[k if len(each) > 1 else 0]["s"])
+    shapes = finding.nonlinear_each
+    return exp(-finding.since_power_on / shapes[k if len(shapes) > 1 else 0]["s"])
 
 
 def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str | None, float]:

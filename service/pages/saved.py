@@ -71,13 +71,13 @@ class Saved:
 def saved(found: Sequence[SavedView], view: ListView, page: ListPage, person: Person) -> Saved:
     """The links above a list."""
     first = view.first()
-    return Saved(page, tuple(_link(one, first, person) for one in found), query_of(first), bool(person.login),
+    return Saved(page, tuple(_link(s, first, person) for s in found), query_of(first), bool(person.login),
                  may_share(person))  # fmt: skip
 
 
-def _link(one: SavedView, first: str, person: Person) -> SavedLink:
-    url = address(one)
-    return SavedLink(one.id, one.name, url, url == first, one.shared, may_remove(one, person))
+def _link(view: SavedView, first: str, person: Person) -> SavedLink:
+    url = address(view)
+    return SavedLink(view.id, view.name, url, url == first, view.shared, may_remove(view, person))
 
 
 def address(view: SavedView) -> str:

@@ -26,33 +26,35 @@ REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
 """States of a session that another one can stand for."""
 
 
-def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: str) -> tuple[StoredSession, Derived]:
+def supersede_session(
+    storage: Storage, context: Deriving, replaced: Replaced, by: str
+) -> tuple[StoredSession, Derived]:
     """Marks a stored session as superseded by another; ConflictError where either does not count."""
     settled = settled_by(storage, replaced.session, by)
     with storage.database.writing() as store:
-        derived = supersede(store, way, replaced, Sessions(store).get(by), settled)
-    for serial, own in derived.items():
-        follow(storage, way, serial, own)
+        derived = supersede(store, context, replaced, Sessions(store).get(by), settled)
+    for serial, unit_derived in derived.items():
+        follow(storage, context, serial, unit_derived)
     with storage.database.reading() as store:
         session = Sessions(store).get(replaced.session)
         return session, derived[session.unit]
 
 
 def supersede(
-    store: Store, way: Deriving, replaced: Replaced, by: StoredSession, settled: str | None
+    store: Store, context: Deriving, replaced: Replaced, by: StoredSession, settled: str | None
 ) -> dict[str, Derived]:
     """The same within a transaction; derives what is known of the units concerned.
 
     ``settled``: the doubt that the other session is in and that this answers, of `settled_by`.
     """
     is_settled = _is_in_doubt_for(store, by, settled)
-    known = give_way(store, way.at, replaced, by)
+    known = give_way(store, context.at, replaced, by)
     touched = (known.id, by.id)
     if is_settled:
-        change(store, by, RecordState.ACCEPTED, Step(replaced.who, way.at, replaced.why))
-    derived = {known.unit: derive_again(store, way, known.unit, known.started_at, touched)}
+        change(store, by, RecordState.ACCEPTED, Step(replaced.who, context.at, replaced.why))
+    derived = {known.unit: derive_again(store, context, known.unit, known.started_at, touched)}
     if is_settled and by.unit != known.unit:
-        derived[by.unit] = derive_again(store, way, by.unit, by.started_at, touched)
+        derived[by.unit] = derive_again(store, context, by.unit, by.started_at, touched)
     return derived
 
 

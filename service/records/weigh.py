@@ -167,15 +167,15 @@ def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
     or can no longer be read, that nobody could look. No transaction is open."""
     id = session.id
     with storage.database.reading() as store:
-        of, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)
+        weighed, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)
     if made is not None and made.state is DiagnosisState.NOT_APPLICABLE:
-        return WeighedAgain(id, of, unlooked(storage, id))
+        return WeighedAgain(id, weighed, unlooked(storage, id))
     if made is None or made.found is None:
-        return WeighedAgain(id, of, None)
+        return WeighedAgain(id, weighed, None)
     try:
         source = read_upload(storage.files.content(stored.sha256), stored.filename)
     except (*LOST, SessionError):
-        return WeighedAgain(id, of, UNCHECKED)
+        return WeighedAgain(id, weighed, UNCHECKED)
     with storage.database.reading() as store:
         by = weighing_of(store, id, source.block)
-    return WeighedAgain(id, of, weigh(source, made.found, by).reservations)
+    return WeighedAgain(id, weighed, weigh(source, made.found, by).reservations)

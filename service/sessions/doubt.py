@@ -88,9 +88,7 @@ def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
     found = tuple(doubts)
     known = tuple(doubt.correction for doubt in found if doubt.correction is not None)
     stands_for = next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None)
-    return Remedies(
-        joined(", ", (one.text for one in known)), stands_for, next((one.unit for one in known if one.unit), "")
-    )
+    return Remedies(joined(", ", (d.text for d in known)), stands_for, next((d.unit for d in known if d.unit), ""))
 
 
 class DoubtKind(StrEnum):

@@ -297,7 +297,7 @@ def _reference(report: UnitReport) -> str:
 
 def _worst_first(sections: Iterable[ParameterSection], worst: str | None) -> tuple[ParameterSection, ...]:
     """By condition; among equals the parameter nearest to its tolerance leads."""
-    return tuple(sorted(sections, key=lambda one: (one.worst.rank, not one.anchor.startswith(f"{worst}-"))))
+    return tuple(sorted(sections, key=lambda section: (section.worst.rank, not section.anchor.startswith(f"{worst}-"))))
 
 
 def _section(
