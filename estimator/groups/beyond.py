@@ -103,8 +103,8 @@ def judged(moments: PlaceMoments, names: Sequence[Found]) -> BeyondJudgement:
 
 def total(values: Iterable[np.ndarray]) -> float:
     """ln of the sum of Bayes factors over candidates and forms."""
-    each = [float(log_sum(v)) for v in values]
-    return float(log_sum(np.array(each))) if each else -np.inf
+    sums = [float(log_sum(v)) for v in values]
+    return float(log_sum(np.array(sums))) if sums else -np.inf
 
 
 def share(moments: PlaceMoments, key: Key) -> float:
@@ -127,8 +127,8 @@ def catalogue(moments: PlaceMoments, names: Sequence[Found], further: float) -> 
         key, chosen = key_of(f.hypothesis), free if f.form == VARYING else shared
         last = number == len(names) - 1
         asked = [k for k in moments.causes if k not in (*shared, *free)] if last else [key]
-        each = moments.given(shared, free).evidence(asked)
-        chain += float(log_sum(np.array([log_sum(v) + share(moments, k) for k, (v, _) in each.items()])))
+        evidence = moments.given(shared, free).evidence(asked)
+        chain += float(log_sum(np.array([log_sum(v) + share(moments, k) for k, (v, _) in evidence.items()])))
         chosen.append(key)
         chain += between_shapes(moments, f, shared, free)
     return chain - further * (len(names) - 1)
@@ -173,23 +173,23 @@ def chain_of(moments: PlaceMoments, beyond: Sequence[Key], start: tuple[Key, ...
     value, explained, whole = 0.0, 0.0, -np.inf
     while len(chain) < LONGEST:
         asked = start if len(chain) < len(start) else beyond
-        each = moments.given(shared=chain).evidence([k for k in asked if k not in chain])
-        if not each:
+        evidence = moments.given(shared=chain).evidence([k for k in asked if k not in chain])
+        if not evidence:
             break
-        best = max(each, key=lambda k: each[k][0][SAME])
-        gained = float(each[best][0][SAME]) + prior
+        best = max(evidence, key=lambda k: evidence[k][0][SAME])
+        gained = float(evidence[best][0][SAME]) + prior
         if len(chain) > len(start) and gained < ENOUGH:
             break
         if asked is beyond:
-            whole = float(np.logaddexp(whole, value + total(v for v, _ in each.values()) + prior))
-        chain, value, explained = (*chain, best), value + gained, explained + each[best][1]
+            whole = float(np.logaddexp(whole, value + total(v for v, _ in evidence.values()) + prior))
+        chain, value, explained = (*chain, best), value + gained, explained + evidence[best][1]
     return Chain(chain, whole, explained)
 
 
 def strongest_of(moments: PlaceMoments) -> tuple[Key, ...]:
     """The term of the whole library that explains most alone: a law may have a part that the catalogue has too."""
-    each = moments.given().evidence(moments.terms)
-    return (max(each, key=lambda k: each[k][0][SAME]),) if each else ()
+    evidence = moments.given().evidence(moments.terms)
+    return (max(evidence, key=lambda k: evidence[k][0][SAME]),) if evidence else ()
 
 
 def held(moments: PlaceMoments, names: Sequence[Found], chain: Sequence[Key]) -> tuple[Found, ...]:

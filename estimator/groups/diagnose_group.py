@@ -66,9 +66,9 @@ def diagnose_statistics(
     selection = names_that_predict(select(layout))
     group = LackOfFitGroup(selection, tuple(sessions))
     selection = names_that_fit(group)
-    each = [estimated(selection, f) for f in selection.found]
+    effects = [estimated(selection, f) for f in selection.found]
     separator = Separator(tuple(sessions))
-    found = [finding_of(selection, effect, separator.measurements(selection, effect)) for effect in each]
+    found = [finding_of(selection, effect, separator.measurements(selection, effect)) for effect in effects]
     scale = selection.weighed()
     whole = merged(found)
     drawn = pictures(whole, sessions) if sessions else [None] * len(whole)
@@ -84,7 +84,7 @@ def diagnose_statistics(
         limits=limits(pooled(layout, PoolModel(), selection.scale), level),
         gain=gain_of(selection, found, sessions),
         e_value=float(np.exp(min(scale.log_e_value, LARGEST))),
-        notes=tuple(notes(selection, each)),
+        notes=tuple(notes(selection, effects)),
     )
 
 
@@ -136,7 +136,7 @@ def as_one(a: GroupFinding, b: GroupFinding) -> GroupFinding:
     )
 
 
-def notes(selection: GroupSelection, each: Sequence[Estimated]) -> list[str]:
+def notes(selection: GroupSelection, effects: Sequence[Estimated]) -> list[str]:
     """What a reader should know beside the findings."""
     found: list[str] = []
     for f, h in selection.misfits:

@@ -111,7 +111,7 @@ def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisP
         axes=np.array([now.axis for now, _, _ in known]),
         frames=np.stack([now.axis_tangents for now, _, _ in known]),
         origins=np.array([before.axis for _, before, _ in known]),
-        origin_frames=np.stack([then.axis_tangents for _, then, _ in known]),
+        origin_frames=np.stack([before.axis_tangents for _, before, _ in known]),
         current=covariance,
         origin=origin,
         dofs=_dofs(known),

@@ -144,7 +144,7 @@ def _explained(groups: Sequence[SeatedUnits], stand_of: Array) -> _Explained:
             break
         candidate, _ = max(evident, key=lambda pair: event_test(pair[1], len(taken), pair[0].looked).evidence)
         taken.append(candidate)
-        seating = seated(groups, columns(groups, [each.event for each in taken]), stand_of)
+        seating = seated(groups, columns(groups, [t.event for t in taken]), stand_of)
     return _Explained(*_pruned(seating, groups, taken), tuple(tried))
 
 

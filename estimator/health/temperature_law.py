@@ -144,12 +144,13 @@ def _step(
     learned: Sequence[Seen],
     place: tuple[SensorCalibration, str, float],
     between: tuple[float, float],
-    by: tuple[float, TypeLaw | None],
+    level_and_law: tuple[float, TypeLaw | None],
 ) -> TemperatureStep | None:
     """By the type's law where that leaves the parameter decidable, or where the sessions show a law themselves.
 
-    ``place``: a sensor of the reference, a parameter and T; ``by``: the chance of a law where none is, the type's."""
-    (origin, parameter, allowed), (level, law) = place, by
+    ``place``: a sensor of the reference, a parameter and T; ``level_and_law``: the chance of a law where
+    none is, and the type's."""
+    (origin, parameter, allowed), (level, law) = place, level_and_law
     unit = allowed if law is None else law.tolerance
     history = history_of(learned, origin, parameter, unit)
     if history is None or len(history.celsius) < ENOUGH_WITH_TYPE:

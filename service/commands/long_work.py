@@ -209,7 +209,7 @@ COMMANDS: dict[str, Row] = {
         _show_model,
         "Take an accepted cause out of the model again.",
         has_json=True,
-        then="/models/{id}",
+        shown_instead="/models/{id}",
     ),
     "models show": Call(
         "GET /models/{id}",

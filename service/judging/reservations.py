@@ -224,7 +224,7 @@ class Doubted:
     findings: tuple[Finding, ...]
     structures: tuple[Structure, ...]
     noise: tuple[NoiseScale, ...]
-    by: Yardstick
+    yardstick: Yardstick
     otherwise: tuple[Otherwise, ...]
     """Verdicts under the other models that are left standing."""
     known: Known = frozenset()
@@ -252,7 +252,7 @@ def _of_findings(session: Doubted) -> Iterator[Reservation]:
     and what is in the model already is taken care of."""
     for finding in session.findings:
         of_record = is_of_record(finding.cause)
-        size = None if of_record or not acts_within(finding.cause) else size_of_cause(finding, session.by)
+        size = None if of_record or not acts_within(finding.cause) else size_of_cause(finding, session.yardstick)
         if of_record or (_is_large(size) and not _is_known(finding, session.known)):
             kind, text = Doubt.RECORD if of_record else Doubt.CAUSE, named(finding, _in_words(size))
             plain = Reservation(kind, text, advice_on(finding.cause), finding.sensors, finding.cause)
@@ -313,7 +313,7 @@ def _of_structures(session: Doubted) -> Iterator[Reservation]:
     if record:
         yield Reservation(Doubt.RECORD, unexplained(record, ""), CORRECT)
         return
-    sized = ((s, size_of_structure(s, session.by)) for s in session.structures)
+    sized = ((s, size_of_structure(s, session.yardstick)) for s in session.structures)
     large = [(s, size) for s, size in sized if size is not None and _is_large(size)]
     if large:
         first, size = max(large, key=lambda pair: pair[1].share)
@@ -325,7 +325,7 @@ def _of_errors(session: Doubted) -> Iterator[Reservation]:
     """Errors stated too large only make a verdict plainer, so they are named where one is in doubt."""
     in_doubt = session.verdict not in (None, Verdict.PASS, Verdict.FAIL)
     wrong = (scale for scale in session.noise if scale.factor > 1 or in_doubt)
-    kinds = {sensor.kind for sensor in session.by.calibration.sensors}
+    kinds = {sensor.kind for sensor in session.yardstick.calibration.sensors}
     for scale in wrong:
         [sentence] = wrong_errors((scale,), kinds)
         yield Reservation(Doubt.STATED_ERRORS, within(sentence), RESTATE, scale.sensors)
@@ -333,7 +333,7 @@ def _of_errors(session: Doubted) -> Iterator[Reservation]:
 
 def _of_readings(session: Doubted) -> Iterable[Reservation]:
     """Nothing is left over to look for causes in."""
-    exact = session.by.calibration.fit.is_exact and not session.findings
+    exact = session.yardstick.calibration.fit.is_exact and not session.findings
     return (Reservation(Doubt.NOT_CHECKED, TOO_FEW, ADD),) if exact else ()
 
 

@@ -78,7 +78,7 @@ def _beside(whole: ParameterJudgement, rest: ParameterJudgement, doubt: float) -
         return None
     part = np.subtract(whole.change, rest.change)
     sigma = np.sqrt(np.square(rest.change_own) + doubt * part**2)
-    return Left(change=list(rest.change), own=sigma.tolist(), dof=rest.dof, part=part.tolist())
+    return Left(change=list(rest.change), sigma=sigma.tolist(), dof=rest.dof, part=part.tolist())
 
 
 def explains(found: Diagnosed) -> bool:

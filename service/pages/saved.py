@@ -52,7 +52,7 @@ class Saved:
     links: tuple[SavedLink, ...]
     query: str
     """Of the view that is shown; empty where nothing is asked, which needs no name."""
-    own: bool
+    is_signed_in: bool
     """Whether somebody can keep one for themselves."""
     may_share: bool
 
@@ -60,7 +60,7 @@ class Saved:
     def may_save(self) -> bool:
         """Whether the view that is shown can be kept, and is not yet."""
         is_known = any(link.is_shown for link in self.links)
-        return bool(self.query) and not is_known and (self.own or self.may_share)
+        return bool(self.query) and not is_known and (self.is_signed_in or self.may_share)
 
     @property
     def shown(self) -> SavedLink | None:

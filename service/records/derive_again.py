@@ -200,8 +200,8 @@ def foresee_upload(store: Store, context: Deriving, new: StoredSession, made: Ca
     )
     if unit is None:
         known = KnownUnit(store, NOT_STORED, replace(NOTHING_STORED, counted=(added,)), {new.id: made.calibration})
-        by = _of_new_unit(store, context, made)
-        return judged(known, by, places_of(known))
+        rules = _of_new_unit(store, context, made)
+        return judged(known, rules, places_of(known))
     known = known_unit(store, unit, {new.id: made.calibration})
     counted = _in_order([session for session in known.records.counted if session.id != but] + [added])
     files = {new.id: (new.sha256, new.filename)}

@@ -151,8 +151,8 @@ def _found(storage: Storage, task: DiagnosisTask, now: datetime) -> StoredDiagno
     document = json_text(STORED.written(found))
     read = read_diagnosis(document)
     with storage.database.reading() as store:
-        by = weighing_of(store, task.session.id, session.block)
-    weighed = Weighed(None, ()) if read is None else weigh(session, read, by)
+        weighing = weighing_of(store, task.session.id, session.block)
+    weighed = Weighed(None, ()) if read is None else weigh(session, read, weighing)
     return replace(
         _nothing_found(task, state_of(found), summary_of(found), now),
         found=read,

@@ -83,8 +83,8 @@ def judge_waiting(
     with storage.database.writing() as store:
         known = known_unit(store, Units(store).hold(serial))
         waiting = tuple(p for p in places_of(known) if p.session.basis == NOT_JUDGED)
-        by = judging(known, serial, waiting, context.files, context.coverage_factor, context.at)
-        fit = fitting(by, waiting, foreseen)
+        rules = judging(known, serial, waiting, context.files, context.coverage_factor, context.at)
+        fit = fitting(rules, waiting, foreseen)
         Derivations(store).look_again(known.unit, END_OF_TIME, [p.session.id for p in fit])
         put(known, fit, foreseen, known.records.diagnosed.keys())
         return _left(store, context, serial)
@@ -98,7 +98,7 @@ def _weigh_waiting(storage: Storage, context: Deriving, serial: str, sessions: S
         unweighed = {session.id: session for session in known.records.counted if session.is_unweighed}
         for weighed in found:
             session = unweighed.get(weighed.id)
-            if session is None or weighable(store, session) != weighed.of:
+            if session is None or weighable(store, session) != weighed.weighable:
                 continue
             if weighed.reservations is not None:
                 Diagnoses(store).put_reservations(weighed.id, weighed.reservations)

@@ -222,26 +222,26 @@ def judging(
     return Judging(files, coverage_factor, at, UnitTypes(known.store).of_unit_through_time(serial), computed)
 
 
-def judged(known: KnownUnit, by: Judging, places: Sequence[Place]) -> Foreseen:
+def judged(known: KnownUnit, rules: Judging, places: Sequence[Place]) -> Foreseen:
     """The numerical part, on what is stored."""
     against = [p.reference for p in places if p.reference is not None]
     learned = {session.id for p in places for session in p.learned}
     known.read_all([*(p.session.id for p in places), *(session.id for session in against), *learned])
     return Foreseen(
-        {place.session.id: _outcome(known, by, place) for place in places},
+        {place.session.id: _outcome(known, rules, place) for place in places},
         {(session.id, session.revision): known.calibration(session.id) for session in against},
     )
 
 
-def _outcome(known: KnownUnit, by: Judging, place: Place) -> Rejudgement:
-    unit_type = by.unit_type(place.session.id)
+def _outcome(known: KnownUnit, rules: Judging, place: Place) -> Rejudgement:
+    unit_type = rules.unit_type(place.session.id)
     if place.session.programme == IN_SERVICE:
-        return _of_recording(known, by, place, unit_type)
+        return _of_recording(known, rules, place, unit_type)
     calibration = known.calibration(place.session.id)
     against = None if place.is_reference or place.reference is None else known.calibration(place.reference.id)
     opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
     steps = NO_STEPS if against is None else _steps(known, place, against, unit_type)
-    decided = judge(calibration, against, unit_type, by.coverage_factor, opening=opening, steps=steps)
+    decided = judge(calibration, against, unit_type, rules.coverage_factor, opening=opening, steps=steps)
     return Rejudgement(place.basis, unit_type, decided)
 
 
@@ -262,14 +262,14 @@ def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: Un
     return temperature_steps(seen, reference, steps, tolerances_of(unit_type), laws)
 
 
-def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitType) -> Rejudgement:
+def _of_recording(known: KnownUnit, rules: Judging, place: Place, unit_type: UnitType) -> Rejudgement:
     """A recording in service moves the calibration that it is compared with, so it is compared anew."""
     calibration, id = known.calibration(place.session.id), place.session.id
     if place.reference is None:
         return Rejudgement(place.basis, unit_type, Judged(calibration, (), NOTHING_TO_COMPARE, is_reference=False))
     sha256, filename = known.file(id)
     try:
-        source = read_upload(by.files.content(sha256), filename)
+        source = read_upload(rules.files.content(sha256), filename)
     except (*LOST, SessionError) as lost:
         return Rejudgement(
             place.basis,
@@ -279,17 +279,17 @@ def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitTy
     reference = known.calibration(place.reference.id)
     found = ReferenceComparison(reference, parity_check(source, reference))
     moved = parity_calibration(found.result, reference)
-    decided = judge_recording(moved, found, unit_type, by.coverage_factor)
+    decided = judge_recording(moved, found, unit_type, rules.coverage_factor)
     return Rejudgement(place.basis, unit_type, decided, made(moved))
 
 
-def fitting(by: Judging, places: Sequence[Place], foreseen: Foreseen) -> tuple[Place, ...]:
+def fitting(rules: Judging, places: Sequence[Place], foreseen: Foreseen) -> tuple[Place, ...]:
     """The places that were foreseen so."""
-    return tuple(p for p in places if _fits(by, p, foreseen.outcomes.get(p.session.id)))
+    return tuple(p for p in places if _fits(rules, p, foreseen.outcomes.get(p.session.id)))
 
 
-def _fits(by: Judging, place: Place, found: Rejudgement | None) -> bool:
-    return found is not None and (found.basis, found.unit_type) == (place.basis, by.unit_type(place.session.id))
+def _fits(rules: Judging, place: Place, found: Rejudgement | None) -> bool:
+    return found is not None and (found.basis, found.unit_type) == (place.basis, rules.unit_type(place.session.id))
 
 
 def put(known: KnownUnit, places: Sequence[Place], foreseen: Foreseen, diagnosed: Collection[str]) -> None:

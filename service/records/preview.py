@@ -58,7 +58,7 @@ class _Trial:
     """A service that is recorded again and again, and never kept."""
 
     storage: Storage
-    way: Deriving
+    context: Deriving
     serial: str
     new: NewService
     foreseen: ForeseenVerdicts
@@ -67,10 +67,10 @@ class _Trial:
     def recorded(self) -> Iterator[Store]:
         """The store as it is with it, until the block ends."""
         with self.storage.database.trying() as store:
-            number, _ = Services(store).add(Units(store).hold(self.serial), self.new, self.way.at)
+            number, _ = Services(store).add(Units(store).hold(self.serial), self.new, self.context.at)
             Services(store).put_state(number, RecordState.ACCEPTED)
-            derive_again(store, self.way, self.serial, self.new.at, foreseen=self.foreseen)
-            sum_up(store, self.way, self.serial)
+            derive_again(store, self.context, self.serial, self.new.at, foreseen=self.foreseen)
+            sum_up(store, self.context, self.serial)
             yield store
 
 
@@ -103,7 +103,7 @@ def _after(trial: _Trial) -> _State:
         sources = gathered(store, serial, known)
     outlook = worked_out(sources)
     with trial.recorded() as store:
-        put_outlook(store, sources.past, outlook, trial.way.at)
+        put_outlook(store, sources.past, outlook, trial.context.at)
         return _state(store, serial)
 
 

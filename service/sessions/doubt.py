@@ -49,7 +49,7 @@ class FileCorrection:
 class Doubt:
     """One thing that cannot be as the file says."""
 
-    what: str
+    problem: str
     """Beyond what physics allows, with the numbers."""
     slip: str
     """What has probably happened."""
@@ -68,7 +68,7 @@ class Doubt:
         )
         if self.stands_for is not None:
             remedy = " Together they would count twice: choose the one that counts."
-        return say("{what}: {slip}.{remedy}", what=self.what, slip=self.slip, remedy=remedy)
+        return say("{what}: {slip}.{remedy}", what=self.problem, slip=self.slip, remedy=remedy)
 
 
 @dataclass(frozen=True)

@@ -116,8 +116,10 @@ def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
         return []
     ends = [(UPPER, np.argmax), (LOWER, np.argmin)]
     alone = who_may_misfit(session)
-    each = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in alone]
-    by_channel = [clips_among(session, suspects, cause) for suspects in each]
+    suspected_sides = [
+        [Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in alone
+    ]
+    by_channel = [clips_among(session, suspects, cause) for suspects in suspected_sides]
     return max(by_channel, key=lambda clips: sum(clip.strength**2 for clip in clips), default=[])
 
 

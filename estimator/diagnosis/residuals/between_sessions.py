@@ -49,9 +49,9 @@ def carried(now: SensorParameters, frames: Array) -> Array:
 
 def carried_each(now: SensorParameters, frames: Array) -> Array:
     """(m, 5, 5) dimensionless, leading axes free: the same of every sensor, whose parameters stay its own."""
-    each = np.broadcast_to(np.eye(5), (*frames.shape[:-2], 5, 5)).copy()
-    each[..., 3:, 3:] = np.swapaxes(now.axis_tangents, -1, -2) @ frames
-    return each
+    blocks = np.broadcast_to(np.eye(5), (*frames.shape[:-2], 5, 5)).copy()
+    blocks[..., 3:, 3:] = np.swapaxes(now.axis_tangents, -1, -2) @ frames
+    return blocks
 
 
 def inverse_root(matrix: Array) -> Array:

@@ -109,7 +109,7 @@ class Left:
     """What is left of a change without what a diagnosis explains of it."""
 
     change: list[float]
-    own: list[float]
+    sigma: list[float]
     """Its standard uncertainty that the session brings."""
     dof: float | None
     part: list[float]
@@ -216,7 +216,7 @@ def _point(row: ChangeRow | ReferenceRow, measured: Measured, dof: float | None,
     change, sigma = measured
     if left is None:
         return row.at, change, sigma, dof, row.temperature
-    return row.at, np.subtract(change, left.part).tolist(), left.own, left.dof, row.temperature
+    return row.at, np.subtract(change, left.part).tolist(), left.sigma, left.dof, row.temperature
 
 
 def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Measured, ...] | None:

@@ -24,7 +24,7 @@ from service.web.list_view import Shown
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
 NO_CHOICES = FleetChoices()
-NONE_SAVED = Saved(ListPage.FLEET, (), "", own=False, may_share=False)
+NONE_SAVED = Saved(ListPage.FLEET, (), "", is_signed_in=False, may_share=False)
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
 
