@@ -157,8 +157,8 @@ def page(answers: Sequence[Answer], command: str) -> str:
     """Markdown."""
     parts = [
         f"# Courses that sensors share\n\nMade by `{command}`. {INTRODUCTION}",
-        targets(answers),
-        MISSED,
+        in_full(targets(answers)),
+        f"[Every target, and what is measured](shared-causes.md#shared-courses). {MISSED}",
         courses(answers),
     ]
     return "\n\n".join(parts) + "\n"

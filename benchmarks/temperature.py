@@ -19,7 +19,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from benchmarks.details import publish
+from benchmarks.details import in_full, publish
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from benchmarks.temperature_law import LINE, NONE, PAGE, PARABOLA, ROOM, TOLERANCES, WARM, law_of, with_section
@@ -206,8 +206,10 @@ def performed(run: Callable[..., Iterator[object]], units: int, seed: int) -> An
 
 def page(answers: Answers, command: str) -> str:
     """Markdown."""
+    measured = in_full(table(("", "target", "measured"), rows(answers)))
     return (
-        f"# Temperature\n\nMade by `{command}`. {INTRODUCTION}\n\n{table(('', 'target', 'measured'), rows(answers))}\n"
+        f"# Temperature\n\nMade by `{command}`. {INTRODUCTION}\n\n"
+        f"[Every target, and what is measured](shared-causes.md#temperature).\n\n{measured}\n"
     )
 
 

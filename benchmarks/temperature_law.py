@@ -6,6 +6,7 @@ law that the sessions before it tell.
 
 import argparse
 import os
+import re
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from benchmarks.details import publish, published
+from benchmarks.details import in_full, publish, published
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import calibrate, read_session
@@ -55,6 +56,8 @@ LAG = 0.7
 BEND = 0.2
 """Part of the bend of a parabola."""
 UNFIT = ("fail", "conditional-fail")
+FEW = 100
+"""Below so many the page says of how many a share is."""
 
 
 @dataclass(frozen=True)
@@ -232,8 +235,23 @@ COLUMNS = (
 )  # fmt: skip
 
 
+def without_interval(cell: str) -> str:
+    """A share without its interval, and without its number where that is not small."""
+    found = re.fullmatch(r"(.*) \(.*\) of (\d+)", cell)
+    return cell if found is None else found[1] if int(found[2]) >= FEW else f"{found[1]} of {found[2]}"
+
+
+def paired(own: Sequence[str], typed: Sequence[str]) -> list[str]:
+    """One row of both: by the unit's own sessions / with the laws of its type."""
+    law, before, _, measured, *rest = own
+    both = (f"{without_interval(a)} / {without_interval(b)}" for a, b in zip(rest, typed[4:], strict=True))
+    return [law, before, without_interval(measured), *both]
+
+
 def section(answers: Answers, command: str) -> str:
     """Markdown."""
+    whole = list(rows(answers))
+    short = [paired(own, typed) for own, typed in zip(whole[::2], whole[1::2], strict=True)]
     return (
         f"{HEADING}\n\nMade by `{command}`. The reference is measured at {ROOM:.0f} °C, the other sessions before "
         f"between {COLDEST:.0f} and {WARMEST:.0f} °C, the judged one at {WARM:.0f} °C; nothing but temperature has "
@@ -242,8 +260,9 @@ def section(answers: Answers, command: str) -> str:
         f"{TYPE_SESSIONS} sessions each, which do with four sessions before. "
         f"*{LOOSE.capitalize()}*: a fifth of a parabola's bend, sensors {LAG:g} °C (one sigma) off the stated "
         "temperature. U is that of the corrected change. *Moved with the room*: a bias moves by 150 µg when the "
-        "room becomes 15 °C warmer for good.\n\n"
-        f"{table(COLUMNS, rows(answers))}\n"
+        f"room becomes 15 °C warmer for good. Here by the unit's own sessions / with the laws of the type, "
+        f"shares of {FEW} or more unless stated:\n\n"
+        f"{table((*COLUMNS[:2], *COLUMNS[3:]), short)}\n\n{in_full(table(COLUMNS, whole))}\n"
     )
 
 

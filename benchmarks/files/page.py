@@ -59,7 +59,7 @@ No uploaded file may end, freeze or bloat the service:
 * **Sizes are counted** before anything is built: cells of a workbook, rows and columns of CSV, nesting of JSON.
 * **A separate process reads.** XLSX, HDF5, MAT, Parquet, logs and text of more than {LONG // MEBIBYTE} MiB are read
   by a process whose memory, CPU time and wall-clock time the kernel limits. It cannot write files, has no settings or
-  passwords, and returns numbers and text, never objects. When it is ended, the upload is answered 422.
+  passwords, and returns numbers and text, never objects.
 * **Nothing large is held in memory.** An upload of more than {IN_MEMORY // 1024} KiB is written to disk and
   hashed as it arrives.
 * **Concurrency is limited**, one place fewer for one account or address; some more uploads wait up to ten seconds,
@@ -79,8 +79,7 @@ A cell takes about 60 bytes of memory. Reading may take a second more for every
 {_places()}
 ## Measured
 
-Hostile files and the heaviest allowed ones against a running service: peak memory over idle of all its processes,
-longest answer of `/healthz` meanwhile.
+Hostile files and the heaviest allowed ones against a running service, memory of all its processes.
 
 Worst single file: {worst:.0f} MiB over idle. Longest wait for `/healthz`: {wait:.2f} s.
 
@@ -88,10 +87,10 @@ Worst single file: {worst:.0f} MiB over idle. Longest wait for `/healthz`: {wait
 
 ## Fuzzing
 
-Tests damage valid files of every format at random: each is read, or refused with a reason. `python -m benchmarks.fuzz`
-does the same guided by the code that it reaches.
-`make fuzz-numbers` puts extreme numbers into every field ([bounds](../session-file.md#which-numbers-are-taken)) and
-into every number of the other calls, and writes what became of them to [a table](../../benchmarks/fuzz/NUMBERS.md).
+Tests damage valid files of every format at random, `python -m benchmarks.fuzz` guided by the code that it reaches: each
+is read, or refused with a reason. `make fuzz-numbers` puts extreme numbers into every field
+([bounds](../session-file.md#which-numbers-are-taken)) and every other call: [what became of
+them](../../benchmarks/fuzz/NUMBERS.md).
 """
 
 

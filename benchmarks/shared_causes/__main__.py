@@ -28,7 +28,7 @@ TITLE = "Causes that sensors share: every target"
 INTRODUCTION = (
     "What is asked of causes that sensors share, of errors with tails, of unequal noise and of temperature, with what "
     "is measured. Intervals: 95 % (Wilson); a target is *missed* where the interval excludes it, and *open* where only "
-    "the rate itself is beyond it."
+    "the rate itself is beyond it; the number is that of [the reason](#why)."
 )
 
 

@@ -1,9 +1,9 @@
 """Lines of tables on pages: which stand on the page of all targets, and which of them miss theirs, and why."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from benchmarks.details import DOCS, RESULTS
+from benchmarks.details import DOCS, RESULTS, published
 from benchmarks.shared_causes.unlike import Line
 from benchmarks.study.report import table
 
@@ -23,21 +23,21 @@ WHY = {
     "kth exp_6: held": "Four of the sensors follow courses of their own, and the directions of all rows are fitted to "
     "them too.",
     "one shared course": "Slow rooms and ramps: biases that wander each by itself are about as likely.",
-    "the same, where an oracle": "As above; the oracle knows the course and lacks only the sizes.",
+    "the same, where an oracle": "The same; the oracle knows the course and lacks only the sizes.",
     "the same: one time constant": "Time constants that happen to lie close together.",
     "sound, ": "Large errors that fall together look like a step, or like one noisier sensor: the first is listed "
     "beside single readings. An oracle that knows the law of the errors names none.",
     "stated errors over true ones, gyro bias": "A rotation that gyros share counts as the noise of each: its slow part "
     "cannot be separated from theirs within the rests.",
     "95 % intervals": "Slow flicker within the rests, whose spectrum three sensors hardly determine.",
-    "one sensor": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
+    "times noisier": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
     "time of a diagnosis": "A course is weighed against each sensor's own, against wandering biases and in every fold.",
     "seasons, line: units flagged": "One unit of twenty.",
     "`bias-temperature-curve`, 5": "The line is named where the bend is the smaller part.",
     "`scale-temperature-curve`, 5": "The line is named where the bend is the smaller part.",
     "`scale-temperature`, 5": "One session of thirteen.",
 }
-"""Beginnings of lines, and why they miss their targets where they do."""
+"""Words of lines, and why these miss their targets where they do."""
 
 
 def sections(text: str) -> dict[str, str]:
@@ -55,18 +55,47 @@ def read(text: str) -> Iterator[Line]:
 
 
 def head(kept: dict[str, str]) -> str:
-    """The table of all targets."""
+    """The tables of all targets, then each reason once."""
     groups = {TITLES[part]: read(body) for part, body in kept.items() if part in TITLES}
     for name, path in list(OTHERS.items())[:2]:
-        groups[name.capitalize()] = read((DOCS / "diagnosis" / path).read_text(encoding="utf-8"))
+        groups[name.capitalize()] = read(published(DOCS / "diagnosis" / path))
     groups["Raw logs by hand"] = rests()
-    rows = [
-        (group, words, target, measured, *judged(words, target, measured))
-        for group, lines in groups.items()
-        for words, target, measured in lines
-        if target and ("at" not in target or target.split()[-1] in words.split())
+    reasons: list[str] = []
+    tables = [f"## {group}\n\n{asked(list(filter(is_asked, lines)), reasons)}" for group, lines in groups.items()]
+    numbered = "\n".join(f"{number}. {why}" for number, why in enumerate(reasons, 1))
+    return "\n\n".join([*tables, f"## Why\n\n{numbered}"])
+
+
+def is_asked(line: Line) -> bool:
+    """Whether a line has a target, and the target is of it."""
+    words, target, _ = line
+    return bool(target) and ("at" not in target or target.split()[-1] in words.split())
+
+
+def asked(lines: Sequence[Line], reasons: list[str]) -> str:
+    """One line a case where the same is asked of every case, else one line a target."""
+    parts = [
+        (words.partition(": "), target, told((words, target, measured), reasons)) for words, target, measured in lines
     ]
-    return table(("", "what", "target", "measured", "", "why"), rows)
+    cases = list(dict.fromkeys(case for (case, _, _), _, _ in parts))
+    columns = list(dict.fromkeys((of, target) for (_, _, of), target, _ in parts))
+    if len(cases) == 1 or len(cases) * len(columns) != len(parts):
+        return table(("", "target", "measured"), [("".join(words), target, cell) for words, target, cell in parts])
+    cells = [cell for _, _, cell in parts]
+    rows = [(case, *cells[k * len(columns) : (k + 1) * len(columns)]) for k, case in enumerate(cases)]
+    return table(("", *(f"{of}, {target}" for of, target in columns)), rows)
+
+
+def told(line: Line, reasons: list[str]) -> str:
+    """What is measured; where it misses its target that too, with the number of its reason."""
+    words, target, measured = line
+    verdict = verdict_of(target, measured)
+    why = next((reason for part, reason in WHY.items() if part in words), "")
+    if not verdict or not why:
+        return f"{measured}, *{verdict}*" if verdict else measured
+    if why not in reasons:
+        reasons.append(why)
+    return f"{measured}, *{verdict}* {reasons.index(why) + 1}"
 
 
 def rests() -> Iterator[Line]:
@@ -79,15 +108,8 @@ def rests() -> Iterator[Line]:
         titles, _, *rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in block.splitlines()]
         for row in rows:
             for column in (titles.index("mean"), titles.index("gyro bias")):
-                yield f"stated errors over true ones, {titles[column]}, {row[0]}", "0.7–1.4", row[column]
-            yield f"{titles[-1]}, {row[0]}", "93–97 %", row[-1]
-
-
-def judged(words: str, target: str, measured: str) -> tuple[str, str]:
-    """*Missed* or *open* with the reason, or nothing."""
-    verdict = verdict_of(target, measured)
-    why = next((reason for begun, reason in WHY.items() if words.startswith(begun)), "")
-    return verdict, why if verdict else ""
+                yield f"{row[0]}: stated errors over true ones, {titles[column]}", "0.7–1.4", row[column]
+            yield f"{row[0]}: {titles[-1]}", "93–97 %", row[-1]
 
 
 def verdict_of(target: str, measured: str) -> str:

@@ -9,14 +9,14 @@ from benchmarks.study.rates import rate
 
 EXPLANATION = """# Evidence of many sessions
 
-A session shows an effect from about five standard errors. Thirty sessions of a unit, on a stand or of a type show one
-of strength 1 in each as plainly.
+A session shows an effect from about five standard errors. Thirty sessions of a unit, stand or type show one of strength
+1 in each as plainly.
 
 ## What is kept of a session
 
 `statistics_of(session)` keeps, for every cause that can last at every place and shape, its *score* U (how much of it
 the residuals hold) and *information* F (how much they could hold). Clipped channels, record errors
-and outliers are corrected first; a session that scatters otherwise than stated enters with the scatter that it shows.
+and outliers are corrected first; the scatter is that which the session shows.
 The amplitude of a group is â = (ΣF)⁻¹ΣU with covariance (ΣF)⁻¹.
 
 ## Whose it is
@@ -27,20 +27,19 @@ The amplitude of a group is â = (ΣF)⁻¹ΣU with covariance (ΣF)⁻¹.
 | type | the same of the sensor of one name in every unit, or of every sensor of a kind | one unit's, the stand's |
 | stand | of stand and fixture, over all units; a sensor cause that every sensor measured there shares | the units' |
 
-Only the same units on another stand separate two levels that explain alike.
+The same units on another stand separate two levels that explain alike.
 
 ## When a name is given
 
-A group is evaluated after every upload, so evidence is counted in *e-values*, valid however often one looks: the mean
-over all causes, places, shapes and three forms (same in every session, varying, since some session) reaches 100 in at
-most one group of a hundred without an effect. A name must also hold without the session that shows it most, make
-held-out sessions likelier, and leave only noise.
+Evidence is counted in *e-values*, valid however often one looks: their mean over all causes, places, shapes and three
+forms (same in every session, varying, since some session) reaches 100 in at most one group of a hundred without an
+effect. A name must also hold without the session that shows it most, make held-out sessions likelier, and leave only
+noise.
 
-A name is weighed at its place against a library of some two hundred empirical terms (products of input, its size,
-sign and powers, cross-axis input, temperature, its square, rate and lag, time, waves of β, the row before), less
-those that a cause describes:
+A name is weighed at its place against some two hundred empirical terms (products of input, its size, sign and powers,
+cross-axis input, temperature, its square, rate and lag, time, waves of β, the row before) that no cause describes:
 
-* Terms at least 20 times as likely, or as certain as the name, withdraw it: *unexplained*, with the learned equation.
+* Terms at least 20 times as likely, or as certain as the name, withdraw it: *unexplained*, with their equation.
 * Terms within 200 to 1, or different sizes in different sessions (the form `varying`, or Cochran's test at 1 %), put
   `unexplained` among its alternatives.
 * Every further name on one sensor costs ln 100.
@@ -52,23 +51,22 @@ those that a cause describes:
 | `amplitude`, `sigma`, `spread` | mean over sessions in SI, and τ between them (random effects) |
 | `form`, `since` | `same`, `varying` or `since` a date |
 | `e_value`, `strength` | evidence; norm of the pooled effect in standard errors |
-| `rivals` | what cannot be told from it, how far it is, which measurement would tell and how many sessions of it |
+| `rivals` | what cannot be told from it, how far it is, which measurement would tell in how many sessions |
 | `sessions`, `limits` | every session's amplitude; what the pool finds with 95 % power |
-| `gain` | the amplitudes fixed on the first two thirds of the sessions, tried on the later ones |
-| `terms` | empirical terms, learned where the catalogue ends: equation, gain on the later sessions, nearest cause |
+| `gain` | the amplitudes of the first two thirds of the sessions, tried on the later ones |
+| `terms` | empirical terms where the catalogue ends: equation, gain on the later sessions, nearest cause |
 
 ## In the service
 
-A group's answer is made again, beside the requests, when one of its sessions is added or changes its state. The newest
+A group's answer is made again, in the background, when one of its sessions is added or changes its state. The newest
 60 accepted sessions are pooled, of a unit those since its last service; a stand's group adds up to 60 of the same units
-elsewhere. `left_out` counts older ones, `not_pooled` lists sessions without a record. The pages of unit, type and stand
-show amplitudes by session, residuals with and without the effect, gain, rivals and limits; [the
-API](../api.md#diagnosis-and-models) gives the same.
+elsewhere. `left_out` counts older ones, `not_pooled` lists sessions without a record. It is shown on the pages of unit,
+type and stand, and by [the API](../api.md#diagnosis-and-models).
 
 ## Accepted into a model
 
-An engineer accepts an effect for the unit, every unit of a type, or whatever is measured on a stand: on the page, by
-`POST …/diagnosis/accept`, or
+An engineer accepts an effect for the unit, every unit of a type, or whatever is measured on a stand: on the page, over
+HTTP, or
 
 ```
 imu-health models accept stand ODG-1 beta-eccentricity --by "K. Ito" --why "encoder looked at"
@@ -76,21 +74,21 @@ imu-health models show 7
 imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
 ```
 
-* Its size is the group's, not estimated again in each session (only a varying effect is). It is subtracted from the
-  readings, and its σ and spread τ enter every parameter's uncertainty.
-* Of one cause on one sensor the unit's size takes precedence over the type's, and that over the stand's. A cause
-  accepted from a single session is estimated in each.
-* Every stored session concerned is recomputed; the revision's page shows changed verdicts and the largest change in
-  each unit. Withdrawal is a new revision.
-* A learned term is accepted as `empirical-term`; what a session lacks of it, such as temperature, is left out there.
+* Its size is the group's (only a varying effect is estimated in each session). It is subtracted from the readings, and
+  its σ and spread τ enter every parameter's uncertainty.
+* Of one cause on one sensor the unit's size comes before the type's, and that before the stand's. A cause accepted
+  from a single session is estimated in each.
+* Stored sessions concerned are recomputed; the revision's page shows changed verdicts and the largest change in each
+  unit. Withdrawal is a new revision.
+* A learned term is accepted as `empirical-term`, without what a session lacks, such as temperature.
 
 ## In the diagnosis of one session
 
-`diagnose(session, history)` pools the session with its unit's earlier ones. An effect that they show together and the
-session alone does not is named in it, with the pooled amplitude, if its readings support it: prior odds n + 1 for n
-earlier sessions, times p(readings | amplitude of the others) / p(readings | none), at least nine in ten. Below one in
-twenty it is reported as ended. Such a finding has `over_sessions`: how many sessions, their e-value, and the
-probability in this one; it raises no flag. Blocks of more than 16 sensors are pooled only where records were kept.
+`diagnose(session, history)` pools the session with its unit's earlier ones. An effect that only they together show is
+named in it, with the pooled amplitude, if its readings support it: prior odds n + 1 for n earlier sessions, times
+p(readings | amplitude of the others) / p(readings | none), at least nine in ten. Below one in twenty it is reported as
+ended. Such a finding has `over_sessions`: how many sessions, their e-value, and the probability in this one; it raises
+no flag. Blocks of more than 16 sensors are pooled only where records were kept.
 
 Units of twelve sessions, pooled strength 8.2 to 9.5, at most 3.5 in a session (`python -m
 benchmarks.study.with_history --groups 53 --seed 1`):
@@ -117,9 +115,9 @@ the others show.
 
 ## Limits
 
-Record causes, outliers, jumps, clipping and excess noise belong to their session and are not pooled. Parameters
-between sessions are [no evidence here](../decisions/residuals-alone.md). Of two similar effects on one stand one may
-take the name of both.
+Record causes, outliers, jumps, clipping and excess noise belong to their session and are not pooled, nor are
+[parameters between sessions](../decisions/residuals-alone.md). Of two similar effects on one stand one may take the
+name of both.
 
 Effects of one sensor drawn from a hidden grammar of products, strength 6 in each of ten sessions (`python -m
 benchmarks.study.groups --groups 26 --seed 31 --part grammar`): a name without `unexplained` in 0.0 % (0.0–6.9) of 52.
