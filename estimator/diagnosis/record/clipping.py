@@ -116,10 +116,8 @@ def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
         return []
     ends = [(UPPER, np.argmax), (LOWER, np.argmin)]
     alone = who_may_misfit(session)
-    suspected_sides = [
-        [Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in alone
-    ]
-    by_channel = [clips_among(session, suspects, cause) for suspects in suspected_sides]
+    channels = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in alone]
+    by_channel = [clips_among(session, suspects, cause) for suspects in channels]
     return max(by_channel, key=lambda clips: sum(clip.strength**2 for clip in clips), default=[])
 
 
