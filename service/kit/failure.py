@@ -43,7 +43,7 @@ class Failed:
 
     kind: FailedKind
     """What is done."""
-    subject: str
+    of: str
     """Session, unit, group, job or address."""
     why: str
     """Why it failed, in short; the log says more."""

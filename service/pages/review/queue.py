@@ -102,4 +102,4 @@ def _certificates(store: Store) -> Iterator[ToDo]:
 def _failed(store: Store, now: datetime) -> Iterator[ToDo]:
     for failed in Failures(store).listed(now, MOST):
         text = say("{what} failed: {why}", what=NAMES[failed.kind], why=failed.why)
-        yield ToDo(WaitingKind.WORK, failed.subject, text, None, "/jobs#failed")
+        yield ToDo(WaitingKind.WORK, failed.of, text, None, "/jobs#failed")
