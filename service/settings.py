@@ -104,9 +104,9 @@ class Settings(BaseSettings):
     oidc_issuer: str = Field(
         default="",
         pattern=r"^(https?://[^\s?#]+)?$",
-        description="OpenID provider that people may sign in at, as it names itself: https://login.example.org.",
+        description="OpenID provider for signing in, its issuer address: https://login.example.org.",
     )
-    oidc_client_id: str = Field(default="", max_length=500, description="As the provider knows this service.")
+    oidc_client_id: str = Field(default="", max_length=500, description="Client ID of this service at the provider.")
     oidc_client_secret_file: Path | None = Field(default=None, description="File with the secret of that client.")
     oidc_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
         default=(), description="More hosts that the provider's own description may name, separated by commas."
@@ -117,11 +117,11 @@ class Settings(BaseSettings):
     oidc_roles: Annotated[tuple[tuple[str, Literal["viewer", "crew", "engineer", "admin"]], ...], NoDecode] = Field(
         default=(),
         description="Role of each value of that claim: imu-crew=crew,imu-leads=engineer. *=viewer gives that role to "
-        "everybody whom the provider knows; whom none is given to has no account unless an admin makes it.",
+        "everybody whom the provider knows; without a role there is no account unless an admin makes it.",
     )
     allowed_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
         default=(),
-        description="Names that requests may call the service by, beside this machine's own and that of public_url, "
+        description="Host names that the service answers to, beside this machine's own and that of public_url, "
         "separated by commas: imu.example.org, or imu.example.org:8443 for that port only; * allows any.",
     )
     machine: Literal["small", "large"] = Field(
@@ -130,7 +130,10 @@ class Settings(BaseSettings):
         "times as much in four times the memory and time, for 8 GB.",
     )
     stop_seconds: float = Field(
-        default=30.0, ge=0, le=3600, description="Longest that a stopping service lets requests at hand finish, s."
+        default=30.0,
+        ge=0,
+        le=3600,
+        description="Longest time for requests in progress to finish when the service stops, s.",
     )
     diagnosis_workers: int = Field(
         default_factory=cores_left,

@@ -11,7 +11,7 @@ HEAD = """# Dependencies and their licences
 
 Made by `python -m benchmarks.licences` from `requirements.lock` and what the packages say of themselves. The tests' own
 tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
-and so is what `make bench` adds (`requirements-bench.lock`: imucal and pandas).
+what `make bench` adds (`requirements-bench.lock`: imucal, pandas and jax) MIT, BSD and Apache.
 
 """
 COLUMNS = "| licence | packages |\n| --- | --- |\n"

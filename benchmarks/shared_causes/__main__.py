@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from benchmarks.details import in_full, publish, published, whole_of
+from benchmarks.shared_causes.departing import departing
 from benchmarks.shared_causes.gained import gained
 from benchmarks.shared_causes.lines import OTHERS, PAGE, head, sections
 from benchmarks.shared_causes.recorded import recorded
@@ -20,6 +21,7 @@ from benchmarks.study.report import table
 
 PARTS: dict[str, Callable[[int, int], Iterator[Line]]] = {
     "recordings": recorded,
+    "departing": departing,
     "tails": tails,
     "noisier": noisier,
     "gain": gained,

@@ -11,6 +11,7 @@ PAGE = DOCS / "diagnosis" / "shared-causes.md"
 OTHERS = {"shared courses": "shared.md", "temperature": "temperature.md", "noise of means": "../methods/noise.md"}
 TITLES = {
     "recordings": "Recordings",
+    "departing": "Departures from a course",
     "tails": "Errors with tails",
     "noisier": "Unequal noise",
     "gain": "Gain in one sentence",
@@ -20,8 +21,8 @@ RESTS = "block, tilt"
 WHY = {
     "kth exp_1": "Its gyros settle with several time constants: beside one exponential for all, some scatter more than "
     "stated, and biases that wander each by itself are as likely.",
-    "kth exp_6: held": "Four of the sensors follow courses of their own, and the directions of all rows are fitted to "
-    "them too.",
+    "kth exp_6: held": "A1z, A3z, A4z and G8x stay off by about twice their standard errors: one exponential is "
+    "nearly, not wholly, their course.",
     "one shared course": "Slow rooms and ramps: biases that wander each by itself are about as likely.",
     "the same, where an oracle": "The same; the oracle knows the course and lacks only the sizes.",
     "the same: one time constant": "Time constants that happen to lie close together.",

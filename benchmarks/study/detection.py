@@ -31,6 +31,7 @@ import numpy as np
 from scipy.special import gammaln, ive, logsumexp
 
 from benchmarks.details import RESULTS
+from benchmarks.study.neural.network import Answer, answer, weights
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator import diagnose, read_session
@@ -88,6 +89,8 @@ class Look:
     """Largest threshold at which sequentially thresholded least squares keeps a term."""
     energy: float
     """−ln p of the residuals' χ²: no shape is looked for."""
+    neural: Answer | None = None
+    """What a network says, where one is given."""
 
 
 def tasks(sessions: int, sound: int, seed: int) -> Iterator[Task]:
@@ -102,7 +105,7 @@ def drawn(task: Task) -> Case:
     return draw_at(task.strength, task.seed, task.cause) if task.cause else draw_case("none", task.seed)
 
 
-def perform(task: Task) -> Look | None:
+def perform(task: Task, network: Path | None = None) -> Look | None:
     """None where no session drawn can hold the effect."""
     try:
         case = drawn(task)
@@ -123,6 +126,7 @@ def perform(task: Task) -> Look | None:
         {s: likelihood_ratio(state, seen, s) for s in STRENGTHS},
         sparse_threshold(state),
         energy(state),
+        answer(network, state.residuals) if network else None,
     )
 
 
@@ -206,7 +210,10 @@ METHODS: tuple[tuple[str, Method], ...] = (
 )
 
 
-def page(looks: list[Look], command: str) -> str:
+NEURAL = "neural posterior, learned from simulated sessions"
+
+
+def page(looks: list[Look], command: str, network: Path | None = None) -> str:
     """Markdown."""
     sound = [look for look in looks if not look.cause]
     hidden = {s: [look for look in looks if look.cause and look.strength == s] for s in STRENGTHS}
@@ -221,6 +228,10 @@ def page(looks: list[Look], command: str) -> str:
     for name, method in METHODS:
         cells = [_passed(sound, seen, partial(method, strength=s)) for s, seen in hidden.items()]
         rows.append((name, "1 %", *cells))
+    if network:
+        cells = [_passed(sound, h, lambda look: look.neural.log_odds) for h in hidden.values()]
+        right = [_passed(sound, h, lambda look: look.neural.log_odds, right=True) for h in hidden.values()]
+        rows += [(NEURAL, "1 %", *cells), (f"{NEURAL}: the right name first", "", *right)]
     rows.append(("matched subspace that is *given the cause*", "1 %", *(_given(sound, h) for h in hidden.values())))
     head = ("method", "sound sessions", *(f"strength {s:g}" for s in STRENGTHS))
     return (
@@ -231,12 +242,27 @@ def page(looks: list[Look], command: str) -> str:
         "The last line is given the cause that acts, so that it looks for one family of shapes where all others look "
         f"for {len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody "
         "who measures can avoid.\n"
+        f"{learned(network) if network else ''}"
     )
 
 
-def _passed(sound: list[Look], hidden: list[Look], statistic: Callable[[Look], float]) -> str:
+def learned(network: Path) -> str:
+    """A paragraph: what the network is and how it learned."""
+    had = weights(network)
+    return (
+        "\nThe neural posterior learns signatures of its own, from attitude, time and temperature of the readings: "
+        f"{had['minutes']:.0f} minutes ({had['processor_minutes']:.0f} of one processor), {had['sessions']} sessions, "
+        f"{had['draws'] / 1e6:.1f} million draws; log loss of held-out sessions {had['loss']:.2f}, of the prior "
+        f"{had['prior_loss']:.2f} (`python -m benchmarks.study.neural`). Without the catalogue it finds most of what "
+        "the diagnosis finds and names fewer causes right: learned signatures blur steps, kinks and causes that "
+        "resemble one another.\n"
+    )
+
+
+def _passed(sound: list[Look], hidden: list[Look], statistic: Callable[[Look], float], *, right: bool = False) -> str:
+    """Share above the threshold; ``right``: with the right cause, as the network names it."""
     threshold = float(np.quantile([statistic(look) for look in sound], 1 - ALARMS, method="higher"))
-    return str(rate([statistic(look) > threshold for look in hidden]))
+    return str(rate([statistic(k) > threshold and (not right or k.neural.cause == k.cause) for k in hidden]))
 
 
 def _given(sound: list[Look], hidden: list[Look]) -> str:
@@ -253,16 +279,18 @@ def main() -> None:
     parser.add_argument("--sound", type=int, default=400)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--network", type=Path, help="weights that `python -m benchmarks.study.neural` wrote")
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     work, looks = list(tasks(options.sessions, options.sound, options.seed)), list[Look]()
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
-        for k, look in enumerate(pool.map(perform, work, chunksize=2), 1):
+        for k, look in enumerate(pool.map(partial(perform, network=options.network), work, chunksize=2), 1):
             looks += [look] if look else []
             print(f"\r{k}/{len(work)}", end="", file=sys.stderr)
     print(file=sys.stderr)
     given = f"--sessions {options.sessions} --sound {options.sound} --seed {options.seed}"
-    text = page(looks, f"python -m benchmarks.study.detection {given}")
+    given += f" --network {options.network}" if options.network else ""
+    text = page(looks, f"python -m benchmarks.study.detection {given}", options.network)
     options.out.write_text(text, encoding="utf-8")
     print(text)
 

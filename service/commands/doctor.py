@@ -120,14 +120,14 @@ def variables(environment: Mapping[str, str]) -> Iterator[DoctorCheck]:
 def contradictions(settings: Settings) -> Iterator[DoctorCheck]:
     """Contradictory settings."""
     if settings.sign_in == "off" and not settings.is_local:
-        text = say("nobody signs in, and {host} may be reached from elsewhere", host=settings.host)
+        text = say("nobody has to sign in, and {host} can be reached from other machines", host=settings.host)
         yield DoctorCheck("sign-in", CheckState.WARN, text, say("Set IMU_HEALTH_SIGN_IN=required."))
     if hosts_of(settings).any_address:
-        yield DoctorCheck("address", CheckState.WARN, say("the service answers to addresses in digits only"),
-                      say("Name it with IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS."))  # fmt: skip
+        yield DoctorCheck("address", CheckState.WARN, say("the service answers to IP addresses only"),
+                      say("Set its name in IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS."))  # fmt: skip
     if settings.oidc_issuer and not settings.oidc_client_id:
         yield DoctorCheck("sign-in elsewhere", CheckState.FAIL,
-                    say("an OpenID provider is named, but not how it knows this service"),
+                    say("an OpenID provider is set, but no client ID"),
                       say("Set IMU_HEALTH_OIDC_CLIENT_ID."))  # fmt: skip
     for name in ("oidc_client_secret_file", "seal_key_file", "seal_password_file"):
         path: Path | None = getattr(settings, name)
@@ -139,7 +139,7 @@ def contradictions(settings: Settings) -> Iterator[DoctorCheck]:
                 say("Correct {name}, or the file.", name=f"{PREFIX}{name.upper()}"),
             )
     if settings.seal_password_file and not settings.seal_key_file:
-        yield DoctorCheck("seal", CheckState.WARN, say("a password is given, but no key that it opens"),
+        yield DoctorCheck("seal", CheckState.WARN, say("a password of the seal's key is set, but no key"),
                       say("Set IMU_HEALTH_SEAL_KEY_FILE."))  # fmt: skip
 
 
@@ -217,13 +217,13 @@ def _waiting(opened: Database, settings: Settings) -> Iterator[DoctorCheck]:
     with opened.reading() as store:
         pending = WorkQueue(store, WorkKind.DIAGNOSIS).count()
     workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
-    text = say("{n} beside the requests, {pending} diagnoses waiting", n=workers, pending=pending)
+    text = say("{n} in the background, {pending} diagnoses waiting", n=workers, pending=pending)
     if workers == 0:
         yield DoctorCheck(
             "workers",
             CheckState.WARN,
             text,
-            say("Set IMU_HEALTH_DIAGNOSIS_WORKERS, or whoever reads one waits for it."),
+            say("Set IMU_HEALTH_DIAGNOSIS_WORKERS, or a diagnosis is made only when somebody opens it."),
         )
     elif workers > cores:
         too_many = say("{text}; the machine has {cores} cores", text=text, cores=cores)

@@ -74,7 +74,7 @@ def _show_job(job: Answer) -> None:
     heading = translated("Job {id}", id=job["id"])
     screen().print(f"{heading}  {_state(job)}  {escape(_work(job))}  {_done(job)}")
     if job["held_up"]:
-        say(translated("Held up, and tried again by itself: {why}", why=job["held_up"]))
+        say(translated("Delayed, retried automatically: {why}", why=job["held_up"]))
     for failure in job["failures"]:
         say(f"{failure['subject']}: {failure['reason']}" if failure["subject"] else failure["reason"])
     if job["problems"]:

@@ -44,7 +44,7 @@ def serve(
     if settings.sign_in == "off" and not settings.is_local:
         say(f"Listening on {settings.host} without sign-in: whoever reaches this address may do everything.")
     if hosts_of(settings).any_address:
-        say("It answers to addresses in digits only: IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS names it.")
+        say("It answers to IP addresses only: set its name in IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS.")
     require_writable(settings.files)
     upgrade(settings.database)
     filling = _demonstration(settings) if demo else None

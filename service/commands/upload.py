@@ -197,7 +197,7 @@ def upload_files(
         for_each(files, work, show, "uploading", quiet=as_json, has_bar=has_bar, summary=counts)
 
 
-UNFINISHED, STORED, BEFORE = "not read yet", "stored", "stored before"
+UNFINISHED, STORED, BEFORE = "unfinished", "stored", "before"
 """What became of a file that did not fail."""
 
 
@@ -209,7 +209,12 @@ def _outcome(answer: Json) -> str:
 
 def _counts(outcomes: Counter[str]) -> str:
     """``1 not read yet, 3 stored``."""
-    return ", ".join(f"{outcomes[outcome]} {outcome}" for outcome in (UNFINISHED, STORED, BEFORE) if outcomes[outcome])
+    said = {
+        UNFINISHED: translated("{count} not read yet", count=outcomes[UNFINISHED]),
+        STORED: translated("{count} stored", count=outcomes[STORED]),
+        BEFORE: translated("{count} stored before", count=outcomes[BEFORE]),
+    }
+    return ", ".join(text for outcome, text in said.items() if outcomes[outcome])
 
 
 def _verdict_of(uploader: Uploader, file: Path) -> Json:
@@ -227,8 +232,9 @@ def _print_line(answer: Json) -> None:
         screen().print(f"[bold]{escape(answer['subject'])}[/] was received: job {answer['id']} works on it")
         return
     verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
-    reason = answer["reason"] if answer["created"] else f"already stored as session {answer['id']}, nothing was stored"
-    said = " ".join(filter(None, (translated(reason), translated(answer.get("remark", "")))))
+    stored = translated("already stored as session {id}, nothing was stored", id=answer["id"])
+    reason = translated(answer["reason"]) if answer["created"] else stored
+    said = " ".join(filter(None, (reason, translated(answer.get("remark", "")))))
     line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(said)}"
     screen().print(line, soft_wrap=True)
 

@@ -61,7 +61,7 @@ class UnitSummary:
     worst_parameter: str | None
     """The parameter that the verdict hangs on."""
     margin: float | None
-    """1 − (|d| + U)/T of it: 1 is spotless, 0 the edge of pass, negative beyond."""
+    """1 − (|d| + U)/T of it: 1 is no change, 0 the limit of a pass, negative beyond."""
     diagnosis: str = ""
     """What the simulation gets wrong about the latest session; empty if nothing."""
     gain: Hidden[str] = ""

@@ -77,7 +77,7 @@ def otherwise(verdict: Verdict, causes: Sequence[str], sensors: Sequence[str], *
     if named:
         return say("{word} with these effects corrected", word=word)
     if not causes:
-        return say("{word} if the cause is none of the known ones", word=word)
+        return say("{word} if the cause is not a known one", word=word)
     names = [cause_on(causes[0], sensors), *(cause_on(cause, ()) for cause in causes[1:])]
     return say("{word} with {names} corrected", word=word, names=joined(" and ", names))
 

@@ -36,7 +36,7 @@ WORDS = tuple(
     """.strip().splitlines()
     for word in line.split("|")
 )
-MARGIN = "1 − (|y| + U)/T: 1 is spotless, 0 the edge of a pass"
+MARGIN = "1 − (|y| + U)/T: 1 is no change, 0 the limit of a pass"
 FROM_PYDANTIC = (
     "Field required",
     "Extra inputs are not permitted",

@@ -95,8 +95,8 @@ def explained_in_words(at: datetime, parts: Sequence[tuple[TrackKey, float]]) ->
     ]
     more = [say("{number} more", number=len(parts) - MOST_NAMED)] if len(parts) > MOST_NAMED else []
     return say(
-        "By its diagnosis, the session of {day} owes these changes to the stand or to another shared cause, and they "
-        "do not count as changes of the sensors: {parts}.",
+        "The diagnosis of the session of {day} attributes these changes to the stand or to another shared cause, so "
+        "they do not count as changes of the sensors: {parts}.",
         day=day_of(at),
         parts=joined(", ", [*named, *more]),
     )
@@ -110,8 +110,8 @@ def place_of(trend: ParameterTrend) -> str:
 def _follows(trend: ParameterTrend, warm: TemperatureCoefficient) -> str:
     if warm.curvature is not None:
         return say(
-            "{trend} follows the temperature of the session along a curve, by {trend2} at its middle; its trend goes "
-            "on without that.",
+            "{trend} depends on the temperature of the session along a curve ({trend2} at its middle); the trend is "
+            "stated without this effect.",
             trend=place_of(trend),
             trend2=_sized(trend, warm.value, warm.sigma, "{rate} per °C"),
         )

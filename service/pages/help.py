@@ -262,7 +262,7 @@ WORDS = (
     ("epoch", "the time between two services"),
     ("deviation", "the change of a parameter since the reference; of a scale factor relative, of an axis an angle"),
     ("tolerance", "the largest deviation allowed"),
-    ("margin", "1 − (\\|y\\| + U)/T: 1 is spotless, 0 the edge of a pass"),
+    ("margin", "1 − (\\|y\\| + U)/T: 1 is no change, 0 the limit of a pass"),
     ("residual", "measured minus modelled, at the input"),
     ("cause", "one physical effect that the baseline lacks: cubic term, eccentric angle scale, exchanged rows"),
     ("baseline", "the model with K, b, c and e of every sensor and the stand's stated random errors, and nothing else"),
@@ -299,7 +299,7 @@ WHEN = (
      "A finding about the session qualifies the verdict. Read it, and follow its advice before you rely on the "
      "verdict."),
     ("A session is questioned",
-     "It cannot be as its file states: a wrong unit, sign, channel or clock. Correct the file, or let an engineer "
+     "Its file cannot be right: a wrong unit, sign, channel or clock. Correct the file, or let an engineer "
      "accept it with a reason. Until then it does not count."),
     ("A file is refused",
      "Nothing was stored. Every problem is listed with its place and what to do: correct the file and send it again."),

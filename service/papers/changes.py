@@ -106,7 +106,7 @@ def require_signer(storage: Storage, signing: Signing) -> str:
         raise SignInError(WRONG)
     if not account.role.may(NEEDED_ROLE):
         parts = {"needed_role": NEEDED_ROLE, "login": account.login, "role": account.role}
-        raise ForbiddenError(say("To sign a certificate needs the role {needed_role}; {login} is {role}.", **parts))
+        raise ForbiddenError(say("Signing a certificate needs the role {needed_role}; {login} is {role}.", **parts))
     return account.name
 
 

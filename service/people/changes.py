@@ -315,9 +315,9 @@ LONGEST = timedelta(days=366)
 """Longest lifetime of a token: what is forgotten should end by itself."""
 
 
-OUTLIVES = "A token makes no tokens and no sign-in links, which would outlive it: sign in with a browser."
+OUTLIVES = "A token cannot make tokens or sign-in links, which would outlive it: sign in with a browser."
 OTHERS = "This token is another account's."
-NOT_ITSELF = "A token revokes none but itself: sign in with a browser."
+NOT_ITSELF = "A token can revoke only itself: sign in with a browser."
 
 
 def require_no_token(person: Person) -> None:

@@ -28,7 +28,9 @@ def save_view(storage: Storage, new: NewView, person: Person, who: str, now: dat
     """Saves a view; an existing one of the same name is replaced. Without accounts all are shared."""
     owner = "" if new.shared or not person.login else person.login
     if not owner and not may_share(person):
-        raise ForbiddenError("Only who may upload keeps views for everybody; keep it for yourself, signed in.")
+        raise ForbiddenError(
+            "Only people who may upload can save views for everybody; sign in and save it for yourself."
+        )
     with storage.database.writing() as store:
         existing = SavedViews(store).named(new.page, owner, new.name)
         if existing is None and SavedViews(store).count(new.page, owner) >= MAX_VIEWS:
@@ -47,7 +49,7 @@ def remove_view(storage: Storage, id: int, person: Person, who: str, now: dateti
         view = SavedViews(store).get(id)
         if not may_remove(view, person):
             if view.shared:
-                raise ForbiddenError("Only who may upload removes views that everybody has.")
+                raise ForbiddenError("Only people who may upload can remove views that everybody has.")
             raise NotFoundError(say("There is no saved view {id}.", id=id))
         SavedViews(store).remove(id)
         details = {"view": id, "page": view.page, "query": view.query, "shared": view.shared}

@@ -21,7 +21,7 @@ from service.kit.person import Role
 from service.settings import Settings
 
 MODULE = "service.people.oidc.protocol"
-WITHOUT = "A provider to sign in at is set, but a library is missing: {fault}. Run pip install 'imu-health[oidc]'."
+WITHOUT = "A sign-in provider is set, but a library is missing: {fault}. Run pip install 'imu-health[oidc]'."
 EVERYBODY = "*"
 """Stands for every value of the claim, and for none."""
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
@@ -137,12 +137,10 @@ def provider_of(settings: Settings) -> Provider | None:
     parts = urlsplit(settings.oidc_issuer)
     if parts.scheme != "https" and parts.hostname not in LOOPBACK:
         raise ServiceError(
-            say(
-                "The provider to sign in at, {oidc_issuer}, must be reached by https.", oidc_issuer=settings.oidc_issuer
-            )
+            say("The sign-in provider, {oidc_issuer}, must be reached by https.", oidc_issuer=settings.oidc_issuer)
         )
     if not settings.oidc_client_id:
-        raise ServiceError("A provider to sign in at is set, but no IMU_HEALTH_OIDC_CLIENT_ID.")
+        raise ServiceError("A sign-in provider is set, but no IMU_HEALTH_OIDC_CLIENT_ID.")
     provider_settings = ProviderSettings(
         issuer=settings.oidc_issuer,
         client=settings.oidc_client_id,
@@ -162,6 +160,4 @@ def _read(file: Path | None) -> str:
     try:
         return "" if file is None else file.read_text("utf-8").strip()
     except OSError as fault:
-        raise ServiceError(
-            say("The secret for the provider to sign in at cannot be read: {fault}.", fault=fault)
-        ) from fault
+        raise ServiceError(say("The secret for the sign-in provider cannot be read: {fault}.", fault=fault)) from fault

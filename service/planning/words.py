@@ -43,7 +43,7 @@ def missing_in_words(found: Missing) -> tuple[str, ...]:
     ]
     if found.unseen:
         unseen, is_more = joined(", ", found.unseen[:MOST]), len(found.unseen) > MOST
-        template = "Until then open: {unseen} …." if is_more else "Until then open: {unseen}."
+        template = "Not determined yet: {unseen} …." if is_more else "Not determined yet: {unseen}."
         lines.append(say(template, unseen=unseen))
     return tuple(lines)
 

@@ -162,7 +162,11 @@ def _require_choice(store: Store, session: StoredSession) -> None:
         raise ConflictError("A recording in service is compared with a calibration and is no reference itself.")
     if blind := too_few(Calibrations(store).get(session.id)):
         raise ConflictError(
-            say("Session {id} gives no uncertainty to judge others with. {advice}", id=session.id, advice=blind)
+            say(
+                "Session {id} has no uncertainty, so no session can be judged against it. {advice}",
+                id=session.id,
+                advice=blind,
+            )
         )
 
 

@@ -58,7 +58,7 @@ class Decision(ParameterJudgement):
 
     @property
     def margin(self) -> float | None:
-        """1 − (|d| + U)/T: 1 is spotless, 0 the edge of pass, negative beyond; None when not observed."""
+        """1 − (|d| + U)/T: 1 is no change, 0 the limit of a pass, negative beyond; None when not observed."""
         if self.deviation is None or self.expanded is None:
             return None
         return 1 - (abs(self.deviation) + self.expanded) / self.tolerance
@@ -77,10 +77,11 @@ def steps_in(decisions: tuple[Decision, ...]) -> Steps:
 
 def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:
     """The decision that a session's verdict hangs on: the worst verdict, and of those the least margin."""
-    return max(decisions, key=_badness, default=None)
+    return max(decisions, key=badness, default=None)
 
 
-def _badness(decision: Decision) -> tuple[int, float]:
+def badness(decision: Decision) -> tuple[int, float]:
+    """Orders decisions: the larger, the worse."""
     margin = decision.margin
     return decision.verdict.severity, -inf if margin is None else -margin
 

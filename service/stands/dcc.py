@@ -62,7 +62,7 @@ def read_dcc(content: bytes, stand: str, valid_until: date | None) -> ReadCertif
     issued = _day(root.findtext(CORE + "issueDate") or root.findtext(CORE + "endPerformanceDate"))
     until = (None if issued is None else _stated_end(root, issued)) or valid_until
     if issued is None:
-        problems.append(Problem("issueDate", "is missing, or is no day; ask the laboratory for a valid certificate"))
+        problems.append(Problem("issueDate", "is missing or is not a date; ask the laboratory for a valid certificate"))
     if until is None:
         problems.append(Problem("valid_until", "is not stated in the certificate; give the last day on which it holds"))
     errors = tuple(_errors(root, problems))

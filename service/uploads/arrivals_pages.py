@@ -21,8 +21,8 @@ from service.web.list_view import Asked, address_of
 from service.web.render import render
 from service.work.pages import JobLine, job_line
 
-PAGE_SIZE = 50
-"""Uploads on a page: two screens."""
+PAGE_SIZE = 20
+"""Uploads on a page: three screens at most."""
 REFUSED = "refused"
 PATH = "/uploads"
 

@@ -138,7 +138,7 @@ def _too_large(limit: int) -> Unfinished:
 
 def _slow(patience: float) -> str:
     return say(
-        "The request did not arrive within {patience} s more than a slow line needs.",
+        "The request arrived too slowly: {patience} s after a slow line would have sent it, it was not complete.",
         patience=f"{patience:g}",
     )
 

@@ -104,6 +104,37 @@ def draw_apart(block: Block, course: str, count: int, each: float, rng: np.rando
     return Driven(_document(block, world, up, time, added, rng), names, (each,) * count, tuple(map(float, size)), 0.0)
 
 
+def draw_departing(block: Block, count: int, each: float, rng: np.random.Generator, *, second: bool) -> Driven:
+    """All sensors settle, about ``each`` by so many standard errors; ``count`` of them with a time constant of their
+    own, or, ``second``, with a quicker course of their own beside the one that all follow. Its sensors are those."""
+    world, up, time = _world(block, rng)
+    m, tau = world.unit.size, float(np.ptp(time) * np.exp(rng.uniform(np.log(0.3), np.log(1.7))))
+    departing = np.sort(rng.choice(m, count, replace=False))
+    added, strengths, sizes = np.zeros((len(time), m)), [], []
+
+    def put(sensor: int, constant: float, strength: float) -> float:
+        shape = np.exp(-time / constant)
+        seen = float(strength_left(block, world, up, sensor, shape[:, None])[0])
+        size = float(rng.choice([-1.0, 1.0]) * strength / seen)
+        added[:, sensor] += size * shape
+        return size
+
+    for i in range(m):
+        departs = i in departing
+        factor = float(np.exp(rng.choice([-1, 1]) * rng.uniform(np.log(1.5), np.log(4.0)))) if departs else 1.0
+        strength = float(each * np.exp(SPREAD * rng.standard_normal()))
+        size = put(i, tau if second else tau * factor, strength)
+        if departs:
+            strengths.append(strength)
+            sizes.append(size)
+        if departs and second:
+            own = strength * rng.uniform(0.25, 0.6)
+            put(i, 0.25 * tau, own)
+    names = tuple(world.unit.names[i] for i in departing)
+    document = _document(block, world, up, time, added, rng)
+    return Driven(document, names, tuple(strengths), tuple(sizes), tau)
+
+
 def draw_settling_at(block: Block, shares: Array, each: float, rng: np.random.Generator) -> Driven:
     """Sensors that settle with time constants of so many ``shares`` (k,) of the session, one apiece."""
     world, up, time = _world(block, rng)

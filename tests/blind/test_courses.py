@@ -5,7 +5,7 @@ import pytest
 
 from estimator import diagnose, read_session
 from estimator.diagnosis import Finding
-from tests.blind.courses import BLOCKS, Driven, draw_apart, draw_course, draw_settling_at
+from tests.blind.courses import BLOCKS, Driven, draw_apart, draw_course, draw_departing, draw_settling_at
 from tests.blind.steps import WALKS, draw_others
 
 STAND, GYROS, TWELVE, MANY = BLOCKS
@@ -94,3 +94,12 @@ def test_zeros_that_wander_each_by_itself_share_nothing() -> None:
     assert all(f.shared is None for f in diagnose(read_session(walking.session)).findings)
     roaming = draw_apart(TWELVE, "room", 6, 12.0, np.random.default_rng((58, 2)))
     assert all(f.shared is None for f in found_in(roaming))
+
+
+def test_sensors_that_depart_from_a_course_hide_it_no_more_than_they_spoil_the_others() -> None:
+    hidden = draw_departing(MANY, 4, 15.0, np.random.default_rng((77, 24, 4, 8, 0)), second=False)
+    found = diagnose(read_session(hidden.session))
+    shared, *others = found.findings
+    assert shared.shared is not None
+    assert {name for other in others for name in other.sensors} <= set(hidden.sensors)
+    assert found.gain.after.chi2_per_dof < 1.21 < found.gain.before.chi2_per_dof

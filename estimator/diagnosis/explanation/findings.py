@@ -112,7 +112,7 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     """Unexplained structure and where it lives."""
     patterns = [
         Structure(
-            where=pattern_description(f),
+            where=pattern_description(state, f),
             sensors=tuple(state.names[i] for i in f.best.sensors),
             p_value=f.p_family,
             strength=f.best.strength,
@@ -132,11 +132,14 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     )
 
 
-def pattern_description(detection: Detection) -> str:
-    """A pattern's own words; of a name that was taken back, that it does not hold."""
-    if isinstance(detection.best.cause, Pattern):
-        return detection.best.cause.where(detection.best.shape)
-    return say("as of {name}, which does not hold", name=detection.best.cause.name)
+def pattern_description(state: SearchState, detection: Detection) -> str:
+    """A pattern's own words, on a sensor of a shared course beside that; of a name that was taken back, that it does
+    not hold."""
+    if not isinstance(detection.best.cause, Pattern):
+        return say("as of {name}, which does not hold", name=detection.best.cause.name)
+    where = detection.best.cause.where(detection.best.shape)
+    departs = any(f.event and f.best.sensors == detection.best.sensors for f in state.detections)
+    return say("{pattern}, beside the course that it shares", pattern=where) if departs else where
 
 
 def common_course(course: AppliedCourse) -> Structure:

@@ -24,7 +24,7 @@ def told_from_power_on(finding: Finding, session: CalibrationSession) -> Finding
     longest = max(shape["s"] for shape in finding.nonlinear_each)
     advice = say(
         "Begin {wait} or more after switching on, or record the temperature of the unit: this session began after "
-        "{begun}, and within three time constants all but a twentieth of what it shows dies away.",
+        "{begun}, and 95 % of the effect dies away within three time constants.",
         wait=duration(begun + WAIT * longest),
         begun=duration(begun),
     )

@@ -20,7 +20,13 @@ from estimator.diagnosis.selection.noise_claim import (
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search import search
 from estimator.diagnosis.selection.search_state import Detection, SearchState
-from estimator.diagnosis.selection.shared_event import is_apart, is_plainly_shared, searched_with_event, shared_event
+from estimator.diagnosis.selection.shared_event import (
+    departures,
+    is_apart,
+    is_plainly_shared,
+    searched_with_event,
+    shared_event,
+)
 from estimator.diagnosis.signatures.noise import NoiseClaim
 
 
@@ -46,8 +52,8 @@ def accepted(start: SearchState) -> SearchState:
 
 
 def left_claims(start: SearchState, event: tuple[Detection, ...]) -> tuple[NoiseClaim, ...]:
-    """Whose stated noise a course that sensors share leaves in doubt."""
-    return doubted(replace(start, detections=event))
+    """Whose stated noise a course that sensors share leaves in doubt, what departs from it taken off too."""
+    return doubted(replace(start, detections=(*event, *departures(start))))
 
 
 def explains_scatter(state: SearchState) -> bool:

@@ -46,6 +46,10 @@ class EventCourse:
         """Those of some numbers."""
         return replace(self, numbers=tuple(numbers))
 
+    def with_others(self, numbers: Sequence[int]) -> "EventCourse":
+        """Those and some others of the same cause."""
+        return self.of([*self.numbers, *numbers])
+
     def scored(self, k: int) -> Scored:
         """The shape of one number, still to be scored."""
         shape, trace = self.traces.whole(k)

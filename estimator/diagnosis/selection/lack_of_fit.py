@@ -27,6 +27,10 @@ MISFIT = 0.05
 """Share of the energy of names that structure beside them may hold: beyond a fifth in rms it is another effect that
 they are the nearest to, below it a cause described nearly, with something small beside it."""
 
+DEPARTURE = 1.0
+"""The same of a sensor that follows a shared course: it may depart from it besides by as much as it follows it. Without
+its share of the course in the model it would pull what all sensors share of a row."""
+
 DOUBTFUL = 0.02
 """p-value of normal noise below which scatter in excess is called none: one true excess in fifty loses its name."""
 
@@ -46,11 +50,11 @@ KNOWN = 0.5
 
 def without_misfits(state: SearchState) -> SearchState:
     """The state without names beside which structure is left that they should have explained."""
-    for place in dict.fromkeys(f.best.sensors for f in state.detections):
-        names = tuple(f for f in state.detections if f.best.sensors == place)
+    for place, shared in dict.fromkeys((f.best.sensors, bool(f.event)) for f in state.detections):
+        names = tuple(f for f in state.detections if f.best.sensors == place and bool(f.event) == shared)
         drifted = any(f.best.cause.moves_parameters for f in names)
         energy = remaining_energy(state, place) - (changed(state, place) if drifted else 0.0)
-        if energy > MISFIT * explained(state, names):
+        if energy > (DEPARTURE if shared else MISFIT) * explained(state, names):
             rest = replace(state, detections=tuple(f for f in state.detections if f not in names))
             again = with_autocorrelation(with_structures(replace(rest, structures=elsewhere(rest, place))))
             state = again if remaining_energy(again, place) > 0 else rest

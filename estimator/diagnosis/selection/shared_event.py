@@ -71,6 +71,8 @@ class Followed:
 
     course: EventCourse
     """Of these sensors alone."""
+    departing: EventCourse
+    """The shapes of sensors that would follow but for one of their own."""
     sure: frozenset[int]
     """Sensors that can be named alone."""
     log_evidence: float
@@ -145,6 +147,16 @@ def significant_course(start: SearchState) -> tuple[Followed, tuple[Scored, ...]
     return followed, event
 
 
+def departures(start: SearchState) -> tuple[Detection, ...]:
+    """What the sensors show that depart from the likeliest course, each at the shape of its own."""
+    candidate = significant_course(start)
+    if candidate is None:
+        return ()
+    departing, nothing = candidate[0].departing, np.zeros((len(start.residuals.z), 0))
+    scored = [rescored(start.residuals, departing.scored(k), nothing) for k in departing.numbers]
+    return tuple(Detection(s, s.p_value, ()) for s in scored)
+
+
 def closest(start: SearchState, every: Sequence[EventCourse]) -> list[EventCourse]:
     """The courses that all sensors together, or a few of them, show best; none where that is chance."""
     energy, freedom = energies(start.residuals, every)
@@ -184,37 +196,44 @@ def likeliest(start: SearchState, near: Sequence[EventCourse]) -> Followed | Non
 
 
 def without_departing(start: SearchState, course: EventCourse, members: CauseMembers) -> Followed | None:
-    """A course with its members, but for those that have a shape of their own; None where all fit better apart."""
+    """A course with its members, but for those that have a shape of their own; None where all fit better apart.
+
+    A shape that is left out would pull what all sensors share of a row: every one found stays beside the others.
+    """
     every = courses(start.residuals, course.traces)
-    kept = course.of([course.numbers[k] for k in members.chosen])
+    kept, departing = course.of([course.numbers[k] for k in members.chosen]), course.of(())
     while len(kept.numbers) > 1:
         others = [other.on(kept.sensors) for other in every if set(kept.sensors) <= set(other.sensors)]
-        apart, own = powers_apart(start, kept, others)
+        apart, own = powers_apart(start, kept, others, unit_traces(departing))
         gained = [0.5 * float(values.max() - known) for values, known in zip(apart, own, strict=True)]
         worst = int(np.argmax(gained))
         if gained[worst] - np.log(course.tried) < FURTHER:
             break
+        departing = departing.with_others(others[int(np.argmax(apart[worst]))].numbers[worst : worst + 1])
         kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
     if len(kept.numbers) < 2:
         return None
-    together = energies(start.residuals, others)[0]
-    log_one_shape = log_shared(together, energy_of(start.residuals, kept)[0], apart, own)
+    together = energies(start.residuals, [other.with_others(departing.numbers) for other in others])[0]
+    shared = energy_of(start.residuals, kept.with_others(departing.numbers))[0]
+    log_one_shape = log_shared(together, shared, apart, own)
     if log_one_shape < APART:
         return None
     sure = {course.sensors[k] for k in members.sure} & set(kept.sensors)
     in_doubt = len(together) > 1 and log_one_shape < -APART
-    return Followed(kept, frozenset(sure), members.log_evidence - float(np.log(course.tried)), in_doubt)
+    log_evidence = members.log_evidence - float(np.log(course.tried))
+    return Followed(kept, departing, frozenset(sure), log_evidence, in_doubt)
 
 
 def powers_apart(
-    start: SearchState, course: EventCourse, others: Sequence[EventCourse]
+    start: SearchState, course: EventCourse, others: Sequence[EventCourse], departing: Array
 ) -> tuple[list[Array], list[float]]:
-    """What each sensor of a course explains by its shape in every one of ``others`` beside what the rest of them share,
-    and by the one that it shares with them."""
+    """What each sensor of a course explains by its shape in every one of ``others`` beside what the rest of them share
+    and ``departing`` (n, d) traces, and by the one that it shares with them."""
     shared, every, own = unit_traces(course), list[Array](), list[float]()
     for k in range(len(course.sensors)):
         of_sensor = course.traces.columns[[other.numbers[k] for other in others], :, 0].T
-        values = powers(start.residuals.z, np.column_stack([shared[:, k], of_sensor]), np.delete(shared, k, axis=1))
+        beside = np.column_stack([np.delete(shared, k, axis=1), departing])
+        values = powers(start.residuals.z, np.column_stack([shared[:, k], of_sensor]), beside)
         every.append(values[1:])
         own.append(float(values[0]))
     return every, own
@@ -252,7 +271,7 @@ def priced(start: SearchState, followed: Followed) -> tuple[Scored, ...]:
     course = followed.course
     strength = np.abs(unit_traces(course).T @ start.residuals.z)
     order = [course.numbers[k] for k in np.argsort(-strength, kind="stable").tolist()]
-    basis, scored = np.zeros((len(start.residuals.z), 0)), list[Scored]()
+    basis, scored = orthonormal(unit_traces(followed.departing), NEW_DIRECTION), list[Scored]()
     for member in refined_together(start.residuals, [course.scored(k) for k in order], basis):
         scored.append(rescored(start.residuals, member, basis))
         basis = extended_basis(basis, scored[-1].trace)
@@ -272,9 +291,15 @@ def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
     whole block turned at one moment.
 
     Zeros that wander are a misfortune more at least, but where a course has no formula or the noise is not known, which
-    lets many things pass for a course. Beside zeros that wander a course must be plain.
+    lets many things pass for a course. Beside zeros that wander a course must be plain. Where most sensors follow it,
+    those that depart from it have their own shapes beside it, each of them a misfortune more.
     """
-    unit, price = unit_traces(followed.course), float(np.log(places_of(start, followed.course)))
+    course, price = followed.course, float(np.log(places_of(start, followed.course)))
+    departing = followed.departing.numbers
+    if len(departing) < len(course.numbers):
+        price += len(departing) * (FURTHER + float(np.log(course.tried)))
+        course = course.with_others(departing)
+    unit = unit_traces(course)
     alone = log_mean(log_marginal(start.residuals, unit, SIZES)) - price
     wandering, beside = log_beside_wandering(start.residuals, unit, SIZES)
     if log_turning(start.residuals, SIZES) > max(alone, beside - price):

@@ -6,7 +6,7 @@ from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.layout import EVERY
-from estimator.message import joined, say
+from estimator.message import joined, say, without_stop
 from service.kit.measures import HARD, number, spaced
 
 UNKNOWN_CAUSE = "unexplained"
@@ -81,8 +81,8 @@ def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
         say(", or {one_not_known}", one_not_known=ONE_NOT_KNOWN) if UNKNOWN_CAUSE in finding.alternatives else "",
     )
     return say(
-        "Likely {cause}, {share}; {unlikely}{unknown}.",
-        cause=cause_on(first, finding.sensors),
+        "{cause} ({share} likely); {unlikely}{unknown}.",
+        cause=without_stop(finding.sentence) if first == finding.cause else cause_on(first, finding.sensors),
         share=share_of(first, finding),
         unlikely=_less(unlikely, finding),
         unknown=unknown,
@@ -90,12 +90,13 @@ def what_is_wrong(finding: Finding, findings: Sequence[Finding] = ()) -> str:
 
 
 def choice_of(finding: Finding) -> str:
-    """The causes that a finding leaves standing, as one thing that acts: ``ramp or warm up acts on A3``."""
-    likely, unlikely = by_share(finding)
-    on = say(" on {sensors}", sensors=joined(" and ", dict.fromkeys(finding.sensors))) if finding.sensors else ""
-    less = say(" (less likely {unlikely})", unlikely=_listed(unlikely)) if unlikely else ""
-    parts = {"likely": _listed(_with_unknown(likely, finding)), "less_likely": less, "places": on}
-    return say("{likely}{less_likely} acts{places}", **parts)
+    """The causes that a finding leaves standing, in a clause: ``The bias of A3 drifts, or possibly warm up``."""
+    others = (name for names in by_share(finding) for name in names if name != finding.cause)
+    return say(
+        "{cause}, or possibly {others}",
+        cause=without_stop(finding.sentence),
+        others=_listed(_with_unknown(tuple(others), finding)),
+    )
 
 
 def by_share(finding: Finding) -> tuple[tuple[str, ...], tuple[str, ...]]:

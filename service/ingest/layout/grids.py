@@ -18,7 +18,7 @@ from service.ingest.foreign import require_table
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
 from service.ingest.layout.decoding import decoded
 from service.ingest.layout.titles import stated_in
-from service.ingest.layout.understand import joined
+from service.ingest.layout.understand import joined, split_unit
 from service.ingest.layout.vocabulary import unit_of
 from service.ingest.xlsx import BOOLEANS, check_workbook, letters_of
 from service.kit.limits import check_table, refusal
@@ -267,12 +267,11 @@ def _first_row(rows: list[list[Cell]]) -> int:
 
 def _header_row(rows: list[list[Cell]], first: int) -> int:
     """The upper one of one or two rows of headings right above the readings, from 1; 0 where there is none."""
-    if first < 1:
-        return 0
-    has_two_rows = (
-        first >= 2 and _is_heading(rows[first - 2]) and (_of_units(rows[first - 1]) or _is_torn(rows[first - 2]))
-    )
-    return first - 1 if has_two_rows else first
+    if first < 2:
+        return max(first, 0)
+    above = rows[first - 2]
+    has_two_rows = _is_heading(above) and (_of_units(rows[first - 1]) or _is_torn(above))
+    return first - 1 if has_two_rows or _is_unit_of_group(above) else first
 
 
 def _is_heading(row: Sequence[Cell]) -> bool:
@@ -287,6 +286,12 @@ def _of_units(row: Sequence[Cell]) -> bool:
 def _is_torn(row: Sequence[Cell]) -> bool:
     """Whether headings of groups stand in merged cells, each over several columns."""
     return any(cell is None for cell in row[1:]) and row[0] is not None
+
+
+def _is_unit_of_group(row: Sequence[Cell]) -> bool:
+    """Whether one heading over several columns, and none over the first, says their unit."""
+    texts = [cell for cell in row if cell is not None]
+    return len(texts) == 1 and row[0] is None and split_unit(str(texts[0]))[1] != ""
 
 
 def _headings(rows: Sequence[Sequence[Cell]], width: int) -> tuple[str, ...]:

@@ -32,7 +32,6 @@ class DueView(ListView):
     """Units by the date of their next calibration."""
 
     PATH = "/due"
-    PAGE_SIZE = 50
     ORDERS: ClassVar = {
         Order.DUE.value: "by next calibration",
         Order.SERIAL.value: "by serial number",

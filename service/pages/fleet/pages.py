@@ -63,8 +63,6 @@ class FleetRow:
     use: Use
     said: str
     """What it may be used for, and what to do."""
-    next: str
-    """What is needed where no date counts: ``repeat the session``."""
     overdue: bool
     where: str
     """Location and custodian; empty where neither is known."""
@@ -203,7 +201,6 @@ def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
         due=usable.due,
         use=usable.use,
         said=in_words(usable.use, usable.action),
-        next=usable.action,
         overdue=usable.is_overdue,
         where=joined(", ", filter(None, (unit.location, unit.custodian))),
         retired=unit.retired_at is not None,

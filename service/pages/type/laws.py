@@ -39,9 +39,7 @@ MOST_LISTED = 500
 MOST_UNITS = 50
 """Units whose sessions are read: some ten seconds; further ones hardly move what is learned."""
 NONE_IN_FORCE = "No temperature laws of this type are in force."
-TOO_FEW = (
-    "Too few units tell: five units with ten sensors, each measured six times at different temperatures, are needed."
-)
+TOO_FEW = "Too few units: five with ten sensors in all, each measured six times at different temperatures, are needed."
 
 
 def put_in_force(storage: Storage, name: str, now: datetime, *, who: str, why: str, wanted: bool = True) -> UnitType:

@@ -177,7 +177,7 @@ def headline_of(found: TolerancePreview) -> str:
     """``With these, 3 of 40 units change``: of those that were judged by them."""
     changed = len(found.changes)
     if not found.judged:
-        return "No unit of this type has a session that tolerances decide"
+        return "No unit of this type has a session that can be judged by tolerances"
     if not changed:
         return "With these tolerances, no verdict changes"
     return (
@@ -209,7 +209,7 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
             units=units,
         )
     if found.beyond:
-        yield say("{beyond} not checked: only the worst are.", beyond=counted(found.beyond, "unit"))
+        yield say("Only the worst units were checked; not checked: {beyond}.", beyond=counted(found.beyond, "unit"))
 
 
 CARRIED_APART = ("by", "why", "csrf")

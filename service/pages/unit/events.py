@@ -7,7 +7,7 @@ from datetime import datetime
 from estimator.message import say
 from service.kit.measures import deviation_measure, limit, measured, signed
 from service.papers.found_and_left import FoundAndLeft
-from service.sessions.decision import Decision
+from service.sessions.decision import Decision, badness
 from service.sessions.records import StoredSession
 from service.sessions.states import StateChange
 from service.sessions.words.conditions import NOT_JUDGED, Condition, condition_of, state_in_words
@@ -101,10 +101,10 @@ def service_in_words(service: Service | NewService) -> str:
 
 
 def stage_table(pair: FoundAndLeft | None) -> StageTable | None:
-    """Both sessions beside each other; None where the unit was never marked as found."""
+    """Both sessions beside each other, the worst parameter as found first; None where it was never marked as found."""
     if pair is None:
         return None
-    rows = tuple(_row(found, left) for found, left in pair.decisions)
+    rows = tuple(_row(*both) for both in sorted(pair.decisions, key=lambda both: badness(both[0]), reverse=True))
     return StageTable(pair.found, pair.left, rows)
 
 

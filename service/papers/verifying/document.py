@@ -41,8 +41,10 @@ def contents(root: Element) -> Check:
 
 NO_SEAL = "It has no electronic seal: nothing in it proves who issued it."
 NO_LIBRARY = "A library is missing to check the seal: {fault}. Run pip install 'imu-health[sign]'."
-SEAL_GONE = "It says that it has an electronic seal, and has none."
-ANYBODY = "The seal of {owner} holds. Whose it is, only the laboratory's own certificate shows: give it with --trust."
+SEAL_GONE = "It states an electronic seal but has none."
+ANYBODY = (
+    "The seal of {owner} holds. To check that it is the laboratory's, give the laboratory's certificate with --trust."
+)
 
 
 def seal(certificate: bytes, printed: Printed, trusted: bytes | None) -> Check:

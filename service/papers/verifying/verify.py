@@ -67,7 +67,8 @@ OLDER = (
 UNSEEN = "The reference, session {session}, is taken as stated: give its file, SHA-256 {sha256}, with --reference."
 AS_STATED = (
     "Names, addresses, signatures, the tolerances that were set, the causes that were accepted, the stand's "
-    "certificate and the diagnosis with its reservations do not follow from the file: only hash and seal guard them."
+    "certificate and the diagnosis with its reservations cannot be computed from the file: only hash and seal protect "
+    "them."
 )
 
 

@@ -24,7 +24,7 @@ COOKIE, PATH = "imu-health-oidc", "/oidc"
 """Holds the secret of a sign-in and its target; sent nowhere else."""
 LIFETIME_SECONDS = 600
 """Seconds for a sign-in: a second factor may be needed."""
-NOT_SET = "Nobody signs in elsewhere here: no provider is set."
+NOT_SET = "No sign-in provider is set."
 NOT_BEGUN = "This sign-in was not begun in this browser, or more than ten minutes ago. Try again."
 DECLINED = "The provider did not sign you in. Try again, or ask an administrator."
 CallbackText = Annotated[str, Query(max_length=4000, pattern=NO_NUL)]

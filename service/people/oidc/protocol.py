@@ -32,7 +32,7 @@ LEEWAY = 60
 """Seconds by which clocks may differ."""
 LONGEST_SUBJECT = 255
 """Characters (OpenID Connect Core 1.0, section 2)."""
-SILENT = "The provider to sign in at does not answer as it should; try again, or sign in with a password."
+SILENT = "The sign-in provider does not answer as it should; try again, or sign in with a password."
 REFUSED = "The sign-in was not accepted: {why}. Try again, or ask an administrator."
 WELL_KNOWN = "/.well-known/openid-configuration"
 

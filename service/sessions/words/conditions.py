@@ -53,7 +53,7 @@ QUESTIONED = Condition(
     "none",
     "Questioned",
     "stroke",
-    "It cannot be as its file states; it counts once an engineer accepts it.",
+    "Its file cannot be right; it counts once an engineer accepts it.",
 )
 NOT_JUDGED = Condition("none", "Not judged", "circle", "No tolerance or no reference is set.")
 

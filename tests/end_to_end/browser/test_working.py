@@ -89,6 +89,7 @@ def test_flags_are_ticked_by_keys_and_given_to_somebody(chromium: Browser, site:
     with opened(chromium) as (_, page):
         page.goto(f"{site.url}/flags?q=BA-017")
         for key in "jx":
+            assert not page.locator("#chosen").is_visible()
             page.keyboard.press(key)
         form = page.locator("#chosen")
         for name, value in {"by": "K. Ito", "why": "knows the unit", "to": "M. Sato"}.items():

@@ -18,7 +18,7 @@ COMMANDS = (
     ("units", "--format", "table"), ("units", "show", "BA-017"), ("jobs", "--format", "table"),
     ("jobs", "recalibrate", "--by", "Ито"), ("models", "--format", "table"), ("views", "--format", "table"),
     ("history", "BA-017", "--format", "table"), (*SERVICE, "--preview"), SERVICE,
-    ("usable", "ZZ-9"), ("jobs", "show", "99"), ("upload", "/none.json"),
+    ("usable", "ZZ-9"), ("jobs", "show", "99"), ("upload", "/none.json", "/none.csv"),
 )  # fmt: skip
 CYRILLIC = re.compile("[а-яё]", re.IGNORECASE)
 NAMES = {"BA", "hex", "cone", "ZZ", "json", "none", "imu", "health"}

@@ -22,7 +22,7 @@ from tests.stock import stores
 ACCEPT = {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen twice"}
 FIRST = {
     "named": (TEMPERATURE, "The bias of A5 depends on temperature."),
-    "a choice": (ALIASES, "Likely cubic nonlinearity (A2), 9"),
+    "a choice": (ALIASES, "A2 has a cubic nonlinearity (9"),
     "unexplained": (UNEXPLAINED, "An effect that no known cause explains"),
 }
 

@@ -36,7 +36,9 @@ def test_equal_causes_are_listed() -> None:
 def test_a_cause_that_is_far_less_likely_is_no_equal() -> None:
     ranking = (Rival("bias-jump", ("A1", "A2"), 0.98, 8.0), Rival("warm-up", ("A1", "A2"), 0.01, 5.0))
     likely = replace(JUMP, ranking=ranking)
-    assert what_is_wrong(likely) == "Likely bias jump (A1, A2), 98.0\u00a0%; less likely warm up, 1.0\u00a0%."
+    assert (
+        what_is_wrong(likely) == "The zero of A1 and A2 jumped (98.0\u00a0% likely); less likely warm up, 1.0\u00a0%."
+    )
     assert (finding_view(likely).level, finding_view(JUMP).level) == (False, True)
 
 

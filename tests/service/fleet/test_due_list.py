@@ -97,4 +97,6 @@ def test_the_page_has_a_tile_a_month_and_its_units(http: httpx.Client) -> None:
     assert "D-1" in http.get("/due?when=unknown").text
     assert "No unit matches" in http.get("/due?when=2031-01").text
     assert "/due" in http.get("/").text
-    assert http.get("/due?lang=ru").status_code == 200
+    why = http.get("/api/v1/fleet/due", headers={"Accept-Language": "ru"}).json()["units"][0]["why"]
+    assert why.startswith("Риск выхода за допуск")
+    assert why in http.get("/due?lang=ru").text

@@ -308,11 +308,12 @@ def test_german_headings_and_words_are_understood():
     assert content_digest(session) == content_digest(read_session(tables.own_document()))
 
 
-def test_merged_groups_above_numbered_headings_are_no_row_of_readings():
+@pytest.mark.parametrize("above", [("Lauf", "Stellung", None), (None, None, None)])
+def test_merged_groups_above_numbered_headings_are_no_row_of_readings(above):
+    lower = (None if above[0] else "Lauf", "β [°]", "Temperatur [°C]", 1, 2, 3)
     content = workbook(
-        ["Lauf", "Stellung", None, "Beschleunigungsmesser [mV]", None, None],
-        [None, "β [°]", "Temperatur [°C]", 1, 2, 3], *tables.rows_of(tables.own_document()),
-        merged=[("D1:F1", "Beschleunigungsmesser [mV]"), ("B1:C1", "Stellung")],
+        [*above, "Beschleunigungsmesser [mV]", None, None], lower, *tables.rows_of(tables.own_document()),
+        merged=[("D1:F1", "Beschleunigungsmesser [mV]")],
     )  # fmt: skip
     session = read_upload(wrapped(mapping_for(content), content), "own")
     assert content_digest(session) == content_digest(read_session(tables.own_document()))

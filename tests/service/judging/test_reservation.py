@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from estimator.diagnosis.results import Course, Rival, Structure
+from estimator.diagnosis.results import Course, Structure
 from service.judging.words import named, otherwise, size_in_words, unexplained, verdict_in_words
 from service.sessions.decision import Verdict
 from service.sessions.doubt import DoubtKind as Doubt
@@ -54,10 +54,8 @@ def test_a_cause_is_a_clause_with_its_size() -> None:
     assert named(replace(plain, sentence="The stand was not level."), "9") == "the stand was not level (9)"
 
 
-def test_of_several_causes_the_less_likely_stand_in_brackets() -> None:
-    assert named(JUMP, "") == "bias jump or warm up acts on A1 and A2"
-    rivals = (Rival("bias-jump", ("A1",), 0.98, 8.0), Rival("warm-up", ("A1",), 0.01, 5.0))
-    assert named(replace(JUMP, ranking=rivals), "") == "bias jump (less likely warm up) acts on A1 and A2"
+def test_of_several_causes_the_first_is_a_clause_and_the_others_are_named() -> None:
+    assert named(JUMP, "9") == "the zero of A1 and A2 jumped, or possibly warm up (9)"
 
 
 def test_a_size_stands_beside_its_tolerance_in_one_measure_with_its_expanded_uncertainty() -> None:
@@ -73,7 +71,7 @@ def test_another_verdict_names_the_model_that_gives_it() -> None:
         "unfit with warm up (A2) and bias ramp corrected"
     )
     assert otherwise(Verdict.PASS, ("warm-up",), (), named=True) == "fit with these effects corrected"
-    assert otherwise(Verdict.PASS, (), ()) == "fit if the cause is none of the known ones"
+    assert otherwise(Verdict.PASS, (), ()) == "fit if the cause is not a known one"
 
 
 def test_structure_says_where_it_is() -> None:

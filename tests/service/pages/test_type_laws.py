@@ -68,4 +68,4 @@ def test_a_unit_with_few_sessions_is_judged_by_the_laws_of_its_type(
 def test_few_units_tell_of_no_law(holding: Holding) -> None:
     answer = holding(*FIRST).put(LAWS, json=wanted(True))
     assert answer.status_code == 409
-    assert "Too few units tell: five units with ten sensors" in answer.json()["detail"]
+    assert "Too few units: five with ten sensors in all" in answer.json()["detail"]

@@ -32,6 +32,25 @@ def test_a_cause_that_fits_stays() -> None:
     assert names(without_misfits(named)) == [("scale-asymmetry", (SENSOR,))]
 
 
+@pytest.mark.parametrize(
+    ("followed", "stays"),
+    [
+        pytest.param(40.0, True, id="it follows the course and departs from it"),
+        pytest.param(1.0, False, id="it has another course"),
+    ],
+)
+def test_a_sensor_of_a_shared_course_goes_only_where_it_departs_more_than_it_follows(
+    followed: float, stays: bool
+) -> None:
+    place = np.linspace(-1, 1, ROWS)
+    added = sum((on_sensor(size * place, i) for i, size in ((0, 40.0), (1, followed), (2, -30.0), (3, 20.0))), 0.0)
+    state = start(("bias-ramp",), added + on_sensor(6 * np.sin(3 * np.pi * place)))
+    event = tuple(replace(candidate(state, "bias-ramp", (i,)), event=(0, 1, 2, 3)) for i in range(4))
+    named = with_structures(replace(state, detections=event))
+    assert (SENSOR,) in {s.best.sensors for s in named.structures}
+    assert (("bias-ramp", (SENSOR,)) in names(without_misfits(named))) == stays
+
+
 def test_structure_on_another_sensor_is_none_of_its_business() -> None:
     state = start(("scale-asymmetry",), effect("scale-asymmetry") + effect("cross-coupling", 3))
     named = with_structures(replace(state, detections=(candidate(state, "scale-asymmetry"),)))

@@ -1,0 +1,1 @@
+"""A network that learns from simulated sessions what a posterior over the causes would say."""
