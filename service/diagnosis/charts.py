@@ -115,7 +115,7 @@ def _rms(side: Residuals, column: int, measure: Measure) -> str:
 
 
 def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list[Json]:
-    both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
+    models = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
     flipped = sides.before.flipped
     return [
         {
@@ -127,7 +127,7 @@ def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list
             "model": model,
             "row": row + 1,
         }
-        for model, side in both
+        for model, side in models
         for row in range(min(len(across.values), len(side.value)))
         if np.isfinite(side.value[row, column]) and np.isfinite(sides.noise.stated[row, column])
     ]
@@ -205,7 +205,7 @@ def measure_of(course: Course, component: str) -> Measure:
     """Of what changes: an angle, or relative; components of one unit share it."""
     is_size = component == SIZE
     values = [
-        abs(row[k]) for row in course.values for k, one in enumerate(course.components) if (one == SIZE) == is_size
+        abs(row[k]) for row in course.values for k, other in enumerate(course.components) if (other == SIZE) == is_size
     ]
     return deviation_measure(ACCELEROMETER, "scale" if is_size else "axis", max(values, default=0.0))
 

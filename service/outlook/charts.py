@@ -178,15 +178,15 @@ def forecast_data(
     trend = trend_of(track, trends)
     if trend is None or not trend.fan or trend.since is None:
         return {name: [] for name in NAMES}
-    one, last = track.unit.factor, trend.fan[0].at
+    factor, last = track.unit.factor, trend.fan[0].at
     start = trend.level - trend.rate_per_year * (last - trend.since).total_seconds() / YEAR_SECONDS
     return {
         "fan": [
-            {"t": iso(p.at), "lo9": short(p.low_90 * one), "lo5": short(p.low_50 * one), "y": short(p.middle * one),
-             "hi5": short(p.high_50 * one), "hi9": short(p.high_90 * one)}
+            {"t": iso(p.at), "lo9": short(p.low_90 * factor), "lo5": short(p.low_50 * factor),
+             "y": short(p.middle * factor), "hi5": short(p.high_50 * factor), "hi9": short(p.high_90 * factor)}
             for p in trend.fan
         ],
-        "trend": [{"t": iso(at), "y": short(y * one)} for at, y in ((trend.since, start), (last, trend.level))],
+        "trend": [{"t": iso(at), "y": short(y * factor)} for at, y in ((trend.since, start), (last, trend.level))],
     }  # fmt: skip
 
 
