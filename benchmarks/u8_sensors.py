@@ -12,10 +12,6 @@ from benchmarks.orientations import GRAVITY, NOISE, case, sphere
 from estimator import CalibrationSession, diagnose
 
 SENSORS, ORIENTATIONS, STRENGTH = 48, 20, 12.0
-NOTE = """
-U8 misses its target where something is found: finding and naming one cause among 48 sensors takes eight times what a
-sound session takes.
-"""
 
 
 def sessions() -> tuple[CalibrationSession, CalibrationSession]:

@@ -90,7 +90,7 @@ def eigh(matrix: Array) -> tuple[Array, Array]:
         values, vectors = np.linalg.eigh(matrix)
     except np.linalg.LinAlgError:
         n = matrix.shape[-1]
-        each = [patient_eigh(symmetric, driver="ev") for symmetric in matrix.reshape(-1, n, n)]
-        values = np.stack([v for v, _ in each]).reshape(matrix.shape[:-1])
-        vectors = np.stack([w for _, w in each]).reshape(matrix.shape)
+        solved = [patient_eigh(symmetric, driver="ev") for symmetric in matrix.reshape(-1, n, n)]
+        values = np.stack([v for v, _ in solved]).reshape(matrix.shape[:-1])
+        vectors = np.stack([w for _, w in solved]).reshape(matrix.shape)
     return values, vectors

@@ -92,10 +92,10 @@ def each_remembered(
     """
     known: dict[Hashable, Result] = {}
 
-    def wrapper(each: list[Worked], *rest: *Rest) -> list[Result]:
+    def wrapper(items: list[Worked], *rest: *Rest) -> list[Result]:
         before = known.copy()
-        results = {item: before[item, *rest] for item in each if (item, *rest) in before}
-        missing = [item for item in each if item not in results]
+        results = {item: before[item, *rest] for item in items if (item, *rest) in before}
+        missing = [item for item in items if item not in results]
         results |= zip(missing, function(missing, *rest) if missing else [], strict=True)
         for item, result in results.items():
             if item.session.readings.size <= LARGEST:
@@ -103,7 +103,7 @@ def each_remembered(
                 known[item, *rest] = result
         for key in list(known)[:-REMEMBERED]:
             known.pop(key, None)
-        return [results[item] for item in each]
+        return [results[item] for item in items]
 
     return wrapper
 

@@ -93,8 +93,8 @@ class BlockCorrection:
         for i, sensor in enumerate(self.sensors):
             slope = 1.0 + 2.0 * sensor.quadratic * a[i]
             by_scale = -(a[i] + sensor.bias + sensor.quadratic * a[i] ** 2) / sensor.scale
-            own = [by_scale / slope, -1.0 / slope, -(a[i] ** 2) / slope, *(-sensor.tangents.T @ f)]
-            columns.append(np.outer(self.matrix[:, i], own))
+            partials = [by_scale / slope, -1.0 / slope, -(a[i] ** 2) / slope, *(-sensor.tangents.T @ f)]
+            columns.append(np.outer(self.matrix[:, i], partials))
         jacobian = np.concatenate(columns, axis=1)
         total: Array = jacobian @ self.covariance @ jacobian.T
         return total
@@ -183,17 +183,17 @@ def at_temperature(calibration: Calibration, temperature: float) -> Calibration:
     curves = calibration.thermal
     if curves is None:
         return calibration
-    known, covariance = {own.name: own for own in curves.sensors}, calibration.covariance.copy()
+    known, covariance = {s.name: s for s in curves.sensors}, calibration.covariance.copy()
     sensors = []
     for sensor in calibration.sensors:
-        own = known.get(sensor.name)
-        parts = {} if own is None else {"scale": own.scale, "bias": own.bias}
+        fitted = known.get(sensor.name)
+        parts = {} if fitted is None else {"scale": fitted.scale, "bias": fitted.bias}
         moved = {name: _at(curves, curve, temperature) for name, curve in parts.items() if curve is not None}
         places = [calibration.names.index(f"{sensor.name}.{name}") for name in moved]
         block = np.diag([sigma**2 for _, sigma in moved.values()])
-        if own is not None and own.cross is not None:
-            powers = curves.powers(np.array([temperature]), len(own.cross))[0]
-            block[0, 1] = block[1, 0] = powers @ own.cross @ powers
+        if fitted is not None and fitted.cross is not None:
+            powers = curves.powers(np.array([temperature]), len(fitted.cross))[0]
+            block[0, 1] = block[1, 0] = powers @ fitted.cross @ powers
         if moved:
             covariance[places], covariance[:, places] = 0.0, 0.0
             covariance[np.ix_(places, places)] = block

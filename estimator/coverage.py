@@ -62,6 +62,6 @@ def finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def positions_to_add(dof: int, each: int) -> int:
-    """Positions that bring ``dof`` degrees of freedom to `WANTED`, each new one giving ``each``."""
-    return max(0, ceil((WANTED - dof) / each))
+def positions_to_add(dof: int, gained: int) -> int:
+    """Positions that bring ``dof`` degrees of freedom to `WANTED`, each new one giving ``gained``."""
+    return max(0, ceil((WANTED - dof) / gained))

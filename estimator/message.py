@@ -63,9 +63,9 @@ def say(template: str, /, **parts: object) -> Message:
     return Message(template, _texts(parts))
 
 
-def say_count(one: str, many: str, number: int, /, **parts: object) -> Message:
+def say_count(singular: str, plural: str, number: int, /, **parts: object) -> Message:
     """A sentence about a number of things, which stands in the place ``{n}``."""
-    return Message(one, {"n": str(number)} | _texts(parts), many, number)
+    return Message(singular, {"n": str(number)} | _texts(parts), plural, number)
 
 
 def joined(joint: str, parts: Iterable[str]) -> Message:
@@ -144,8 +144,8 @@ def _begun(text: str, change: Callable[[str], str]) -> str:
         return change(text[:1]) + text[1:]
     if first := PLACE.match(text.template):
         return _with_part(text, first[1], lambda part: _begun(part, change))
-    one, many = (change(form[:1]) + form[1:] for form in (text.template, text.many))
-    return Message(one, text.parts, many, text.number)
+    singular, plural = (change(form[:1]) + form[1:] for form in (text.template, text.many))
+    return Message(singular, text.parts, plural, text.number)
 
 
 def _between(template: str, change: Callable[[str], str]) -> str:

@@ -68,10 +68,10 @@ class SensorParameters:
         return factors.reshape(*self.scale.shape[:-1], -1)
 
 
-def together(each: Sequence[SensorParameters]) -> SensorParameters:
+def together(sets: Sequence[SensorParameters]) -> SensorParameters:
     """Parameters (m,) of S sessions as (S, m)."""
     return SensorParameters(
-        *(np.stack([getattr(p, attribute.name) for p in each]) for attribute in fields(SensorParameters))
+        *(np.stack([getattr(p, attribute.name) for p in sets]) for attribute in fields(SensorParameters))
     )
 
 

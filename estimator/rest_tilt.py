@@ -49,7 +49,7 @@ TINY = float(np.finfo(float).tiny)
 class MeanErrors:
     """Of the means of n rests of m channels."""
 
-    own: Array
+    alone: Array
     """(n, m) standard error of what each channel has alone, unit of the readings."""
     tilt: Array | None = None
     """(n,) standard error of each component of the block's mean tilt, rad; None where it shows none."""
@@ -61,12 +61,12 @@ def errors_of_means(waves: Waves, response: Array | None) -> MeanErrors:
     count = 0 if response is None else tilting_waves(waves, plain, response)
     if response is None or not count:
         return MeanErrors(np.sqrt(plain.variance))
-    own = rest_noise(replace(waves, least=waves.inside), Tilting(response, count))
+    noise = rest_noise(replace(waves, least=waves.inside), Tilting(response, count))
     tilts = np.full((*waves.value.shape[:2], 2), np.nan)
-    tilts[waves.known] = tilts_of(waves.value[waves.known], own.spectrum, response[waves.known])[0]
+    tilts[waves.known] = tilts_of(waves.value[waves.known], noise.spectrum, response[waves.known])[0]
     least = np.zeros((len(tilts), 2))
     tilt = rest_noise(Waves(tilts, waves.samples, least, least)).variance
-    return MeanErrors(np.sqrt(own.variance), np.sqrt(tilt.mean(axis=1)))
+    return MeanErrors(np.sqrt(noise.variance), np.sqrt(tilt.mean(axis=1)))
 
 
 def tilting_waves(waves: Waves, plain: RestNoise, response: Array) -> int:

@@ -58,14 +58,14 @@ def common_turn(vectors: Array, others: Array, settled: float = SETTLED) -> Arra
     ``settled``: change of a direction cosine below which a round has moved nothing.
     """
     base = np.broadcast_to(np.eye(3), (*vectors.shape[:-2], 3, 3))
-    both, faint = np.concatenate([others, base], axis=-2), FAINT * base
-    turn = nearest_turn(np.concatenate([vectors, faint], axis=-2), both)
+    targets, faint = np.concatenate([others, base], axis=-2), FAINT * base
+    turn = nearest_turn(np.concatenate([vectors, faint], axis=-2), targets)
     moving = np.ones(turn.shape[:-2], dtype=bool)
     for _ in range(ROUNDS):
         difference = vectors @ np.swapaxes(turn, -1, -2) - others
         near = np.maximum(np.linalg.norm(difference, axis=-1, keepdims=True), CLOSEST)
         weighted = vectors * (near.min(axis=-2, keepdims=True) / near)
-        new = nearest_turn(np.concatenate([weighted, faint], axis=-2), both)
+        new = nearest_turn(np.concatenate([weighted, faint], axis=-2), targets)
         moved = np.abs(new - turn).max(axis=(-1, -2)) >= settled
         turn, moving = np.where(moving[..., None, None], new, turn), moving & moved
         if not moving.any():

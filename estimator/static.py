@@ -129,7 +129,7 @@ def average(
     if response is None:
         return rows
     errors = errors_by_kind(session, intervals, response)
-    return replace(rows, standard_errors=errors.own, tilt_error=errors.tilt)
+    return replace(rows, standard_errors=errors.alone, tilt_error=errors.tilt)
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
@@ -332,7 +332,7 @@ def averaged(session: CalibrationSession, intervals: Intervals) -> CalibrationSe
     return replace(
         session,
         readings=intervals.means(session.readings),
-        standard_errors=errors_by_kind(session, intervals).own,
+        standard_errors=errors_by_kind(session, intervals).alone,
         at_ends=intervals.means(ends(session.readings)),
         vibration=variances(session, intervals),
         time=middle if session.time is None else intervals.means(session.time),
@@ -385,13 +385,13 @@ def errors_of_kinds(
         found(channels, None if response is None or kind != ACCELEROMETER else response[:, channels])
         for kind, channels in alike.items()
     ]
-    own = np.concatenate([part.own for part in parts], axis=1)
+    errors = np.concatenate([part.alone for part in parts], axis=1)
     tilt = next((part.tilt for part in parts if part.tilt is not None), None)
-    return MeanErrors(own[:, np.argsort([i for channels in alike.values() for i in channels])], tilt)
+    return MeanErrors(errors[:, np.argsort([i for channels in alike.values() for i in channels])], tilt)
 
 
 def errors_by_kind(session: CalibrationSession, intervals: Intervals, response: Array | None = None) -> MeanErrors:
     """`errors_of_kinds` over the intervals, reading units."""
     return errors_of_kinds(
-        session, lambda channels, own: mean_errors(session.readings[:, channels], intervals, own), response
+        session, lambda channels, tilts: mean_errors(session.readings[:, channels], intervals, tilts), response
     )

@@ -95,7 +95,7 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         stop = Event()
         threads = [
-            Thread(target=work, args=(*own, stop), name=name, daemon=True) for name, work, own in _work(application)
+            Thread(target=work, args=(*args, stop), name=name, daemon=True) for name, work, args in _work(application)
         ]
         begin = Thread(target=_begin, args=(application, threads, stop), name="begin", daemon=True)
         begin.start()
@@ -135,9 +135,10 @@ def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], 
         yield "outbox", deliver_until, (storage, ways, clock, metrics)
 
 
-def _ways(own: Settings) -> Ways:
-    return Ways(own.webhook_hosts, MailServer(own.mail_host, own.mail_port, own.mail_from, own.mail_security))
+def _ways(settings: Settings) -> Ways:
+    mail = MailServer(settings.mail_host, settings.mail_port, settings.mail_from, settings.mail_security)
+    return Ways(settings.webhook_hosts, mail)
 
 
-def _worker(own: Application) -> Worker:
-    return Worker(own.settings, own.storage, own.clock, own.metrics, own.bell)
+def _worker(application: Application) -> Worker:
+    return Worker(application.settings, application.storage, application.clock, application.metrics, application.bell)

@@ -144,7 +144,7 @@ def raw_row(seconds: float, time: float, size: float, logs: int, seed: int) -> s
         drawn = rng.standard_normal((start[-1] + n + 1000, 3))
         wander = lfilter([np.sqrt(1 - decay**2)], [1, -decay], drawn, axis=0)[1000:]
         log, places = rng.standard_normal(wander.shape) + size * wander, Intervals(start, start + n)
-        sigma = mean_errors(log, places).own
+        sigma = mean_errors(log, places).alone
         shares.append(float(np.mean(np.abs(places.means(log)) < NORMAL * sigma)))
         ratios.append(float(sigma.mean()))
     x = time / seconds

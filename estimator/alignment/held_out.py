@@ -45,13 +45,13 @@ def held_out(arms: LeverArms) -> str:
 def prediction(arms: LeverArms, *, named: bool) -> HeldOutPrediction:
     """Of all turns; ``named``: with the named lever arms in the model."""
     parts = arms.pieces
-    scores, each = [], {}
+    scores, rms = [], {}
     for arm in arms.estimates:
-        own = [_scores(parts, arm, arms.lean, fold, named=named) for fold in _folds(parts)]
-        each[arm.sensor.name] = root_mean_square(np.concatenate([errors for errors, _, _ in own]))
-        scores += own
+        fold_scores = [_scores(parts, arm, arms.lean, fold, named=named) for fold in _folds(parts)]
+        rms[arm.sensor.name] = root_mean_square(np.concatenate([errors for errors, _, _ in fold_scores]))
+        scores += fold_scores
     errors, squares, logs = (np.concatenate(column) for column in zip(*scores, strict=True))
-    return HeldOutPrediction(root_mean_square(errors), float(squares.mean()), float(logs.mean()), each)
+    return HeldOutPrediction(root_mean_square(errors), float(squares.mean()), float(logs.mean()), rms)
 
 
 def root_mean_square(errors: Array) -> float:

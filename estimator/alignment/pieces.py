@@ -110,10 +110,10 @@ def _trimmed(stop: Stop, turned: Turning) -> Stop:
 
 def _edges(turned: Turning, stationary: list[Stop]) -> list[tuple[int, int, int, int]]:
     """First row, one past the last, turn and stop of every piece."""
-    edges, each = [], int(np.clip(MOST // max(len(stationary) - 1, 1), *PIECES))
+    edges, most = [], int(np.clip(MOST // max(len(stationary) - 1, 1), *PIECES))
     for number, stop in enumerate(stationary):
         if number:
-            cuts = _cuts(turned, stationary[number - 1].last, stop.first, each)
+            cuts = _cuts(turned, stationary[number - 1].last, stop.first, most)
             edges += [(a, b, number - 1, -1) for a, b in pairwise(cuts)]
         edges.append((stop.first, stop.last, -1, number))
     return edges

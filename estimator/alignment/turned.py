@@ -127,9 +127,9 @@ def lever_response(pieces: Pieces, i: int, axis: Array, lean: float) -> LeverRes
     drop["beyond"] = drop_of(with_lever, whole)
     for name, columns in rivals.items():
         with_rival = weighted.fit(np.column_stack([base, columns]))
-        both = weighted.fit(np.column_stack([lever, columns]))
+        with_rival_and_lever = weighted.fit(np.column_stack([lever, columns]))
         drop[name] = drop_of(without, with_rival)
-        drop[f"lever arm beside {name}"] = drop_of(with_rival, both)
+        drop[f"lever arm beside {name}"] = drop_of(with_rival, with_rival_and_lever)
     excess = max(float(with_lever.chi2) / max(with_lever.freedom, 1), 1.0)
     return LeverResponse(i, with_lever.value[3:], with_lever.covariance[3:, 3:], ratio, freedom, excess, drop)
 

@@ -308,8 +308,8 @@ class SensorCause(Signature):
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
         """(S, R, q) the same at every one of S points of the grid, m/s² (rad/s)."""
-        each = [self.term(setting, i, nonlinear) for nonlinear in grid]
-        return each[0][None] if len(each) == 1 else np.stack(each)
+        terms = [self.term(setting, i, nonlinear) for nonlinear in grid]
+        return terms[0][None] if len(terms) == 1 else np.stack(terms)
 
     def each(self, setting: Setting, grids: Iterable[tuple[int, Grid]]) -> Iterator[tuple[int, Grid, Array]]:
         """Sensors with their grids, and the terms (S, R, q) of each, m/s² (rad/s); alike ones are worked out once."""
@@ -341,8 +341,8 @@ class SensorCause(Signature):
 
     def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
         """(R, m, S·q) of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
-        each = [on_sensor(setting, i, terms) for i, terms in self.terms_of(setting, shapes)]
-        return np.moveaxis(np.concatenate(each), 0, 2).reshape(setting.rows, len(setting.kinds), -1)
+        columns = [on_sensor(setting, i, terms) for i, terms in self.terms_of(setting, shapes)]
+        return np.moveaxis(np.concatenate(columns), 0, 2).reshape(setting.rows, len(setting.kinds), -1)
 
 
 class GridCause(SensorCause):

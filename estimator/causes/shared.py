@@ -62,8 +62,8 @@ KINDS = (walk, walking_rate)
 
 def of_kind(kind: int, sizes: Array) -> tuple[float, ...]:
     """The shape of a course that has waves of one of `KINDS` alone, of ``sizes`` (w,)."""
-    each = [sizes if k == kind else np.zeros_like(sizes) for k in range(len(KINDS))]
-    return tuple(np.concatenate(each).tolist())
+    by_kind = [sizes if k == kind else np.zeros_like(sizes) for k in range(len(KINDS))]
+    return tuple(np.concatenate(by_kind).tolist())
 
 
 def kind_of(shape: tuple[float, ...]) -> int:

@@ -103,8 +103,8 @@ def judged(moments: PlaceMoments, names: Sequence[Found]) -> BeyondJudgement:
 
 def total(values: Iterable[np.ndarray]) -> float:
     """ln of the sum of Bayes factors over candidates and forms."""
-    each = [float(log_sum(v)) for v in values]
-    return float(log_sum(np.array(each))) if each else -np.inf
+    sums = [float(log_sum(v)) for v in values]
+    return float(log_sum(np.array(sums))) if sums else -np.inf
 
 
 def share(moments: PlaceMoments, key: Key) -> float:
@@ -124,12 +124,12 @@ def catalogue(moments: PlaceMoments, names: Sequence[Found], further: float) -> 
     shared: list[Key] = []
     free: list[Key] = []
     for number, f in enumerate(names):
-        key, own = key_of(f.hypothesis), free if f.form == VARYING else shared
+        key, chosen = key_of(f.hypothesis), free if f.form == VARYING else shared
         last = number == len(names) - 1
         asked = [k for k in moments.causes if k not in (*shared, *free)] if last else [key]
-        each = moments.given(shared, free).evidence(asked)
-        chain += float(log_sum(np.array([log_sum(v) + share(moments, k) for k, (v, _) in each.items()])))
-        own.append(key)
+        evidence = moments.given(shared, free).evidence(asked)
+        chain += float(log_sum(np.array([log_sum(v) + share(moments, k) for k, (v, _) in evidence.items()])))
+        chosen.append(key)
         chain += between_shapes(moments, f, shared, free)
     return chain - further * (len(names) - 1)
 
@@ -150,8 +150,8 @@ def shapes_of(moments: PlaceMoments, name: Found) -> list[Key]:
 
 def explained_by(moments: PlaceMoments, names: Sequence[Found]) -> float:
     """χ² beyond its degrees of freedom that names explain together, each session by itself."""
-    own = np.concatenate([moments.slots[key_of(f.hypothesis)] for f in names])
-    U, F = moments.U[:, own], moments.F[:, own[:, None], own]
+    slots = np.concatenate([moments.slots[key_of(f.hypothesis)] for f in names])
+    U, F = moments.U[:, slots], moments.F[:, slots[:, None], slots]
     statistic, freedom = batch(U, F)
     return float((statistic - freedom).sum())
 
@@ -173,23 +173,23 @@ def chain_of(moments: PlaceMoments, beyond: Sequence[Key], start: tuple[Key, ...
     value, explained, whole = 0.0, 0.0, -np.inf
     while len(chain) < LONGEST:
         asked = start if len(chain) < len(start) else beyond
-        each = moments.given(shared=chain).evidence([k for k in asked if k not in chain])
-        if not each:
+        evidence = moments.given(shared=chain).evidence([k for k in asked if k not in chain])
+        if not evidence:
             break
-        best = max(each, key=lambda k: each[k][0][SAME])
-        gained = float(each[best][0][SAME]) + prior
+        best = max(evidence, key=lambda k: evidence[k][0][SAME])
+        gained = float(evidence[best][0][SAME]) + prior
         if len(chain) > len(start) and gained < ENOUGH:
             break
         if asked is beyond:
-            whole = float(np.logaddexp(whole, value + total(v for v, _ in each.values()) + prior))
-        chain, value, explained = (*chain, best), value + gained, explained + each[best][1]
+            whole = float(np.logaddexp(whole, value + total(v for v, _ in evidence.values()) + prior))
+        chain, value, explained = (*chain, best), value + gained, explained + evidence[best][1]
     return Chain(chain, whole, explained)
 
 
 def strongest_of(moments: PlaceMoments) -> tuple[Key, ...]:
     """The term of the whole library that explains most alone: a law may have a part that the catalogue has too."""
-    each = moments.given().evidence(moments.terms)
-    return (max(each, key=lambda k: each[k][0][SAME]),) if each else ()
+    evidence = moments.given().evidence(moments.terms)
+    return (max(evidence, key=lambda k: evidence[k][0][SAME]),) if evidence else ()
 
 
 def held(moments: PlaceMoments, names: Sequence[Found], chain: Sequence[Key]) -> tuple[Found, ...]:
@@ -197,12 +197,12 @@ def held(moments: PlaceMoments, names: Sequence[Found], chain: Sequence[Key]) ->
     kept = []
     for f in names:
         key = key_of(f.hypothesis)
-        own = float(log_sum(moments.given(shared=chain).evidence([key])[key][0])) + share(moments, key)
+        log_odds = float(log_sum(moments.given(shared=chain).evidence([key])[key][0])) + share(moments, key)
         terms, done = 0.0, list[Key]()
         for term in chain:
             terms += float(moments.given(shared=done, free=[key]).evidence([term])[term][0][SAME])
             done.append(term)
-        if own > ENOUGH + FURTHER and own > terms:
+        if log_odds > ENOUGH + FURTHER and log_odds > terms:
             kept.append(f)
     return tuple(kept)
 

@@ -70,8 +70,8 @@ def _of_sensors(cause: SensorCause, setting: Setting, names: tuple[str, ...]) ->
     """One cause on every sensor that it may act on, in every shape."""
     shapes = TIME_CONSTANTS if cause.nonlinear_units == ("s",) else (None,)
     grid: list[tuple[float, ...]] = [() if shape is None else (shape,) for shape in shapes]
-    own = ((i, grid) for i, kind in enumerate(setting.kinds) if cause.kind in (None, kind))
-    for i, _, terms in cause.each(setting, own):
+    grids = ((i, grid) for i, kind in enumerate(setting.kinds) if cause.kind in (None, kind))
+    for i, _, terms in cause.each(setting, grids):
         for shape, columns in zip(shapes, on_sensor(setting, i, terms), strict=True):
             yield Block(cause.identifier, names[i], setting.kinds[i], shape, len(cause.units)), columns
 
@@ -81,10 +81,10 @@ def _harmonics(setting: Setting, names: tuple[str, ...]) -> Iterator[tuple[Block
     if setting.beta is None or setting.flipped is None or setting.d_beta is None or setting.d_alpha is None:
         return
     sign = np.where(setting.flipped, -1.0, 1.0)[:, None]
-    both = setting.has("both runs")
+    has_both_runs = setting.has("both runs")
     for order in HARMONICS:
         wave = harmonic(setting, order)
-        wave = np.concatenate([wave, sign * wave], axis=1) if both else wave
+        wave = np.concatenate([wave, sign * wave], axis=1) if has_both_runs else wave
         for i, (name, kind) in enumerate(zip(names, setting.kinds, strict=True)):
             columns = np.zeros((setting.rows, len(names), wave.shape[1]))
             columns[:, i, :] = wave * setting.norm[i]

@@ -66,9 +66,9 @@ def diagnose_statistics(
     selection = names_that_predict(select(layout))
     group = LackOfFitGroup(selection, tuple(sessions))
     selection = names_that_fit(group)
-    each = [estimated(selection, f) for f in selection.found]
+    effects = [estimated(selection, f) for f in selection.found]
     separator = Separator(tuple(sessions))
-    found = [finding_of(selection, one, separator.measurements(selection, one)) for one in each]
+    found = [finding_of(selection, effect, separator.measurements(selection, effect)) for effect in effects]
     scale = selection.weighed()
     whole = merged(found)
     drawn = pictures(whole, sessions) if sessions else [None] * len(whole)
@@ -84,7 +84,7 @@ def diagnose_statistics(
         limits=limits(pooled(layout, PoolModel(), selection.scale), level),
         gain=gain_of(selection, found, sessions),
         e_value=float(np.exp(min(scale.log_e_value, LARGEST))),
-        notes=tuple(notes(selection, each)),
+        notes=tuple(notes(selection, effects)),
     )
 
 
@@ -99,12 +99,12 @@ def learned_terms(selection: GroupSelection, level: str, group: LackOfFitGroup) 
         (h.sensor, *((TYPE, whole_type) if level == TYPE and h.sensor else (h.level, h.subject)))
         for h, _ in selection.structures
     )
-    for sensor, whose, subject in places if group.sessions else ():
-        own = [one for one in group.fitted if Where(whose, subject, sensor, "").concerns(one.record)]
-        whole = [Library.of(one.baseline, sensor, named) for one in own] if sensor != EVERY else []
+    for sensor, term_level, subject in places if group.sessions else ():
+        fits = [fit for fit in group.fitted if Where(term_level, subject, sensor, "").concerns(fit.record)]
+        whole = [Library.of(fit.baseline, sensor, named) for fit in fits] if sensor != EVERY else []
         terms = learn(sensor, whole)
         if terms is not None:
-            yield replace(shown(subject, terms, whole), level=whose)
+            yield replace(shown(subject, terms, whole), level=term_level)
 
 
 def subject_of(session: SessionStatistics, level: str) -> str:
@@ -136,7 +136,7 @@ def as_one(a: GroupFinding, b: GroupFinding) -> GroupFinding:
     )
 
 
-def notes(selection: GroupSelection, each: Sequence[Estimated]) -> list[str]:
+def notes(selection: GroupSelection, effects: Sequence[Estimated]) -> list[str]:
     """What a reader should know beside the findings."""
     found: list[str] = []
     for f, h in selection.misfits:
@@ -159,7 +159,7 @@ def notes(selection: GroupSelection, each: Sequence[Estimated]) -> list[str]:
                     shape=f"{h.shape:g}",
                 )
             )
-    alone = [selection.layout.parts[k].statistics.started_at for k in sorted({k for k, _ in selection.own})]
+    alone = [selection.layout.parts[k].statistics.started_at for k in sorted({k for k, _ in selection.of_one_session})]
     if alone:
         dates = dict.fromkeys(date or "one without a date" for date in alone)
         found.append(say("removed from single sessions that show it on their own: {dates}", dates=joined(", ", dates)))

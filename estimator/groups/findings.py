@@ -137,17 +137,17 @@ def with_joint(mean: Mean, lost: Array, whole: Array) -> Mean:
 
 
 def finding_of(
-    selection: GroupSelection, one: Estimated, measurements: Sequence[tuple[str, int | None]]
+    selection: GroupSelection, effect: Estimated, measurements: Sequence[tuple[str, int | None]]
 ) -> GroupFinding:
     """A finding as people see it; ``measurements`` what would separate each of its rivals."""
-    f, h = one.found, one.found.hypothesis
+    f, h = effect.found, effect.found.hypothesis
     known = cause(h.cause)
     gyro = known.kind is None and h.kind == GYROSCOPE
     sensors = (h.sensor,) if h.sensor else ()
-    weighed = one.scale.weighed[f.place[0]]
+    weighed = effect.scale.weighed[f.place[0]]
     date = selection.layout.parts[f.since].statistics.started_at
-    others = dict.fromkeys(n.hypothesis.cause for n in one.rivals if n.hypothesis.cause != h.cause)
-    doubted = h.group in selection.doubted or differs(one) or any(concerns(h, s) for s, _ in selection.structures)
+    others = dict.fromkeys(n.hypothesis.cause for n in effect.rivals if n.hypothesis.cause != h.cause)
+    doubted = h.group in selection.doubted or differs(effect) or any(concerns(h, s) for s, _ in selection.structures)
     beside = [UNEXPLAINED] if doubted else []
     return GroupFinding(
         cause=h.cause,
@@ -155,35 +155,35 @@ def finding_of(
         subject=h.subject,
         sensors=sensors,
         kind=h.kind,
-        amplitude=tuple(one.mean.value.tolist()),
-        sigma=tuple(s if s > 0 else None for s in one.mean.sigma.tolist()),
+        amplitude=tuple(effect.mean.value.tolist()),
+        sigma=tuple(s if s > 0 else None for s in effect.mean.sigma.tolist()),
         units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in known.units),
-        spread=(one.mean.spread,),
+        spread=(effect.mean.spread,),
         shape=h.shape,
         form=FORM_WORDS[f.form],
         since=date if f.form == SINCE else None,
-        e_value=float(np.exp(min(one.scale.log_e_value, LARGEST))),
-        strength=strength_of(one, float(weighed.statistic[f.place[1]])),
-        cochran=one.mean.cochran,
+        e_value=float(np.exp(min(effect.scale.log_e_value, LARGEST))),
+        strength=strength_of(effect, float(weighed.statistic[f.place[1]])),
+        cochran=effect.mean.cochran,
         alternatives=(*others, *beside),
-        rivals=tuple(rival_of(n, *m) for n, m in zip(one.rivals, measurements, strict=True)),
+        rivals=tuple(rival_of(n, *m) for n, m in zip(effect.rivals, measurements, strict=True)),
         sentence=sentence(known, (words_of(h),) if h.sensor else ()),
         advice=known.advice,
-        sessions=forest(selection, one),
+        sessions=forest(selection, effect),
     )
 
 
-def differs(one: Estimated) -> bool:
+def differs(effect: Estimated) -> bool:
     """Whether sessions have it in different sizes: a cause is one constant, and what no catalogue has looks so too."""
-    return one.found.form == VARYING or one.mean.cochran < DIFFERENT
+    return effect.found.form == VARYING or effect.mean.cochran < DIFFERENT
 
 
-def strength_of(one: Estimated, pooled: float) -> float:
+def strength_of(effect: Estimated, pooled: float) -> float:
     """Standard errors of a reading: of the pool, or of the sessions one by one where the effect differs."""
-    if one.found.form == VARYING:
-        return float(np.sqrt(sum(float(u @ inverse(f) @ u) for u, f in zip(one.U, one.F, strict=True))))
-    if one.found.form == SINCE:
-        U, F = one.U[one.found.since :].sum(axis=0), one.F[one.found.since :].sum(axis=0)
+    if effect.found.form == VARYING:
+        return float(np.sqrt(sum(float(u @ inverse(f) @ u) for u, f in zip(effect.U, effect.F, strict=True))))
+    if effect.found.form == SINCE:
+        U, F = effect.U[effect.found.since :].sum(axis=0), effect.F[effect.found.since :].sum(axis=0)
         return float(np.sqrt(max(U @ inverse(F) @ U, 0.0)))
     return float(np.sqrt(pooled))
 
@@ -204,12 +204,12 @@ def rival_of(near_by: Near, measurement: str, sessions: int | None) -> GroupRiva
     )
 
 
-def forest(selection: GroupSelection, one: Estimated) -> tuple[SessionAmplitude, ...]:
+def forest(selection: GroupSelection, effect: Estimated) -> tuple[SessionAmplitude, ...]:
     """The amplitude of every session that speaks of a finding."""
     lines = []
-    for part, U, F in zip(selection.layout.parts, one.U, one.F, strict=True):
+    for part, U, F in zip(selection.layout.parts, effect.U, effect.F, strict=True):
         size = np.diagonal(F)
-        if columns_in(part, one.found.place) is None or not size.any():
+        if columns_in(part, effect.found.place) is None or not size.any():
             continue
         covariance = inverse(F)
         sigma = tuple(
@@ -224,11 +224,11 @@ def structures(selection: GroupSelection) -> tuple[GroupStructure, ...]:
     """Structure that the sessions share and no cause explains, in words."""
     found = []
     for h, statistic in selection.structures:
-        what = say("harmonic {shape} of β", shape=f"{h.shape:g}") if h.shape is not None else joined(" + ", h.words)
+        shape = say("harmonic {shape} of β", shape=f"{h.shape:g}") if h.shape is not None else joined(" + ", h.words)
         where = (
-            say("{hypothesis}: {shape}", hypothesis=words_of(h), shape=what)
+            say("{hypothesis}: {shape}", hypothesis=words_of(h), shape=shape)
             if h.sensor
-            else say("the applied vector, common to all sensors: {shape}", shape=what)
+            else say("the applied vector, common to all sensors: {shape}", shape=shape)
         )
         found.append(GroupStructure(where, h.subject, (h.sensor,) if h.sensor else (), float(np.sqrt(statistic))))
     return tuple(found)

@@ -72,8 +72,8 @@ def fixed(finding: GroupFinding) -> FixedEffect:
 def in_one_session(sigma: Sequence[float], spread: Sequence[float]) -> tuple[float, ...]:
     """What is not known of amplitudes in one session, SI: of their means, NaN where the group does not see one, and τ
     of each sensor in turn."""
-    each = len(sigma) // max(1, len(spread))
-    return tuple(0.0 if isnan(s) else hypot(s, spread[k // each]) for k, s in enumerate(sigma))
+    width = len(sigma) // max(1, len(spread))
+    return tuple(0.0 if isnan(s) else hypot(s, spread[k // width]) for k, s in enumerate(sigma))
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,9 +132,9 @@ def added_by(baseline: Baseline, effects: Sequence[FixedEffect], causes: Sequenc
     taken = {(identifier, sensor) for identifier, sensors in causes for sensor in sensors or ("",)}
     found: list[tuple[Array, Array, Array, bool]] = []
     for effect in effects:
-        own = list(_places(baseline, effect, taken))
-        taken |= {(effect.cause, sensor) for _, _, _, sensors in own for sensor in sensors}
-        found += [(columns, value, variance, effect.varies) for columns, value, variance, _ in own]
+        fitting = list(_places(baseline, effect, taken))
+        taken |= {(effect.cause, sensor) for _, _, _, sensors in fitting for sensor in sensors}
+        found += [(columns, value, variance, effect.varies) for columns, value, variance, _ in fitting]
     if not found:
         return None
     widths = [len(value) for _, value, _, _ in found]
@@ -155,16 +155,16 @@ def _places(
         return
     blocks = [(b, columns) for b, columns in candidates_of(baseline, cause(effect.cause)) if b.shape == effect.shape]
     for k, place in enumerate(effect.sensors or ("",)):
-        own = [
+        matching = [
             (b, columns)
             for b, columns in blocks
             if (b.sensor == place or (place == EVERY and b.kind == effect.kind))
             and (effect.cause, b.sensor) not in taken
         ]
-        if own:
-            part = slice(k * own[0][0].width, (k + 1) * own[0][0].width)
+        if matching:
+            part = slice(k * matching[0][0].width, (k + 1) * matching[0][0].width)
             value, sigma = np.array(effect.amplitude[part]), np.array(effect.sigma[part])
-            yield np.sum([columns for _, columns in own], axis=0), value, sigma**2, [b.sensor for b, _ in own]
+            yield np.sum([columns for _, columns in matching], axis=0), value, sigma**2, [b.sensor for b, _ in matching]
 
 
 def _learned(
@@ -175,24 +175,24 @@ def _learned(
     if (effect.cause, sensor) in taken or (sensor and sensor not in [s.name for s in baseline.session.sensors]):
         return
     known = {word: term.columns[..., k] for term in library(baseline, sensor) for k, word in enumerate(term.words)}
-    own = [k for k, word in enumerate(effect.words) if word in known]
-    if own:
-        columns = np.stack([known[effect.words[k]] for k in own], axis=-1)
-        yield columns, np.array(effect.amplitude)[own], np.array(effect.sigma)[own] ** 2, [sensor]
+    places = [k for k, word in enumerate(effect.words) if word in known]
+    if places:
+        columns = np.stack([known[effect.words[k]] for k in places], axis=-1)
+        yield columns, np.array(effect.amplitude)[places], np.array(effect.sigma)[places] ** 2, [sensor]
 
 
 def amplitude_in(residuals: WhitenedResiduals, added: Added) -> tuple[Array, Array]:
     """(q,) amplitude in this session, SI, and its covariance (q, q), SI²."""
     covariance = np.diag(added.variance)
-    own = added.varies & (added.variance > 0)
-    if not own.any():
+    varying = added.varies & (added.variance > 0)
+    if not varying.any():
         return added.amplitude, covariance
     trace = residuals.trace(added.columns)
     left = residuals.z - trace @ added.amplitude
-    fit = least_squares(trace[:, own], left, prior=1 / added.variance[own])
+    fit = least_squares(trace[:, varying], left, prior=1 / added.variance[varying])
     value = added.amplitude.copy()
-    value[own] += fit.value
-    covariance[np.ix_(own, own)] = fit.covariance
+    value[varying] += fit.value
+    covariance[np.ix_(varying, varying)] = fit.covariance
     return value, covariance
 
 

@@ -37,7 +37,7 @@ def gain_of(
 ) -> GroupGain | None:
     """The gain on later sessions; None without findings or without sessions to leave out."""
     n = len(selection.layout.parts)
-    model, lasting = PoolModel(absorbed=selection.own), []
+    model, lasting = PoolModel(absorbed=selection.of_one_session), []
     for f, finding in zip(selection.found, findings, strict=True):
         if f.form != VARYING:
             model = model.with_shared(f.place, f.since)
@@ -74,7 +74,7 @@ def latest_errors(
     """
     widths = [len(f.amplitude) for f in findings]
     parts = np.split(amplitude, np.cumsum(widths)[:-1])
-    effects = [replace(fixed(f), amplitude=tuple(own.tolist())) for f, own in zip(findings, parts, strict=True)]
+    effects = [replace(fixed(f), amplitude=tuple(part.tolist())) for f, part in zip(findings, parts, strict=True)]
     baseline = baseline_of(averaged(session))
     added = added_by(baseline, effects, ())
     if added is None:

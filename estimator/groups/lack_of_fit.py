@@ -51,13 +51,13 @@ class LackOfFitGroup:
 
     def moments(self, state: GroupSelection, where: Where) -> PlaceMoments:
         """Causes and terms of a place over its sessions, what was found elsewhere left free."""
-        numbers = [k for k, one in enumerate(self.fitted) if where.concerns(one.record)]
+        numbers = [k for k, fit in enumerate(self.fitted) if where.concerns(fit.record)]
         beside = [(Where.of(f.hypothesis), key_of(f.hypothesis)) for f in state.found]
         beside += [_at(state, place) for place in state.nameless]
         whole = [(w, key) for w, key in beside if w != where]
-        alone = [*state.own, *state.aside]
-        own = [[*whole, *(_at(state, p) for j, p in alone if j == k + self.first)] for k in numbers]
-        return moments_at(where, [self.fitted[k] for k in numbers], [[x for x in o if x[0] != where] for o in own])
+        alone = [*state.of_one_session, *state.aside]
+        others = [[*whole, *(_at(state, p) for j, p in alone if j == k + self.first)] for k in numbers]
+        return moments_at(where, [self.fitted[k] for k in numbers], [[x for x in o if x[0] != where] for o in others])
 
 
 def _at(state: GroupSelection, place: Place) -> tuple[Where, Key]:
@@ -74,23 +74,23 @@ def names_that_fit(group: LackOfFitGroup) -> GroupSelection:
     """
     state, settled = group.selection, dict[Where, tuple[GroupHypothesis, BeyondJudgement]]()
     while True:
-        each = [
+        judgements = [
             (where, names, judged(group.moments(state, where), names))
             for where, names in by_place(state)
             if where not in settled and where in group
         ]
-        wrong = [(where, says) for where, _, says in each if not says.fits]
+        wrong = [(where, says) for where, _, says in judgements if not says.fits]
         if not wrong or len(settled) == MOST:
             break
         where, says = max(wrong, key=lambda x: x[1].statistic)
         settled[where] = (GroupHypothesis(*where[:2], TERMS, *where[2:], None, 0, says.words), says)
         state = searched_again(state, where, says)
     unasked = [f for f in state.found if Where.of(f.hypothesis) not in group]
-    doubtful = [*unasked, *(f for _, names, says in each if says.doubtful for f in names)]
+    doubtful = [*unasked, *(f for _, names, says in judgements if says.doubtful for f in names)]
     doubted = frozenset(f.hypothesis.group for f in doubtful)
-    own = tuple((h, says.statistic) for h, says in settled.values())
+    nameless = tuple((h, says.statistic) for h, says in settled.values())
     gone = tuple((f, h) for h, says in settled.values() for f in says.taken_back)
-    structures, misfits = (*state.structures, *own), (*state.misfits, *gone)
+    structures, misfits = (*state.structures, *nameless), (*state.misfits, *gone)
     return replace(state, structures=structures, misfits=misfits, doubted=doubted)
 
 
@@ -102,7 +102,7 @@ def by_place(state: GroupSelection) -> Iterator[tuple[Where, list[Found]]]:
 
 def searched_again(state: GroupSelection, where: Where, says: BeyondJudgement) -> GroupSelection:
     """The search without a place: it is left free in every session, or for the names that hold there alone."""
-    table = [((w, k), h) for w, own in state.layout.hypotheses.items() for k, h in enumerate(own)]
+    table = [((w, k), h) for w, listed in state.layout.hypotheses.items() for k, h in enumerate(listed)]
     if says.kept:
         kept = {f.hypothesis.group for f in says.kept}
         others = {h.group for _, h in table if Where.of(h) == where} - kept

@@ -47,7 +47,7 @@ class Lasting:
     """That speak of it, the latest among them."""
     began: int
     """Of how many sessions before the latest it is known; what began with the latest itself has 0."""
-    here: float
+    probability: float
     """Probability that the latest session has it."""
     ranking: tuple[Rival, ...]
     """It and what the pool does not tell from it, likeliest first."""
@@ -68,16 +68,16 @@ def lasting(
     selection = names_that_fit(LackOfFitGroup(names_that_predict(select(layout, barred)), tuple(sessions)))
     found = []
     for f in selection.found:
-        one = estimated(selection, f)
-        whole = finding_of(selection, one, [("", None)] * len(one.rivals))
-        found += list(_in_latest(one, whole))
+        effect = estimated(selection, f)
+        whole = finding_of(selection, effect, [("", None)] * len(effect.rivals))
+        found += list(_in_latest(effect, whole))
     return found
 
 
-def _in_latest(one: Estimated, whole: GroupFinding) -> Iterator[Lasting]:
+def _in_latest(effect: Estimated, whole: GroupFinding) -> Iterator[Lasting]:
     """The finding as the latest session may have it; nothing where that session cannot tell."""
-    U, F, latest = one.U, one.F, len(one.F) - 1
-    seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= one.found.since)
+    U, F, latest = effect.U, effect.F, len(effect.F) - 1
+    seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= effect.found.since)
     others = seen & (np.arange(len(F)) < latest)
     if not seen[latest] or not others.any():
         return
@@ -93,20 +93,20 @@ def _in_latest(one: Estimated, whole: GroupFinding) -> Iterator[Lasting]:
             spread=(mean.spread,),
         ),
         sessions=count + 1,
-        began=latest - one.found.since,
-        here=probability(predictive(mean.value, spread, U[latest], F[latest]), count),
-        ranking=tuple(_ranking(one)),
+        began=latest - effect.found.since,
+        probability=probability(predictive(mean.value, spread, U[latest], F[latest]), count),
+        ranking=tuple(_ranking(effect)),
     )
 
 
-def _ranking(one: Estimated) -> Iterator[Rival]:
+def _ranking(effect: Estimated) -> Iterator[Rival]:
     """Shares of all explanations, given that one of them acts."""
-    every = list(one.scale.ranked())
+    every = list(effect.scale.ranked())
     whole = float(log_sum(np.array([value for _, _, value in every])))
-    shown = {one.found.hypothesis.group, *(n.hypothesis.group for n in one.rivals)}
+    shown = {effect.found.hypothesis.group, *(n.hypothesis.group for n in effect.rivals)}
     for (w, k), h, value in every:
         if h.group in shown:
-            strength = float(np.sqrt(one.scale.weighed[w].statistic[k]))
+            strength = float(np.sqrt(effect.scale.weighed[w].statistic[k]))
             yield Rival(h.cause, (h.sensor,) if h.sensor else (), float(np.exp(value - whole)), strength)
 
 

@@ -92,9 +92,9 @@ class GroupLayout:
             if before is not None and before.statistics.blocks == s.blocks:
                 parts.append(replace(before, statistics=s))
                 continue
-            own, sums = _places(s, wide)
+            placed, sums = _places(s, wide)
             found: dict[int, list[tuple[int, Array]]] = {}
-            for h, columns in own:
+            for h, columns in placed:
                 table = numbers.setdefault(h.width, {})
                 found.setdefault(h.width, []).append((table.setdefault(h, len(table)), columns))
                 known[h] = True
@@ -156,7 +156,7 @@ def log_priors(
         shapes[h.group] = shapes.get(h.group, 0) + 1
     causes = len(lasting_causes())
 
-    def one(h: GroupHypothesis) -> float:
+    def log_prior(h: GroupHypothesis) -> float:
         if h.nameless:
             return -np.inf
         j = order[h.level, h.subject]
@@ -165,4 +165,4 @@ def log_priors(
             share *= SHARED if h.sensor == EVERY else 1 - SHARED
         return float(np.log(share / len(places[h.level, h.subject, h.cause, h.sensor == EVERY]) / shapes[h.group]))
 
-    return {w: np.array([one(h) for h in table]) for w, table in hypotheses.items()}
+    return {w: np.array([log_prior(h) for h in table]) for w, table in hypotheses.items()}

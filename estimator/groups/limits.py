@@ -36,12 +36,12 @@ def limit_of(pool: Pool, known: Signature, level: str) -> PoolLimit:
         for k, h in enumerate(table):
             if h.cause != known.identifier or not _asked(h, level):
                 continue
-            own = m.F[:, k]
-            seen = np.flatnonzero(np.diagonal(own, axis1=1, axis2=2).sum(axis=1))
+            information = m.F[:, k]
+            seen = np.flatnonzero(np.diagonal(information, axis1=1, axis2=2).sum(axis=1))
             if len(seen):
                 prior = float(pool.layout.log_prior[w][k])
                 worst.append(_smallest(total[k], first[k], prior))
-                latest.append(_smallest(own[seen[-1]], first[k], prior))
+                latest.append(_smallest(information[seen[-1]], first[k], prior))
     return PoolLimit(**vars(_limit(known, worst)), one_session=_limit(known, latest).amplitude)
 
 
@@ -66,12 +66,12 @@ def _threshold(ratio: Array, kappa: float, log_prior: float) -> Array:
     return np.asarray(2 * (enough + 0.5 * np.log1p(grown)) * (1 + grown) / grown)
 
 
-def _limit(known: Signature, each: list[Array]) -> Limit:
+def _limit(known: Signature, smallest: list[Array]) -> Limit:
     """The largest of what several places need."""
     units = cause(known.identifier).units
-    if not each:
+    if not smallest:
         return Limit(known.identifier, None, units, "no session has what it needs")
-    largest = np.max(each, axis=0)
+    largest = np.max(smallest, axis=0)
     if not np.isfinite(largest).any():
         return Limit(known.identifier, None, units, "the calibrations absorb it completely")
     return Limit(known.identifier, tuple(float(x) for x in largest if np.isfinite(x)), units, "")

@@ -51,7 +51,7 @@ def pictures(findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSes
 
 def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> Picture | None:
     parts: list[Pictured] = []
-    variable, what = variable_of(finding), ""
+    variable, subject = variable_of(finding), ""
     for residuals in whole:
         baseline, session = residuals.baseline, residuals.baseline.session
         added = added_by(baseline, [fixed(finding)], ()) if finding.subject in session.subjects else None
@@ -59,20 +59,20 @@ def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> Pi
             continue
         effect = added.columns @ added.amplitude
         left = left_without(residuals, effect)
-        what = what or (finding.sensors[0] if finding.sensors else leading_angle(baseline, effect))
-        parts += list(drawn(baseline, left, what, variable))
-    return pooled_picture(parts, variable, what) if parts else None
+        subject = subject or (finding.sensors[0] if finding.sensors else leading_angle(baseline, effect))
+        parts += list(drawn(baseline, left, subject, variable))
+    return pooled_picture(parts, variable, subject) if parts else None
 
 
-def drawn(baseline: Baseline, left: Array, what: str, variable: str) -> Iterator[Pictured]:
+def drawn(baseline: Baseline, left: Array, subject: str, variable: str) -> Iterator[Pictured]:
     """One session: of a sensor by its name, of every one that `EVERY` means, or of an angle; ``left`` (R, m)."""
-    if what in ANGLES:
-        before, variance = seen_as_angle(baseline, baseline.residual, what)
-        after, _ = seen_as_angle(baseline, left, what)
+    if subject in ANGLES:
+        before, variance = seen_as_angle(baseline, baseline.residual, subject)
+        after, _ = seen_as_angle(baseline, left, subject)
         yield Pictured(values_of(baseline, 0, variable), before, after, variance)
         return
     for i, sensor in enumerate(baseline.session.sensors):
-        if what in (sensor.name, EVERY):
+        if subject in (sensor.name, EVERY):
             at = values_of(baseline, i, variable)
             yield Pictured(at, baseline.residual[:, i], left[:, i], variance_of(baseline, i))
 
@@ -99,8 +99,8 @@ def seen_as_angle(baseline: Baseline, residual: Array, angle: str) -> tuple[Arra
     assert slope is not None
     weight = 1 / baseline.variance
     size = (slope**2 * weight).sum(axis=1)
-    own = float(baseline.session.stand.sigma.beta) if baseline.session.stand and angle == "δβ" else 0.0
-    return (slope * residual * weight).sum(axis=1) / size, 1 / size + own**2
+    angle_sigma = float(baseline.session.stand.sigma.beta) if baseline.session.stand and angle == "δβ" else 0.0
+    return (slope * residual * weight).sum(axis=1) / size, 1 / size + angle_sigma**2
 
 
 def variable_of(finding: GroupFinding) -> str:
@@ -113,7 +113,7 @@ def variable_of(finding: GroupFinding) -> str:
     return INPUT if finding.sensors else BETA
 
 
-def pooled_picture(parts: Sequence[Pictured], variable: str, what: str) -> Picture:
+def pooled_picture(parts: Sequence[Pictured], variable: str, subject: str) -> Picture:
     """Mean of each bin, before and after, with its standard uncertainty; m/s² (rad/s)."""
     place = np.concatenate([p.at for p in parts])
     weight = np.concatenate([p.variance for p in parts]) ** -1.0
@@ -131,7 +131,7 @@ def pooled_picture(parts: Sequence[Pictured], variable: str, what: str) -> Pictu
         before=tuple(mean[0].tolist()),
         after=tuple(mean[1].tolist()),
         sigma=tuple((total[seen] ** -0.5).tolist()),
-        of=what,
+        of=subject,
     )
 
 

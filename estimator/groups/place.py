@@ -96,10 +96,10 @@ class PlaceMoments:
         """The same with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
         U, F = self.U, self.F
         if free:
-            own = np.concatenate([self.slots[k] for k in free])
-            gain = np.array([f[:, own] @ inverse(f[np.ix_(own, own)]) for f in F])
-            U = U - (gain @ U[:, own, None])[..., 0]
-            F = _cleared(F - gain @ F[:, own], F)
+            freed = np.concatenate([self.slots[k] for k in free])
+            gain = np.array([f[:, freed] @ inverse(f[np.ix_(freed, freed)]) for f in F])
+            U = U - (gain @ U[:, freed, None])[..., 0]
+            F = _cleared(F - gain @ F[:, freed], F)
         whole = F.sum(axis=0) if free else self.whole
         if not shared:
             return PlaceInput(self, U, F, whole)
@@ -112,7 +112,7 @@ class PlaceMoments:
 class PlaceInput:
     """Candidates of a place given some of them."""
 
-    of: PlaceMoments
+    moments: PlaceMoments
     U: Array
     F: Array
     whole: Array
@@ -121,19 +121,19 @@ class PlaceInput:
     def evidence(self, keys: Sequence[Key]) -> dict[Key, tuple[Array, float]]:
         """Of each: (3,) ln Bayes factor in each form, the form's prior share included, and χ² in the pool."""
         found: dict[Key, tuple[Array, float]] = {}
-        for width in {len(self.of.slots[k]) for k in keys}:
-            own = [k for k in keys if len(self.of.slots[k]) == width]
-            at = np.array([self.of.slots[k] for k in own])
+        for width in {len(self.moments.slots[k]) for k in keys}:
+            alike = [k for k in keys if len(self.moments.slots[k]) == width]
+            at = np.array([self.moments.slots[k] for k in alike])
             F = self.F[:, at[:, :, None], at[:, None, :]]
-            U = as_normal(self.U[:, at], F, self.of.estimated)
+            U = as_normal(self.U[:, at], F, self.moments.estimated)
             whole = self.whole[at[:, :, None], at[:, None, :]]
-            alone = self.of.whole[at, at]
+            alone = self.moments.whole[at, at]
             gone = (np.diagonal(whole, axis1=1, axis2=2) <= LEFT * alone).all(axis=1)
             total = np.where(gone[:, None], 0.0, U.sum(axis=0))
-            forms, _ = weighed_forms(U, F, total, np.where(gone[:, None, None], 0.0, whole), np.ones(len(own), bool))
+            forms, _ = weighed_forms(U, F, total, np.where(gone[:, None, None], 0.0, whole), np.ones(len(alike), bool))
             forms[:, gone] = -np.inf
             statistic, _ = batch(total, whole)
-            found |= {k: (forms[:, j], float(statistic[j])) for j, k in enumerate(own)}
+            found |= {k: (forms[:, j], float(statistic[j])) for j, k in enumerate(alike)}
         return found
 
 
@@ -156,15 +156,15 @@ class PlacedFit:
         """(R, m, w) columns of what was found at other places."""
         for where in dict.fromkeys(w for w, _ in places):
             if where.concerns(self.record):
-                own = causes_at(self.baseline, where)
-                yield from (own[key] for w, key in places if w == where and key in own)
+                columns = causes_at(self.baseline, where)
+                yield from (columns[key] for w, key in places if w == where and key in columns)
 
 
 @dataclass(frozen=True, eq=False)
 class Traced:
     """A session at a place."""
 
-    each: dict[Key, Array]
+    traces: dict[Key, Array]
     """(N, w) trace of every candidate, standard errors per unit amplitude."""
     causes: frozenset[Key]
     """Which of them the catalogue has."""
@@ -176,57 +176,57 @@ def moments_at(
     where: Where, whole: Sequence[PlacedFit], elsewhere: Sequence[Sequence[tuple[Where, Key]]]
 ) -> PlaceMoments:
     """Candidates of a place over sessions; ``elsewhere``: of each session, what else acts in it."""
-    each = [_traced(where, one, own) for one, own in zip(whole, elsewhere, strict=True)]
-    widths = {key: trace.shape[1] for x in each for key, trace in x.each.items()}
+    traced = [_traced(where, fit, others) for fit, others in zip(whole, elsewhere, strict=True)]
+    widths = {key: trace.shape[1] for x in traced for key, trace in x.traces.items()}
     ends = np.cumsum([0, *widths.values()])
     slots = {key: np.arange(a, b) for key, a, b in zip(widths, ends, ends[1:], strict=False)}
-    U, F = np.zeros((len(each), ends[-1])), np.zeros((len(each), ends[-1], ends[-1]))
-    for k, x in enumerate(each):
-        at = np.concatenate([slots[key] for key in x.each])
-        X = np.concatenate(list(x.each.values()), axis=1)
+    U, F = np.zeros((len(traced), ends[-1])), np.zeros((len(traced), ends[-1], ends[-1]))
+    for k, x in enumerate(traced):
+        at = np.concatenate([slots[key] for key in x.traces])
+        X = np.concatenate(list(x.traces.values()), axis=1)
         U[k, at], F[k][np.ix_(at, at)] = X.T @ x.z, X.T @ X
     unit = scale_of(F.sum(axis=0))
-    causes = frozenset[Key]().union(*(x.causes for x in each))
-    own, terms = [tuple(key for key in widths if (key in causes) == named) for named in (True, False)]
-    estimated = np.array([_estimated(where, one) for one in whole])
-    return PlaceMoments(own, terms, slots, U * unit, F * unit[:, None] * unit, estimated)
+    causes = frozenset[Key]().union(*(x.causes for x in traced))
+    named_keys, terms = [tuple(key for key in widths if (key in causes) == named) for named in (True, False)]
+    estimated = np.array([_estimated(where, fit) for fit in whole])
+    return PlaceMoments(named_keys, terms, slots, U * unit, F * unit[:, None] * unit, estimated)
 
 
-def _traced(where: Where, one: PlacedFit, own: Sequence[tuple[Where, Key]]) -> "Traced":
+def _traced(where: Where, fit: PlacedFit, others: Sequence[tuple[Where, Key]]) -> "Traced":
     """A session at a place, what acts elsewhere left free."""
-    residuals = WhitenedResiduals.of(one.baseline)
-    free = [residuals.trace(columns) for columns in one.elsewhere(own)]
+    residuals = WhitenedResiduals.of(fit.baseline)
+    free = [residuals.trace(columns) for columns in fit.elsewhere(others)]
     basis = np.zeros((len(residuals.z), 0))
     if free:
         basis = orthonormal(np.concatenate(free, axis=1), 1e-3)
-    named = {k: c for k, c in causes_at(one.baseline, where).items() if k[0] != HARMONIC}
-    whole = named | terms_at(one.baseline, where)
+    named = {k: c for k, c in causes_at(fit.baseline, where).items() if k[0] != HARMONIC}
+    whole = named | terms_at(fit.baseline, where)
     white = residuals.whitened(np.concatenate(list(whole.values()), axis=-1))
     trace = residuals.remaining_of(white)
     trace = trace - basis @ (basis.T @ trace)
     seen = np.linalg.norm(trace, axis=0) > INVISIBLE * np.maximum(np.linalg.norm(white, axis=0), 1e-300)
     ends = np.cumsum([columns.shape[-1] for columns in whole.values()])
-    each = dict(zip(whole, np.split(trace * seen / np.sqrt(one.scale), ends[:-1], axis=1), strict=True))
-    z = (residuals.z - basis @ (basis.T @ residuals.z)) / np.sqrt(one.scale)
-    return Traced(each, frozenset(named), z)
+    traces = dict(zip(whole, np.split(trace * seen / np.sqrt(fit.scale), ends[:-1], axis=1), strict=True))
+    z = (residuals.z - basis @ (basis.T @ residuals.z)) / np.sqrt(fit.scale)
+    return Traced(traces, frozenset(named), z)
 
 
-def _estimated(where: Where, one: PlacedFit) -> float:
+def _estimated(where: Where, fit: PlacedFit) -> float:
     """Degrees of freedom from which a session's noise at a place is estimated; infinite where it is as stated."""
-    record = one.record
-    own = np.array([where.sensor in ("", EVERY, name) for name in record.sensors])
-    doubtful = one.baseline.unstated | (record.noise_factor != 1)
-    return float(record.freedom[own].sum()) if (own & doubtful).any() else np.inf
+    record = fit.record
+    concerned = np.array([where.sensor in ("", EVERY, name) for name in record.sensors])
+    doubtful = fit.baseline.unstated | (record.noise_factor != 1)
+    return float(record.freedom[concerned].sum()) if (concerned & doubtful).any() else np.inf
 
 
 def as_normal(U: Array, F: Array, freedom: Array) -> Array:
     """(n, H, w) scores U as unlikely as normal ones where noise is estimated from ``freedom`` (n,) degrees of freedom;
     F (n, H, w, w)."""
-    own = np.flatnonzero(np.isfinite(freedom))
-    if not len(own):
+    estimated = np.flatnonzero(np.isfinite(freedom))
+    if not len(estimated):
         return U
-    n, H, w = U[own].shape
-    statistic, q = batch(U[own].reshape(n * H, w), F[own].reshape(n * H, w, w))
+    n, H, w = U[estimated].shape
+    statistic, q = batch(U[estimated].reshape(n * H, w), F[estimated].reshape(n * H, w, w))
     shrunk = U.copy()
-    shrunk[own] *= shrinkage(statistic, q, np.repeat(freedom[own], H)).reshape(n, H, 1)
+    shrunk[estimated] *= shrinkage(statistic, q, np.repeat(freedom[estimated], H)).reshape(n, H, 1)
     return shrunk

@@ -104,8 +104,8 @@ def among(F: Array) -> Among:
 def columns_in(part: Part, place: Place) -> Array | None:
     """(w,) columns of a hypothesis in a session; None where the session does not speak of it."""
     width, number = place
-    own = np.flatnonzero(part.hypotheses.get(width, np.zeros(0)) == number)
-    return part.columns[width][own[0]] if len(own) else None
+    matching = np.flatnonzero(part.hypotheses.get(width, np.zeros(0)) == number)
+    return part.columns[width][matching[0]] if len(matching) else None
 
 
 def without(U: Array, E: Array, information: Among, columns: Sequence[int]) -> tuple[Array, Array, Array]:

@@ -45,10 +45,10 @@ def mean_of(U: Array, F: Array) -> Mean:
     u, f = U / largest, F / largest**2
     freedom = int(np.linalg.matrix_rank(f, tol=1e-6, hermitian=True).sum())
     freedom -= int(np.linalg.matrix_rank(f.sum(axis=0), tol=1e-6, hermitian=True))
-    each = float((u * (np.linalg.pinv(f, rcond=1e-6, hermitian=True) @ u[..., None])[..., 0]).sum())
-    q = _heterogeneity(u, f, 0.0, each)
+    chi2 = float((u * (np.linalg.pinv(f, rcond=1e-6, hermitian=True) @ u[..., None])[..., 0]).sum())
+    q = _heterogeneity(u, f, 0.0, chi2)
     p = float(p_value(q, freedom))
-    spread = np.sqrt(_mandel_paule(u, f, freedom, each)) if freedom > 0 and q > freedom else 0.0
+    spread = np.sqrt(_mandel_paule(u, f, freedom, chi2)) if freedom > 0 and q > freedom else 0.0
     alone = inverse(f.sum(axis=0))
     value, covariance = _over_spreads(u, f) if freedom > 0 else (alone @ u.sum(axis=0), alone)
     covariance = covariance / largest**2
@@ -57,8 +57,8 @@ def mean_of(U: Array, F: Array) -> Mean:
 
 def _weights(u: Array, f: Array, tau2: float) -> tuple[Array, Array]:
     """(n, w, w) V⁻¹ and (n, w) V⁻¹·a of every session."""
-    one = np.linalg.inv(np.eye(u.shape[1]) + tau2 * f)
-    return f @ one, (one @ u[..., None])[..., 0]
+    shrink = np.linalg.inv(np.eye(u.shape[1]) + tau2 * f)
+    return f @ shrink, (shrink @ u[..., None])[..., 0]
 
 
 def _over_spreads(u: Array, f: Array) -> tuple[Array, Array]:
@@ -68,9 +68,9 @@ def _over_spreads(u: Array, f: Array) -> tuple[Array, Array]:
     """
     tau2 = TAUS[:, None, None, None] ** 2
     grown = np.eye(u.shape[1]) + tau2 * f
-    one = np.linalg.inv(grown)
-    weighted = (one @ u[..., None])[..., 0]
-    total, whole = (f @ one).sum(axis=1), weighted.sum(axis=1)
+    shrink = np.linalg.inv(grown)
+    weighted = (shrink @ u[..., None])[..., 0]
+    total, whole = (f @ shrink).sum(axis=1), weighted.sum(axis=1)
     covariance = np.linalg.pinv(total, rcond=1e-9, hermitian=True)
     value = (covariance @ whole[..., None])[..., 0]
     explained = (TAUS**2 * (u * weighted).sum(axis=(1, 2))) + (whole * value).sum(axis=1)

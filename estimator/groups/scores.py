@@ -26,9 +26,9 @@ def eigen_scores(blocks: Sequence[Block], U: Array, F: Array) -> tuple[Array, Ar
     starts, widths = starts_of(blocks), np.array([b.width for b in blocks])
     statistic, freedom = np.zeros(len(blocks)), np.zeros(len(blocks), dtype=int)
     for w in np.unique(widths):
-        own = np.flatnonzero(widths == w)
-        place = starts[own][:, None] + np.arange(w)
-        statistic[own], freedom[own] = batch(U[place], F[place[:, :, None], place[:, None, :]])
+        alike = np.flatnonzero(widths == w)
+        place = starts[alike][:, None] + np.arange(w)
+        statistic[alike], freedom[alike] = batch(U[place], F[place[:, :, None], place[:, None, :]])
     return statistic, freedom
 
 
@@ -48,8 +48,8 @@ def beside(blocks: Sequence[Block], U: Array, F: Array, found: Sequence[int]) ->
     if not found:
         return eigen_scores(blocks, U, F)
     starts = starts_of(blocks)
-    own = np.concatenate([np.arange(starts[k], starts[k + 1]) for k in found])
-    statistic, freedom = eigen_scores(blocks, *given(U, F, own, LEFT))
+    absorbed = np.concatenate([np.arange(starts[k], starts[k + 1]) for k in found])
+    statistic, freedom = eigen_scores(blocks, *given(U, F, absorbed, LEFT))
     statistic[list(found)] = 0.0
     return statistic, freedom
 

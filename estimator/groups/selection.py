@@ -62,7 +62,7 @@ class GroupSelection:
     """Nameless structure, with its χ² in the pool."""
     misfits: tuple[tuple[GroupHypothesis, GroupHypothesis], ...] = ()
     """Names taken back, each with the structure that it left."""
-    own: tuple[tuple[int, Place], ...] = ()
+    of_one_session: tuple[tuple[int, Place], ...] = ()
     """What one session has by itself."""
     nameless: tuple[Place, ...] = ()
     """Structure that is in the fit."""
@@ -74,7 +74,7 @@ class GroupSelection:
 
     def model(self, without: Found | None = None) -> PoolModel:
         """Everything found, one finding left out."""
-        model = PoolModel(absorbed=(*self.own, *self.aside))
+        model = PoolModel(absorbed=(*self.of_one_session, *self.aside))
         n = range(len(self.layout.parts))
         for place in self.nameless:
             model = model.with_shared(place)
@@ -116,8 +116,8 @@ def larger_than_stated(layout: GroupLayout) -> Array:
     energy: dict[tuple[str, bool], Array] = {}
     for part in layout.parts:
         s = part.statistics
-        own = energy.setdefault(believed(s), np.zeros(2))
-        own += [s.energy.sum(), s.freedom.sum()]
+        sums = energy.setdefault(believed(s), np.zeros(2))
+        sums += [s.energy.sum(), s.freedom.sum()]
     most = dict.fromkeys((unit for unit, _ in energy), 0.0)
     for w, moments in plain.moments.items():
         for h, t in zip(layout.hypotheses[w], batch(*moments.pooled)[0], strict=True):
@@ -146,9 +146,9 @@ def one_more(state: GroupSelection, scale: Scale) -> GroupSelection | None:
     form = scale.form(place)
     since = int(scale.weighed[place[0]].since[place[1]]) if form == SINCE else 0
     alone = shown_by_one(scale.pool, place, form, since)
-    often = sum(p == place for _, p in state.own) >= max(1, len(state.layout.parts) // FEW)
+    often = sum(p == place for _, p in state.of_one_session) >= max(1, len(state.layout.parts) // FEW)
     if alone is not None and not often:
-        return replace(state, own=(*state.own, (alone, place)))
+        return replace(state, of_one_session=(*state.of_one_session, (alone, place)))
     if alone is not None or not within_reason(scale.pool, place):
         return replace(state, barred=state.barred | {hypothesis.group})
     return replace(state, found=(*state.found, Found(place, hypothesis, form, since, scale.log_e_value)))
@@ -168,14 +168,14 @@ def shown_by_one(pool: Pool, place: Place, form: int, since: int) -> int | None:
     w, k = place
     m = pool.moments[w]
     U, F = m.evidence[:, k], m.F[:, k]
-    each, freedom = batch(U, F)
-    strongest = int(each.argmax())
+    chi2, freedom = batch(U, F)
+    strongest = int(chi2.argmax())
     rest = np.arange(len(U)) != strongest
     if form == VARYING:
-        statistic, q = float(each[rest].sum()), int(freedom[rest].sum())
+        statistic, q = float(chi2[rest].sum()), int(freedom[rest].sum())
     else:
-        own = rest & (np.arange(len(U)) >= since)
-        total, used = batch(U[own].sum(axis=0)[None], F[own].sum(axis=0)[None])
+        counted = rest & (np.arange(len(U)) >= since)
+        total, used = batch(U[counted].sum(axis=0)[None], F[counted].sum(axis=0)[None])
         statistic, q = float(total[0]), int(used[0])
     return None if q > 0 and p_value(statistic, q) < STILL else strongest
 
@@ -231,9 +231,9 @@ def without_lesser(state: GroupSelection) -> GroupSelection:
     they are parts of what has no name."""
     for f in state.found:
         scale = state.weighed(without=f)
-        own = float(scale.weighed[f.place[0]].statistic[f.place[1]])
+        statistic = float(scale.weighed[f.place[0]].statistic[f.place[1]])
         beside = [(h, value) for h, value in state.structures if concerns(f.hypothesis, h)]
-        if beside and own < sum(value for _, value in beside):
+        if beside and statistic < sum(value for _, value in beside):
             state = taken_back(state, f, beside[0][0])
     return state
 

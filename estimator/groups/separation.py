@@ -32,14 +32,14 @@ class Separator:
 
     sessions: tuple[CalibrationSession, ...]
 
-    def measurements(self, selection: GroupSelection, one: Estimated) -> list[tuple[str, int | None]]:
+    def measurements(self, selection: GroupSelection, effect: Estimated) -> list[tuple[str, int | None]]:
         """For every rival of a finding: what to measure, in words, and how many sessions of it."""
-        if not one.rivals or not self.sessions:
-            return [("", None)] * len(one.rivals)
-        h, amplitude = one.found.hypothesis, one.mean.value
+        if not effect.rivals or not self.sessions:
+            return [("", None)] * len(effect.rivals)
+        h, amplitude = effect.found.hypothesis, effect.mean.value
         plans = planned(self.session_of(h))
         answers: list[tuple[str, int | None]] = []
-        for rival in one.rivals:
+        for rival in effect.rivals:
             if rival.hypothesis.cause == h.cause:
                 answers.append((OTHER_STAND, None))
                 continue
@@ -71,19 +71,19 @@ class SeparationPlan:
 
     def trace(self, h: GroupHypothesis) -> Array | None:
         """(N, w) standard errors per unit amplitude that a hypothesis leaves; None where it cannot show."""
-        own = [
+        columns = [
             c
             for b, c in self.columns
             if (b.cause, b.shape) == (h.cause, h.shape) and (h.sensor == b.sensor or (h.sensor == EVERY and b.sensor))
         ]
-        return self.residuals.trace(np.sum(own, axis=0)) if own else None
+        return self.residuals.trace(np.sum(columns, axis=0)) if columns else None
 
     def apart(self, h: GroupHypothesis, rival: GroupHypothesis, amplitude: Array) -> float:
         """Squared separation of a finding at its amplitude from its rival that one such session brings."""
-        own, other = self.trace(h), self.trace(rival)
-        if own is None:
+        trace, other = self.trace(h), self.trace(rival)
+        if trace is None:
             return 0.0
-        signature = own @ amplitude
+        signature = trace @ amplitude
         if other is None:
             return float(signature @ signature)
         return float(least_squares(other, signature).chi2)

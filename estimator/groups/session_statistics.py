@@ -173,9 +173,9 @@ def without_outliers(seen: WhitenedSession) -> WhitenedSession:
         left, freedom = seen.z, seen.freedom
         free = np.maximum(freedom, 0.05)
         energy, whole = of_sensors(seen, left**2)[sensors], of_sensors(seen, freedom)[sensors]
-        own = left**2 / free
-        rest = np.maximum((energy - own) / np.maximum(whole - 1, 1), 1.0)
-        tail = p_value(own / rest, 1) * rows
+        square = left**2 / free
+        rest = np.maximum((energy - square) / np.maximum(whole - 1, 1), 1.0)
+        tail = p_value(square / rest, 1) * rows
         tail[rows:] = 1.0
         worst = int(np.argmin(tail))
         if tail[worst] > PLAIN or freedom[worst] < 0.2 or whole[worst] < 4:
@@ -254,15 +254,15 @@ def contradicted(baseline: Baseline, energy: Array, freedom: Array) -> list[list
     stated = ~baseline.unstated & (freedom > 2)
     claims: list[list[int]] = []
     for kind in dict.fromkeys(baseline.setting.kinds):
-        own = np.flatnonzero(stated & np.array([k == kind for k in baseline.setting.kinds]))
-        if not len(own):
+        of_kind = np.flatnonzero(stated & np.array([k == kind for k in baseline.setting.kinds]))
+        if not len(of_kind):
             continue
-        tails = chdtr(free[own].sum(), energy[own].sum()), p_value(energy[own].sum(), free[own].sum())
-        leaning = (less, more)[int(np.argmin(tails))][own] < LEANING
-        if min(tails) < DOUBTFUL and 2 * leaning.sum() >= len(own):
-            claims.append(own.tolist())
+        tails = chdtr(free[of_kind].sum(), energy[of_kind].sum()), p_value(energy[of_kind].sum(), free[of_kind].sum())
+        leaning = (less, more)[int(np.argmin(tails))][of_kind] < LEANING
+        if min(tails) < DOUBTFUL and 2 * leaning.sum() >= len(of_kind):
+            claims.append(of_kind.tolist())
         else:
-            claims += [[int(i)] for i in own if more[i] < DOUBTFUL / len(energy)]
+            claims += [[int(i)] for i in of_kind if more[i] < DOUBTFUL / len(energy)]
     return claims
 
 

@@ -72,8 +72,8 @@ class SessionStatistics(
     forms={
         "started_at": MOMENT,
         "blocks": Form(
-            lambda blocks: [list(vars(one).values()) for one in blocks],
-            lambda listed: shared(tuple(Block(*one) for one in listed)),
+            lambda blocks: [list(vars(block).values()) for block in blocks],
+            lambda listed: shared(tuple(Block(*values) for values in listed)),
         ),
         "correlation": _packed("<i2"),
         **dict.fromkeys(FLOATS, _packed("<f8")),

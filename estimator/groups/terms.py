@@ -100,14 +100,14 @@ class Learned:
         """(a, a) SI²."""
         return self.fit.covariance
 
-    def predicted(self, of: Library) -> Array:
+    def predicted(self, session_terms: Library) -> Array:
         """(R, m) m/s² (rad/s): what the terms add in a session."""
-        found = np.zeros(of.columns.shape[:2])
+        found = np.zeros(session_terms.columns.shape[:2])
         start = 0
         for key in self.keys:
-            own = of.at(key)
-            if own is not None:
-                found = found + of.columns[..., own] @ self.value[start : start + len(key)]
+            columns = session_terms.at(key)
+            if columns is not None:
+                found = found + session_terms.columns[..., columns] @ self.value[start : start + len(key)]
             start += len(key)
         return found
 
@@ -157,18 +157,18 @@ def joint_fit(whole: Sequence[Library], keys: Sequence[Key]) -> JointFit:
     """Some terms fitted together to all sessions."""
     widths = [len(k) for k in keys]
     U, F = np.zeros((len(whole), sum(widths))), np.zeros((len(whole), sum(widths), sum(widths)))
-    for n, one in enumerate(whole):
+    for n, session_terms in enumerate(whole):
         places: list[int] = []
-        own: list[int] = []
+        taken: list[int] = []
         start = 0
         for key, width in zip(keys, widths, strict=True):
-            columns = one.at(key)
+            columns = session_terms.at(key)
             if columns is not None:
                 places += range(start, start + width)
-                own += columns.tolist()
+                taken += columns.tolist()
             start += width
-        x = one.trace[:, own]
-        U[n, places], F[n][np.ix_(places, places)] = x.T @ one.z, x.T @ x
+        x = session_terms.trace[:, taken]
+        U[n, places], F[n][np.ix_(places, places)] = x.T @ session_terms.z, x.T @ x
     return JointFit(U, F)
 
 
@@ -261,8 +261,8 @@ def nearest_cause(terms: Learned, whole: Sequence[Library]) -> tuple[str, float]
 def picture(terms: Learned, whole: Sequence[Library], variable: str) -> Picture:
     """Pooled residual of the place against a variable, before and after."""
     parts: list[Pictured] = []
-    what = terms.sensor or terms.keys[0][0].partition(":")[0]
-    for one in whole:
-        left = left_without(one.residuals, terms.predicted(one))
-        parts += list(drawn(one.residuals.baseline, left, what, variable))
-    return pooled_picture(parts, variable, what)
+    subject = terms.sensor or terms.keys[0][0].partition(":")[0]
+    for session_terms in whole:
+        left = left_without(session_terms.residuals, terms.predicted(session_terms))
+        parts += list(drawn(session_terms.residuals.baseline, left, subject, variable))
+    return pooled_picture(parts, variable, subject)

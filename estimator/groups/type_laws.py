@@ -43,47 +43,47 @@ def type_laws(units: Sequence[UnitHistory], tolerances: Mapping[tuple[str, str],
     units : one history each.
     tolerances : T by kind of sensor and parameter, relative for scale, else SI.
     """
-    each = (
+    laws = (
         _law(units, (kind, parameter), tolerance)
         for (kind, parameter), tolerance in tolerances.items()
         if parameter in FOLLOW
     )
-    return tuple(law for law in each if law is not None)
+    return tuple(law for law in laws if law is not None)
 
 
-def _law(units: Sequence[UnitHistory], of: tuple[str, str], tolerance: float) -> TypeLaw | None:
-    each = [found for unit in units if (found := tuple(_histories(unit, *of, tolerance)))]
-    histories = [history for found in each for history in found]
-    if len(each) < FEWEST_UNITS or len(histories) < FEWEST_SENSORS:
+def _law(units: Sequence[UnitHistory], place: tuple[str, str], tolerance: float) -> TypeLaw | None:
+    by_unit = [found for unit in units if (found := tuple(_histories(unit, *place, tolerance)))]
+    histories = [history for found in by_unit for history in found]
+    if len(by_unit) < FEWEST_UNITS or len(histories) < FEWEST_SENSORS:
         return None
-    about = float(np.mean([one.celsius.mean() for one in histories]))
+    about = float(np.mean([history.celsius.mean() for history in histories]))
     scatter, size, variance = _fitted(histories, about)
     pairs = [_mean_and_spread(size[:, q], variance[:, q]) for q in range(2)]
     mean, sigma = zip(*pairs, strict=True)
-    return TypeLaw(*of, tolerance, about, mean, sigma, tuple(scatter.tolist()), len(histories), len(each))
+    return TypeLaw(*place, tolerance, about, mean, sigma, tuple(scatter.tolist()), len(histories), len(by_unit))
 
 
 def _histories(unit: UnitHistory, kind: str, parameter: str, tolerance: float) -> Iterator[LawHistory]:
     """Of the unit's sensors of a kind, where its sessions show a bend apart from level and line."""
     for sensor in unit.reference.sensors:
-        own = history_of(unit.sessions, sensor, parameter, tolerance) if sensor.kind == kind else None
-        if own is not None and own.celsius.std() >= WARMED and shown_columns(own.celsius).shape[1] > 1:
-            yield own
+        history = history_of(unit.sessions, sensor, parameter, tolerance) if sensor.kind == kind else None
+        if history is not None and history.celsius.std() >= WARMED and shown_columns(history.celsius).shape[1] > 1:
+            yield history
 
 
 def _fitted(histories: Sequence[LawHistory], about: float) -> tuple[Array, Array, Array]:
     """(K,) chances of scatters, and (n, 2) coefficients of every history, T per °C and °C², with their variances."""
-    fits = [fit_at_every_scatter(one.readings, columns_about(one.celsius, about)) for one in histories]
-    logs = np.stack([own for *_, own in fits])
+    fits = [fit_at_every_scatter(history.readings, columns_about(history.celsius, about)) for history in histories]
+    logs = np.stack([log_likelihood for *_, log_likelihood in fits])
     nothing = np.full(len(SCATTERS), 1 / len(SCATTERS))
     prior = nothing
     for _ in range(ROUNDS):
         prior = (chances(logs, prior).sum(axis=0) + nothing) / (len(fits) + 1)
     share = chances(logs, prior)
-    each = np.stack([size[:, -2:] for size, *_ in fits])
-    own = np.stack([np.diagonal(covariance, axis1=-2, axis2=-1)[:, -2:] for _, covariance, _ in fits])
-    size = np.einsum("nk,nkq->nq", share, each)
-    return prior, size, np.einsum("nk,nkq->nq", share, own + (each - size[:, None]) ** 2)
+    law_sizes = np.stack([size[:, -2:] for size, *_ in fits])
+    variance = np.stack([np.diagonal(covariance, axis1=-2, axis2=-1)[:, -2:] for _, covariance, _ in fits])
+    size = np.einsum("nk,nkq->nq", share, law_sizes)
+    return prior, size, np.einsum("nk,nkq->nq", share, variance + (law_sizes - size[:, None]) ** 2)
 
 
 def _mean_and_spread(value: Array, variance: Array) -> tuple[float, float]:

@@ -54,9 +54,9 @@ class Scale:
     @property
     def log_e_value(self) -> float:
         """ln of the e-value of the group: against nothing at all beside what was found."""
-        each = [log_sum(w.log_evidence) for w in self.weighed.values() if np.isfinite(w.log_evidence).any()]
+        evidences = [log_sum(w.log_evidence) for w in self.weighed.values() if np.isfinite(w.log_evidence).any()]
         rest = np.log1p(-min(self.prior, 1.0)) if self.prior < 1 else -np.inf
-        return float(log_sum(np.array([*each, rest]))) if each else 0.0
+        return float(log_sum(np.array([*evidences, rest]))) if evidences else 0.0
 
     @property
     def prior(self) -> float:
@@ -102,26 +102,26 @@ def _weighed(pool: Pool, w: int, m: PoolMoments, barred: frozenset[tuple[str, ..
     return WeighedGroup(statistic, freedom, forms, since, prior)
 
 
-def weighed_forms(each: Array, every: Array, U: Array, F: Array, named: Array) -> tuple[Array, Array]:
+def weighed_forms(u: Array, f: Array, U: Array, F: Array, named: Array) -> tuple[Array, Array]:
     """(3, H) ln Bayes factor in each form, its prior share included, and (H,) the likeliest session of a beginning.
 
-    ``each`` (n, H, w) scores and ``every`` (n, H, w, w) information of the sessions; ``U`` (H, w) and ``F`` (H, w, w)
+    ``u`` (n, H, w) scores and ``f`` (n, H, w, w) information of the sessions; ``U`` (H, w) and ``F`` (H, w, w)
     of the pool; ``named`` (H,) bool: what else than always the same may be asked of.
     """
     forms = np.full((3, len(U)), -np.inf)
     since = np.zeros(len(U), dtype=int)
-    forms[SAME] = log_bayes(U, F, first_seen(every)) + np.log(FORMS[SAME])
+    forms[SAME] = log_bayes(U, F, first_seen(f)) + np.log(FORMS[SAME])
     if named.any():
-        forms[VARYING, named] = log_varying(*_each_session(each[:, named], every[:, named])) + np.log(FORMS[VARYING])
-        began = log_since(each[:, named], every[:, named])
+        forms[VARYING, named] = log_varying(*_each_session(u[:, named], f[:, named])) + np.log(FORMS[VARYING])
+        began = log_since(u[:, named], f[:, named])
         if len(began):
             forms[SINCE, named] = log_sum(began) + np.log(FORMS[SINCE])
-            since[named] = np.array(beginnings(len(every)))[began.argmax(axis=0)]
+            since[named] = np.array(beginnings(len(f)))[began.argmax(axis=0)]
     return forms, since
 
 
-def _each_session(each: Array, every: Array) -> tuple[Array, Array]:
+def _each_session(u: Array, f: Array) -> tuple[Array, Array]:
     """(H,) sums over sessions of χ² and of their degrees of freedom."""
-    n, H, w = each.shape
-    statistic, freedom = batch(each.reshape(n * H, w), every.reshape(n * H, w, w))
+    n, H, w = u.shape
+    statistic, freedom = batch(u.reshape(n * H, w), f.reshape(n * H, w, w))
     return statistic.reshape(n, H).sum(axis=0), freedom.reshape(n, H).sum(axis=0)

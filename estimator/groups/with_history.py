@@ -64,14 +64,14 @@ def diagnose(
     if not pooled:
         return by_itself(session, history, catalogue=catalogue)
     begun = put_right(session, history, catalogue)
-    own = diagnosed(begun, catalogue)
+    alone = diagnosed(begun, catalogue)
     if records is None:
         records = () if len(session.sensors) > MANY else [record_of(h, tuple(catalogue)) for h in history]
-    if not records or any(s.of_record for s in own.structures):
-        return own
+    if not records or any(s.of_record for s in alone.structures):
+        return alone
     now = kept(begun.right.session, with_fitted_flip(begun.right), ())
     sessions = (*history, begun.right.session)[-len(records) - 1 :]
-    return with_lasting(begun, own, lasting([*records, now], catalogue, sessions), catalogue)
+    return with_lasting(begun, alone, lasting([*records, now], catalogue, sessions), catalogue)
 
 
 @remembered
@@ -81,61 +81,61 @@ def record_of(earlier: CalibrationSession, catalogue: tuple[Cause, ...]) -> Sess
     return kept(right.session, with_fitted_flip(right), ())
 
 
-def with_lasting(begun: PutRight, own: Diagnosis, found: Sequence[Lasting], catalogue: Sequence[Cause]) -> Diagnosis:
+def with_lasting(begun: PutRight, alone: Diagnosis, found: Sequence[Lasting], catalogue: Sequence[Cause]) -> Diagnosis:
     """The session's own diagnosis with the lasting effects that it has and does not show by itself.
 
     One that it shows once that of the others is taken out has another amplitude here: it is the session's own then.
     What has ended is taken out of the history, whose parameters absorbed it: else its end would show as a new effect.
     """
-    ended = [one for one in found if one.here < (SURE if names(own, one) else ENDED)]
-    wanted = [one for one in found if one.here >= SURE and not names(own, one)]
+    ended = [effect for effect in found if effect.probability < (SURE if names(alone, effect) else ENDED)]
+    wanted = [effect for effect in found if effect.probability >= SURE and not names(alone, effect)]
     while wanted or ended:
         rest, more = without(begun, wanted, ended)
         left = diagnosed(rest, catalogue)
-        held = [one for one in wanted if not names(left, one)]
+        held = [effect for effect in wanted if not names(left, effect)]
         if len(held) == len(wanted):
-            named = merged([(cause(one.finding.cause), finding_of(one)) for one in wanted])
+            named = merged([(cause(effect.finding.cause), finding_of(effect)) for effect in wanted])
             return replace(
                 left,
                 findings=(*left.findings, *named),
-                gain=replace(left.gain, before=own.gain.before),
-                baseline=own.baseline,
+                gain=replace(left.gain, before=alone.gain.before),
+                baseline=alone.baseline,
                 calibration=enlarged(left.calibration, more, begun.right.parameters.axis_tangents),
-                notes=(*own.notes, *map(words_of_end, ended)),
+                notes=(*alone.notes, *map(words_of_end, ended)),
             )
         wanted = held
-    return own
+    return alone
 
 
-def names(diagnosis: Diagnosis, one: Lasting) -> bool:
+def names(diagnosis: Diagnosis, effect: Lasting) -> bool:
     """Whether a diagnosis names an effect by itself."""
-    own = one.finding
-    return any(f.cause == own.cause and set(own.sensors) <= set(f.sensors) for f in diagnosis.findings)
+    finding = effect.finding
+    return any(f.cause == finding.cause and set(finding.sensors) <= set(f.sensors) for f in diagnosis.findings)
 
 
 def without(begun: PutRight, lasting: Sequence[Lasting], ended: Sequence[Lasting]) -> tuple[PutRight, Array]:
     """A session without lasting effects and its history without these and those that ended; and what is not known of
     the lasting ones as covariance of the session's parameters (P, P), SI."""
     right, more = taken_from(begun.right, lasting)
-    count, both = len(begun.earlier), [*lasting, *ended]
+    count, known = len(begun.earlier), [*lasting, *ended]
     earlier = tuple(
-        taken_from(b, [one for one in both if count - k <= one.began])[0] for k, b in enumerate(begun.earlier)
+        taken_from(b, [effect for effect in known if count - k <= effect.began])[0] for k, b in enumerate(begun.earlier)
     )
     return replace(begun, right=right, earlier=earlier), more
 
 
 def taken_from(baseline: Baseline, effects: Sequence[Lasting]) -> tuple[Baseline, Array]:
     """One session without effects that it has."""
-    added = added_by(baseline, [fixed(one.others) for one in effects], ())
+    added = added_by(baseline, [fixed(effect.others) for effect in effects], ())
     if added is None:
         return baseline, np.zeros(baseline.covariance.shape)
     rest, more = taken_out(baseline, added)
     return baseline_of(rest), more
 
 
-def finding_of(one: Lasting) -> Finding:
+def finding_of(effect: Lasting) -> Finding:
     """A lasting effect as a finding of the session; its amplitude is that of all sessions."""
-    whole, known = one.finding, cause(one.finding.cause)
+    whole, known = effect.finding, cause(effect.finding.cause)
     return replace(
         named_cause(known, whole.sensors, min(1.0, 1 / whole.e_value), whole.strength),
         amplitude=whole.amplitude,
@@ -143,22 +143,22 @@ def finding_of(one: Lasting) -> Finding:
         units=whole.units,
         nonlinear_each=({} if whole.shape is None else {"s": whole.shape},),
         alternatives=whole.alternatives,
-        ranking=one.ranking,
+        ranking=effect.ranking,
         new=None if whole.form == "since" else False,
         over_sessions=OverSessions(
-            sessions=one.sessions,
+            sessions=effect.sessions,
             e_value=whole.e_value,
             form=whole.form,
             since=whole.since,
             spread=whole.spread,
-            here=one.here,
+            here=effect.probability,
         ),
     )
 
 
-def words_of_end(one: Lasting) -> str:
+def words_of_end(effect: Lasting) -> str:
     """That the session lacks what the earlier ones have."""
-    known = cause(one.finding.cause).name.capitalize()
-    where = say(" on {sensors}", sensors=one.finding.sensors[0]) if one.finding.sensors else ""
-    parts = {"known": known, "place": where, "sessions": one.sessions - 1}
+    known = cause(effect.finding.cause).name.capitalize()
+    where = say(" on {sensors}", sensors=effect.finding.sensors[0]) if effect.finding.sensors else ""
+    parts = {"known": known, "place": where, "sessions": effect.sessions - 1}
     return say("{known}{place}: {sessions} earlier sessions together show it; this one does not.", **parts)

@@ -49,11 +49,11 @@ class Changes:
         """Effective degrees of freedom that the least known sensor's noise is known to; None when all is known."""
         current, origin = np.diagonal(self.current), np.diagonal(self.origin)
         dofs = []
-        for i, (now, then) in enumerate(self.dofs):
-            if now is None and then is None:
+        for i, (now, before) in enumerate(self.dofs):
+            if now is None and before is None:
                 continue
             at, known = self.where([i]), (self.rows * self.scatter**2, None)
-            dofs.append(combined((float(current[at].sum()), now), (float(origin[at].sum()), then), known))
+            dofs.append(combined((float(current[at].sum()), now), (float(origin[at].sum()), before), known))
         return min((dof for dof in dofs if dof is not None), default=None)
 
     def where(self, sensors: Sequence[int] | Sequence[Sequence[int]]) -> Array:
@@ -110,8 +110,8 @@ def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisP
         names=tuple(now.name for now, _, _ in known),
         axes=np.array([now.axis for now, _, _ in known]),
         frames=np.stack([now.axis_tangents for now, _, _ in known]),
-        origins=np.array([then.axis for _, then, _ in known]),
-        origin_frames=np.stack([then.axis_tangents for _, then, _ in known]),
+        origins=np.array([before.axis for _, before, _ in known]),
+        origin_frames=np.stack([before.axis_tangents for _, before, _ in known]),
         current=covariance,
         origin=origin,
         dofs=_dofs(known),
@@ -126,10 +126,10 @@ def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Ch
     if covariance is None or origin is None:
         return None
     y = np.array([d.vector[0] for _, _, d in known])
-    then = np.array([t.scale.value for _, t, _ in known], dtype=float)
-    ratio = (1 + y) / then
+    scales = np.array([t.scale.value for _, t, _ in known], dtype=float)
+    ratio = (1 + y) / scales
     names = tuple(now.name for now, _, _ in known)
-    covariance, origin = covariance / np.outer(then, then), origin * np.outer(ratio, ratio)
+    covariance, origin = covariance / np.outer(scales, scales), origin * np.outer(ratio, ratio)
     return Changes(names, y, covariance, origin, np.ones((len(y), 1)), dofs=_dofs(known))
 
 
@@ -144,9 +144,9 @@ def _dofs(known: Known) -> tuple[tuple[float | None, float | None], ...]:
 
 def _known(current: Calibration, reference: Calibration, kind: str, parameter: str) -> Known:
     """The sensors of a kind that both sessions hold, with a finite change of the parameter."""
-    then = {sensor.name: sensor for sensor in reference.sensors if sensor.kind == kind}
-    pairs = [(now, then[now.name]) for now in current.sensors if now.kind == kind and now.name in then]
-    return [(now, then, d) for now, then in pairs if (d := deviation(now, then, parameter)) and d.is_finite]
+    by_name = {sensor.name: sensor for sensor in reference.sensors if sensor.kind == kind}
+    pairs = [(now, by_name[now.name]) for now in current.sensors if now.kind == kind and now.name in by_name]
+    return [(now, before, d) for now, before in pairs if (d := deviation(now, before, parameter)) and d.is_finite]
 
 
 def _joint(calibration: Calibration, names: list[str]) -> Array | None:

@@ -206,13 +206,13 @@ def _agreed(changes: Changes, tolerance: float) -> _Agreed | None:
     return _Agreed(changed, excluded, gain, Sets(agreement[0], changed, tolerance))
 
 
-def _separated(of: tuple[str, str], agreed: _Agreed, value: Array, covariance: Array, *, is_seen: bool) -> Split:
-    """A common change ``value`` (k,) with its covariance (k, k), and what it leaves; ``of`` which kind and quantity."""
+def _separated(part: tuple[str, str], agreed: _Agreed, value: Array, covariance: Array, *, is_seen: bool) -> Split:
+    """A common change ``value`` (k,) with its covariance (k, k), and what it leaves; ``part``: kind and quantity."""
     names = agreed.changes.names
     chi2 = float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)
     motion = CommonMotion(
-        kind=of[0],
-        quantity=of[1],
+        kind=part[0],
+        quantity=part[1],
         state=SEPARATED,
         value=tuple(map(float, value)),
         covariance=tuple(tuple(map(float, row)) for row in covariance),

@@ -153,16 +153,16 @@ def judge(
     if reference is None or not steps:
         return found
     taken = corrections((measured, calibration), reference, steps, coverage_factor)
-    return tuple(_as_measured(one, measured, taken.get((one.sensor, one.parameter))) for one in found)
+    return tuple(_as_measured(j, measured, taken.get((j.sensor, j.parameter))) for j in found)
 
 
 def _as_measured(
-    one: ParameterJudgement, session: Calibration, taken: TemperatureCorrection | None
+    judged: ParameterJudgement, session: Calibration, taken: TemperatureCorrection | None
 ) -> ParameterJudgement:
     """A judgement at the reference's temperature, with the value as the session measured it."""
     if taken is None:
-        return one
-    return replace(one, value=_value(session.sensor(one.sensor), one.parameter), temperature_correction=taken)
+        return judged
+    return replace(judged, value=_value(session.sensor(judged.sensor), judged.parameter), temperature_correction=taken)
 
 
 def _assess(case: _Case, k: float) -> _Assessed | None:

@@ -54,16 +54,16 @@ def deviation(current: SensorCalibration, reference: SensorCalibration, paramete
     if parameter == "axis":
         return _axis_deviation(current, reference)
     now: Estimate = getattr(current, parameter) or NOT_SEEN
-    then: Estimate = getattr(reference, parameter) or NOT_SEEN
-    if now.value is None or then.value is None or now.sigma is None or then.sigma is None:
+    old: Estimate = getattr(reference, parameter) or NOT_SEEN
+    if now.value is None or old.value is None or now.sigma is None or old.sigma is None:
         return None
-    if parameter == "scale" and then.value == 0:
+    if parameter == "scale" and old.value == 0:
         return None
     if parameter == "scale":
-        ratio = now.value / then.value
-        sigmas = now.sigma / then.value, ratio * then.sigma / then.value
-        return replace(_scalar(ratio - 1, *sigmas), current_dof=now.dof, origin_dof=then.dof)
-    return replace(_scalar(now.value - then.value, now.sigma, then.sigma), current_dof=now.dof, origin_dof=then.dof)
+        ratio = now.value / old.value
+        sigmas = now.sigma / old.value, ratio * old.sigma / old.value
+        return replace(_scalar(ratio - 1, *sigmas), current_dof=now.dof, origin_dof=old.dof)
+    return replace(_scalar(now.value - old.value, now.sigma, old.sigma), current_dof=now.dof, origin_dof=old.dof)
 
 
 def _scalar(change: float, current: float, origin: float) -> Deviation:

@@ -165,10 +165,10 @@ def _picked(weight: Array, rng: np.random.Generator) -> Array:
 
 
 def _sizes_and_levels(
-    fitted: Fits, value: Array, last: Array, of: tuple[Array, Array, Array], rng: np.random.Generator
+    fitted: Fits, value: Array, last: Array, drawn: tuple[Array, Array, Array], rng: np.random.Generator
 ) -> tuple[Array, Array]:
-    """(N, k) sizes and (N, k) levels of the drawn hypotheses ``of``: walk, part and shape, each (N,)."""
-    q, part, shape = of
+    """(N, k) sizes and (N, k) levels of the hypotheses ``drawn``: walk, part and shape, each (N,)."""
+    q, part, shape = drawn
     k = value.shape[1]
     known = np.einsum("qkn,nk->qk", fitted.gain, value)
     moved = last - fitted.gain @ fitted.family.columns

@@ -200,9 +200,9 @@ def direction(track: Track) -> Array:
     return mean / length if length > 0 else np.array([1.0, 0.0])
 
 
-def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) -> Outlook:
-    """Of the track with a number, at a level of detection ``of`` it."""
-    number, level = of
+def _outlook(track: Track, prior: Prior, ahead: Array, number_and_level: tuple[int, float]) -> Outlook:
+    """Of the track with a number, at its level of detection."""
+    number, level = number_and_level
     rng = np.random.default_rng(number)
     readings = replace(_readings(track), tails=prior.tails)
     dof, temperature = _conditions(track)

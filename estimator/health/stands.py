@@ -144,7 +144,7 @@ def _explained(groups: Sequence[SeatedUnits], stand_of: Array) -> _Explained:
             break
         candidate, _ = max(evident, key=lambda pair: event_test(pair[1], len(taken), pair[0].looked).evidence)
         taken.append(candidate)
-        seating = seated(groups, columns(groups, [each.event for each in taken]), stand_of)
+        seating = seated(groups, columns(groups, [t.event for t in taken]), stand_of)
     return _Explained(*_pruned(seating, groups, taken), tuple(tried))
 
 
@@ -246,7 +246,7 @@ def _witnesses(seating: Seating, e: int) -> _Witnesses:
                 pulled.reshape(-1, size),
             )
         )
-    return _Witnesses(seating.value[e], *(np.concatenate(each) for each in zip(*rows, strict=True)))
+    return _Witnesses(seating.value[e], *(np.concatenate(values) for values in zip(*rows, strict=True)))
 
 
 def _overlapping(seating: Seating, e: int) -> list[int]:

@@ -55,8 +55,8 @@ def _levels(readings: Readings, freedom: float, gap: Array) -> tuple[float, Arra
         before = np.cumsum(logs, axis=0)
         step = np.log(level[1] - level[0])
         whole += float(np.logaddexp.reduce(before[-1])) + step
-        first, then = (np.logaddexp.reduce(part, axis=1) for part in (before[gap - 1], before[-1] - before[gap - 1]))
-        parted += first + then + 2 * step
+        first, last = (np.logaddexp.reduce(part, axis=1) for part in (before[gap - 1], before[-1] - before[gap - 1]))
+        parted += first + last + 2 * step
     return whole, parted
 
 

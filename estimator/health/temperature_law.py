@@ -106,7 +106,7 @@ def can_tell(learned: Sequence[float], reference: float, now: float, enough: int
     """Whether so many sessions, at °C, may tell what one at another temperature than its reference owes to it."""
     if abs(now - reference) < NEAR or len(learned) < enough:
         return False
-    return bool(np.std(learned) >= WARMED and min(abs(now - one) for one in learned) <= REACH)
+    return bool(np.std(learned) >= WARMED and min(abs(now - celsius) for celsius in learned) <= REACH)
 
 
 def temperature_steps(
@@ -142,13 +142,15 @@ def temperature_steps(
 
 def _step(
     learned: Sequence[Seen],
-    of: tuple[SensorCalibration, str, float],
+    place: tuple[SensorCalibration, str, float],
     between: tuple[float, float],
-    by: tuple[float, TypeLaw | None],
+    level_and_law: tuple[float, TypeLaw | None],
 ) -> TemperatureStep | None:
-    """By the type's law where that leaves the parameter decidable, or where the sessions show a law themselves; ``of``
-    a sensor of the reference, a parameter and T, ``by`` the chance of a law where there is none, and the type's."""
-    (origin, parameter, allowed), (level, law) = of, by
+    """By the type's law where that leaves the parameter decidable, or where the sessions show a law themselves.
+
+    ``place``: a sensor of the reference, a parameter and T; ``level_and_law``: the chance of a law where
+    none is, and the type's."""
+    (origin, parameter, allowed), (level, law) = place, level_and_law
     unit = allowed if law is None else law.tolerance
     history = history_of(learned, origin, parameter, unit)
     if history is None or len(history.celsius) < ENOUGH_WITH_TYPE:
@@ -186,7 +188,7 @@ def _as_step(
 
 def history_of(learned: Sequence[Seen], origin: SensorCalibration, parameter: str, allowed: float) -> LawHistory | None:
     """A parameter of a sensor over sessions, in tolerances; None where none of them states it."""
-    rows = [row for one in learned if (row := _row(one, origin, parameter)) is not None]
+    rows = [row for session in learned if (row := _row(session, origin, parameter)) is not None]
     if not rows:
         return None
     years, celsius, change, sigma = np.array(rows).T
@@ -202,13 +204,13 @@ def history_of(learned: Sequence[Seen], origin: SensorCalibration, parameter: st
 _ONE = np.ones(1)
 
 
-def _row(one: Seen, origin: SensorCalibration, parameter: str) -> tuple[float, ...] | None:
+def _row(session: Seen, origin: SensorCalibration, parameter: str) -> tuple[float, ...] | None:
     """Years, °C, change and its sigma that the session brings; None where it does not tell the parameter."""
-    own = next((s for s in one.calibration.sensors if s.name == origin.name and s.kind == origin.kind), None)
-    found = None if own is None else deviation(own, origin, parameter)
+    sensor = next((s for s in session.calibration.sensors if s.name == origin.name and s.kind == origin.kind), None)
+    found = None if sensor is None else deviation(sensor, origin, parameter)
     if found is None or not found.is_finite:
         return None
-    return one.years, one.celsius, float(found.vector[0]), float(np.sqrt(found.current[0, 0]))
+    return session.years, session.celsius, float(found.vector[0]), float(np.sqrt(found.current[0, 0]))
 
 
 def _worth(readings: Readings, columns: Array, step: Array) -> tuple[float, float, float | None]:
@@ -269,14 +271,14 @@ def _moved(sensor: SensorCalibration, ones: Mapping[str, float | None], steps: S
     )
 
 
-def _freed(estimate: Estimate, step: TemperatureStep | None, one: float) -> Estimate:
-    """An estimate without what temperature is worth in it; ``one`` in its unit for each unit of the step."""
+def _freed(estimate: Estimate, step: TemperatureStep | None, unit: float) -> Estimate:
+    """An estimate without what temperature is worth in it; ``unit``: of the estimate, in one unit of the step."""
     if step is None or estimate.value is None or estimate.sigma is None:
         return estimate
-    sigma = abs(step.sigma * one)
+    sigma = abs(step.sigma * unit)
     dof = combined((estimate.sigma**2, estimate.dof), (sigma**2, step.dof))
     return replace(
-        estimate, value=estimate.value - step.worth * one, sigma=float(np.hypot(estimate.sigma, sigma)), dof=dof
+        estimate, value=estimate.value - step.worth * unit, sigma=float(np.hypot(estimate.sigma, sigma)), dof=dof
     )
 
 
@@ -292,11 +294,11 @@ def corrections(
     """
     found, known = {}, {sensor.name for sensor in sessions[0].sensors}
     for (name, parameter), step in steps.items():
-        each = sessions if name in known else ()
-        changes = [deviation(own.sensor(name), reference.sensor(name), parameter) for own in each]
+        measured_and_moved = sessions if name in known else ()
+        changes = [deviation(session.sensor(name), reference.sensor(name), parameter) for session in measured_and_moved]
         measured, moved = changes or (None, None)
         if measured is not None and moved is not None:
             expanded = coverage_factor(k, moved.dof) * float(np.sqrt(moved.covariance[0, 0]))
-            own = {"measured": float(measured.vector[0]), "corrected": float(moved.vector[0]), "expanded": expanded}
-            found[name, parameter] = TemperatureCorrection(**vars(step) | own)
+            values = {"measured": float(measured.vector[0]), "corrected": float(moved.vector[0]), "expanded": expanded}
+            found[name, parameter] = TemperatureCorrection(**vars(step) | values)
     return found

@@ -119,11 +119,11 @@ def worth_by(
     start, stop = columns_about(np.array(between), law.about)
     along = np.concatenate([np.zeros(size.shape[1] - 2), stop - start])
     share = chances(logs, np.array(law.scatter))
-    each = size @ along
-    worth = float(share @ each)
-    own = np.einsum("p,kpq,q->k", along, covariance, along) + 2 * SCATTERS**2 + (each - worth) ** 2
-    variance = float(share @ own)
-    apart = float(share @ (own - variance) ** 2)
+    worths = size @ along
+    worth = float(share @ worths)
+    variances = np.einsum("p,kpq,q->k", along, covariance, along) + 2 * SCATTERS**2 + (worths - worth) ** 2
+    variance = float(share @ variances)
+    apart = float(share @ (variances - variance) ** 2)
     if apart <= KNOWN * variance**2:
         return worth, variance, None
     dof = 4 + 2 * variance**2 / apart

@@ -103,11 +103,11 @@ def warmth_of(readings: Readings, temperature: Array, rival: Array | None, level
     line, bent = (_fitted(readings, columns[:, :q]) for q in (1, 2))
     gained = p_value(2 * (bent.log_likelihood - line.log_likelihood), components)
     is_bent = _can_bend(temperature) and gained < BENT * level
-    own, q = (bent, 2) if is_bent else (line, 1)
-    p = float(p_value(own.explained, q * components))
+    chosen, q = (bent, 2) if is_bent else (line, 1)
+    p = float(p_value(chosen.explained, q * components))
     price = (q - 1) * components * np.log(len(temperature))
     explains = rival is None or _explained(readings, columns[:, :q]) - price >= _explained(readings, rival[:, None])
-    return Warmth(_mean(temperature), own.size, own.covariance, p, bool(p < level and explains))
+    return Warmth(_mean(temperature), chosen.size, chosen.covariance, p, bool(p < level and explains))
 
 
 def chance_of(readings: Readings, temperature: Array) -> float:

@@ -136,7 +136,7 @@ class RowTally:
         if response is None:
             return rows
         errors = self._errors(response)
-        return replace(rows, standard_errors=errors.own, tilt_error=errors.tilt)
+        return replace(rows, standard_errors=errors.alone, tilt_error=errors.tilt)
 
     @property
     def _spread(self) -> Array:
@@ -154,7 +154,7 @@ class RowTally:
         return replace(
             head,
             readings=means[:, :m],
-            standard_errors=self._errors().own,
+            standard_errors=self._errors().alone,
             at_ends=self._ends / samples[:, None, None],
             vibration=self._spread / samples[:, None] / scale**2,
             time=averages.get("time", middle),

@@ -130,9 +130,9 @@ def _unset(done: Array, every: Array, steps: int, flipped: bool) -> list[tuple[s
 def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple[ExpectedSigma, ...]:
     """Sensor by sensor; both (m, 4) SI, relative for scale."""
     return tuple(
-        ExpectedSigma(sensor.name, sensor.kind, parameter, finite(now), finite(then))
+        ExpectedSigma(sensor.name, sensor.kind, parameter, finite(now), finite(later))
         for sensor, current, whole in zip(rows.sensors, so_far, complete, strict=True)
-        for parameter, now, then in zip(PARAMETERS, current, whole, strict=True)
+        for parameter, now, later in zip(PARAMETERS, current, whole, strict=True)
     )
 
 

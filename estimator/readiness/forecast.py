@@ -45,8 +45,8 @@ def drawn(course: SettlingCourse, rng: np.random.Generator) -> DrawnDrift:
     cell = rng.choice(len(course.weight), DRAWS, p=course.weight)
     sigma = np.sqrt(course.scatter[cell] / rng.chisquare(course.freedom, DRAWS))
     normal = rng.standard_normal((DRAWS, 3))
-    both = course.mean[cell] + sigma[:, None] * np.einsum("nij,nj->ni", course.root[cell], normal)
-    return DrawnDrift(course.span, both[:, 0], both[:, 1:], course.tau[cell], sigma * np.sqrt(course.walk[cell]))
+    parts = course.mean[cell] + sigma[:, None] * np.einsum("nij,nj->ni", course.root[cell], normal)
+    return DrawnDrift(course.span, parts[:, 0], parts[:, 1:], course.tau[cell], sigma * np.sqrt(course.walk[cell]))
 
 
 def departures(courses: DrawnDrift, duration: float, rng: np.random.Generator) -> Array:

@@ -69,7 +69,7 @@ class Columns:
                 name,
                 bad,
                 lambda j: say("{cells}; {message}", cells=_described(cells[j]), message=message),
-                of=self.rows,
+                count=self.rows,
             )
             return np.zeros(self.rows, dtype=np.int64)
 
@@ -84,7 +84,7 @@ class Columns:
             name,
             bad,
             lambda j: say("{j}; {message}", j=_described(self.values[name][j]), message=message),
-            of=self.rows,
+            count=self.rows,
         )
         if bad:
             return np.arange(self.rows)
@@ -95,7 +95,7 @@ class Columns:
 
     def _faulty(self, name: str, cells: Column, within: Interval, holes: bool) -> Array:
         faults = {j: fault for j, cell in enumerate(cells) if (fault := _cell_fault(cell, within, holes))}
-        self.problems.add_rows(name, faults, faults.__getitem__, of=self.rows)
+        self.problems.add_rows(name, faults, faults.__getitem__, count=self.rows)
         return np.full(self.rows, np.nan)
 
 

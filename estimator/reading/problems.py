@@ -57,12 +57,12 @@ class Problems:
         self._record(field, message, None)
 
     def add_rows(
-        self, field: str, rows: Iterable[int], message: Callable[[int], str], *, of: int | None = None
+        self, field: str, rows: Iterable[int], message: Callable[[int], str], *, count: int | None = None
     ) -> None:
-        """Record the same kind of fault in several rows, ``of`` so many; they count from 0 here, as for the message."""
+        """Record the same kind of fault in several rows of ``count``; they count from 0 here, as for the message."""
         faulty = list(rows)
-        if of is not None and len(faulty) == of > ROWS_SHOWN:
-            self.add(field, say("all {of} rows have this fault; the first {message}", of=of, message=message(0)))
+        if count is not None and len(faulty) == count > ROWS_SHOWN:
+            self.add(field, say("all {of} rows have this fault; the first {message}", of=count, message=message(0)))
             return
         for index in faulty[:ROWS_SHOWN]:
             self.add(field, message(index), index + 1)

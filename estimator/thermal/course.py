@@ -84,13 +84,13 @@ class TemperatureCourse:
         """(R,) 1 while the temperature rises, −1 while it falls, 0 before its first move."""
         enough = max(TURN * (self.highest - self.lowest), APART)
         leg, extreme, legs = 0, self.temperature[0], []
-        for one in self.temperature.tolist():
-            if leg == 0 and abs(one - extreme) > enough:
-                leg, extreme = int(np.sign(one - extreme)), one
-            elif leg * (one - extreme) > 0:
-                extreme = one
-            elif leg * (extreme - one) > enough:
-                leg, extreme = -leg, one
+        for celsius in self.temperature.tolist():
+            if leg == 0 and abs(celsius - extreme) > enough:
+                leg, extreme = int(np.sign(celsius - extreme)), celsius
+            elif leg * (celsius - extreme) > 0:
+                extreme = celsius
+            elif leg * (extreme - celsius) > enough:
+                leg, extreme = -leg, celsius
             legs.append(leg)
         return np.array(legs, dtype=float)
 
@@ -130,7 +130,7 @@ def course_of(session: CalibrationSession) -> TemperatureCourse:
 def levels_of(temperature: Array) -> int:
     """Temperatures (R,), °C, that lie `APART` from one another."""
     count, last = 0, -np.inf
-    for one in np.sort(temperature).tolist():
-        if one - last > APART:
-            count, last = count + 1, one
+    for celsius in np.sort(temperature).tolist():
+        if celsius - last > APART:
+            count, last = count + 1, celsius
     return count

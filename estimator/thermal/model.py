@@ -180,13 +180,13 @@ def linearise(rows: ThermalRows, state: State) -> ThermalEquations:
     groups = len(rows.prior)
     local, shared = (part / rows.sigma[..., None] for part in jacobian(rows, state))
     residual = residuals(rows, state) / rows.sigma
-    own = np.zeros((groups, 5, 5))
-    np.add.at(own, rows.setting, np.swapaxes(shared, 1, 2) @ shared)
+    setting_information = np.zeros((groups, 5, 5))
+    np.add.at(setting_information, rows.setting, np.swapaxes(shared, 1, 2) @ shared)
     stated = np.concatenate(
         [np.repeat(rows.prior[:, None], 2, axis=1), np.full((groups, 3), 3 / EARTH_RATE**2)], axis=1
     )
-    own[:, range(5), range(5)] += np.maximum(stated, np.finfo(float).tiny ** 0.5)
-    inverse = np.linalg.inv(own)
+    setting_information[:, range(5), range(5)] += np.maximum(stated, np.finfo(float).tiny ** 0.5)
+    inverse = np.linalg.inv(setting_information)
     pull = np.concatenate(
         [
             np.einsum(

@@ -53,7 +53,7 @@ def orders_of(solved: ThermalFit, order: int, ratio: float) -> Orders:
         highest = order if solved.free[i, 0] else 0
         pairs = product(range(highest, -1, -1), range(order, -1, -1))
         models = [model(theta[i], C, pair, (highest, order), q, len(solved.rows.y)) for pair in pairs]
-        best = min(models, key=lambda one: one.bic)
+        best = min(models, key=lambda choice: choice.bic)
         chosen[i], spread[i] = best.order, unsaid(models, best)
         free[i, 1 + best.order[0] : highest + 1] = False
         free[i, q + 1 + best.order[1] : q + order + 1] = False
@@ -70,10 +70,10 @@ def model(theta: Array, C: Array, pair: tuple[int, int], highest: tuple[int, int
 
 def unsaid(models: list[OrderChoice], best: OrderChoice) -> Array:
     """(p, p) what the covariance of the best model leaves out of the others'."""
-    weights = np.exp(-0.5 * np.array([one.bic - best.bic for one in models]))
+    weights = np.exp(-0.5 * np.array([choice.bic - best.bic for choice in models]))
     total = np.zeros_like(best.covariance)
-    for weight, one in zip(weights / weights.sum(), models, strict=True):
-        step = one.theta - best.theta
-        larger = one.order[0] >= best.order[0] and one.order[1] >= best.order[1]
-        total += weight * (np.outer(step, step) + (one.covariance - best.covariance if larger else 0.0))
+    for weight, choice in zip(weights / weights.sum(), models, strict=True):
+        step = choice.theta - best.theta
+        larger = choice.order[0] >= best.order[0] and choice.order[1] >= best.order[1]
+        total += weight * (np.outer(step, step) + (choice.covariance - best.covariance if larger else 0.0))
     return total

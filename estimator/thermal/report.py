@@ -86,11 +86,11 @@ def knowledge(begun: Begun, solved: ThermalFit, covariance: Array, dof: Array) -
         axis=state.axes,
     )
     change = np.zeros((k, 5, k, p))
-    each = np.arange(k)
-    change[each, 0, each, :q] = nominal[:, None] * value
-    change[each, 1, each, q : 2 * q] = begun.unit[:, None] * value
-    change[each, 2, each, p - 3] = 1 / begun.unit
-    change[each, 3, each, p - 2] = change[each, 4, each, p - 1] = 1.0
+    sensors = np.arange(k)
+    change[sensors, 0, sensors, :q] = nominal[:, None] * value
+    change[sensors, 1, sensors, q : 2 * q] = begun.unit[:, None] * value
+    change[sensors, 2, sensors, p - 3] = 1 / begun.unit
+    change[sensors, 3, sensors, p - 2] = change[sensors, 4, sensors, p - 1] = 1.0
     flat = change.reshape(5 * k, k * p)
     observable = np.ones((k, 5), dtype=bool)
     observable[:, 2] = solved.free[:, -3]
@@ -117,13 +117,13 @@ def curves_of(
     powers = begun.course.to_powers(begun.order)
     curves = []
     for i, place in enumerate(begun.at):
-        sensor, own = begun.session.sensors[place], covariance[i * p : (i + 1) * p, i * p : (i + 1) * p]
+        sensor, known = begun.session.sensors[place], covariance[i * p : (i + 1) * p, i * p : (i + 1) * p]
         by_bias, by_scale = begun.unit[i] * powers, sensor.nominal_scale * powers
         scatter, freedom = missed.sigma[i], finite(float(dof[i]))
         bias = Curve(
             coefficients=by_bias @ solved.state.bias[i, :q],
             order=int(orders.order[i, 1]),
-            covariance=by_bias @ own[q : 2 * q, q : 2 * q] @ by_bias.T,
+            covariance=by_bias @ known[q : 2 * q, q : 2 * q] @ by_bias.T,
             scatter=float(begun.unit[i] * scatter[1]),
             loop=float(abs(begun.unit[i] * solved.state.bias[i, q])),
             dof=freedom,
@@ -134,11 +134,11 @@ def curves_of(
         scale = Curve(
             coefficients=by_scale @ solved.state.scale[i],
             order=int(orders.order[i, 0]),
-            covariance=by_scale @ own[:q, :q] @ by_scale.T,
+            covariance=by_scale @ known[:q, :q] @ by_scale.T,
             scatter=float(abs(sensor.nominal_scale) * scatter[0]),
             dof=freedom,
         )
-        curves.append(SensorCurves(sensor.name, bias, scale, by_scale @ own[:q, q : 2 * q] @ by_bias.T))
+        curves.append(SensorCurves(sensor.name, bias, scale, by_scale @ known[:q, q : 2 * q] @ by_bias.T))
     return tuple(curves)
 
 
@@ -163,7 +163,7 @@ def findings(
                     parameter="bias",
                     amplitude=float(solved.state.bias[i, column]) * size,
                     sigma=float(np.sqrt(covariance[at, at])) * size,
-                    p_value=float(form.each[i]),
+                    p_value=float(form.sensor_p_values[i]),
                     time_constant=form.time_constant,
                     alternatives=form.alternatives,
                 )

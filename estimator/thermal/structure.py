@@ -47,7 +47,7 @@ class MisfitForm:
     """By which it raises the fit, in the noise."""
     p_value: float
     """Of that, over all forms tried."""
-    each: Array
+    sensor_p_values: Array
     """(m,) p-value of each sensor's amplitude, over all sensors."""
     alternatives: tuple[str, ...] = ()
 
@@ -75,8 +75,8 @@ def amplitudes(linear: ThermalEquations, at: Array, old: Array, covariance: Arra
     lean = covariance @ linear.information[np.ix_(old, at)]
     left = linear.information[np.ix_(at, at)] - linear.information[np.ix_(at, old)] @ lean
     score = linear.score[at] - lean.T @ linear.score[old]
-    own = np.diagonal(linear.information)[at]
-    left[np.diagonal(left) <= FLAT * own] = 0.0
+    information = np.diagonal(linear.information)[at]
+    left[np.diagonal(left) <= FLAT * information] = 0.0
     left[:, ~left.any(axis=1)] = 0.0
     known = inverse(left, FLAT)
     return known @ score, known, score
@@ -100,10 +100,10 @@ def tried_forms(
         variance = np.diagonal(known)
         gain, rank = float(score @ size), int((variance > 0).sum())
         ratio = noise_ratio(solved, gain, rank, stated=stated)
-        own = np.where(variance > 0, size**2 / np.where(variance > 0, variance, 1.0), 0.0) / ratio
+        statistic = np.where(variance > 0, size**2 / np.where(variance > 0, variance, 1.0), 0.0) / ratio
         chance = float(p_value(gain / ratio, rank, solved.dof - rank)) * len(columns)
-        each = np.minimum(1.0, p_value(own, 1, solved.dof - rank) * m)
-        yield MisfitForm(kind, column, tau, gain / ratio, min(1.0, chance), each)
+        p_values = np.minimum(1.0, p_value(statistic, 1, solved.dof - rank) * m)
+        yield MisfitForm(kind, column, tau, gain / ratio, min(1.0, chance), p_values)
 
 
 def with_forms(
@@ -116,12 +116,12 @@ def with_forms(
         forms = list(tried_forms(solved, course, order, kinds, stated=stated))
         price = {HYSTERESIS: 0.0, LAG: float(np.log(len(course.temperature)))}
         best = max(forms, key=lambda form: form.gain - price[form.kind], default=None)
-        if best is None or best.p_value >= LEVEL or not (best.each < LEVEL).any():
+        if best is None or best.p_value >= LEVEL or not (best.sensor_p_values < LEVEL).any():
             break
         others = [form.kind for form in forms if form.kind != best.kind and form.gain > best.gain - SEPARATED]
         found.append(replace(best, alternatives=tuple(dict.fromkeys(others))))
         free = solved.free.copy()
-        free[best.each < LEVEL, solved.state.scale.shape[1] + places(order)[best.kind]] = True
+        free[best.sensor_p_values < LEVEL, solved.state.scale.shape[1] + places(order)[best.kind]] = True
         rows = with_column(solved.rows, places(order)[best.kind], best.column)
         solved = search_with_noise(rows, solved.state, free, stated=stated)
     return solved, tuple(found)
@@ -145,8 +145,8 @@ def misfits(solved: ThermalFit, course: TemperatureCourse, *, stated: bool) -> M
     ratio = noise_ratio(solved, float(score @ size), count, stated=stated)
     m, found = len(at), []
     for k in range(2 * m):
-        own = slice(k * BINS, (k + 1) * BINS)
-        found.append(misfit(size[own], known[own, own] * ratio, solved.dof - count))
+        part = slice(k * BINS, (k + 1) * BINS)
+        found.append(misfit(size[part], known[part, part] * ratio, solved.dof - count))
     sigma, chance = np.array(found).reshape(m, 2, 2).transpose(2, 0, 1)
     return Misfits(sigma, np.minimum(1.0, chance * 2 * m))
 

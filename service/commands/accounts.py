@@ -114,9 +114,10 @@ def list_users(
 
 def _accounts(accounts: Sequence[Account]) -> Table:
     table = table_of("login", "name", "role", "state")
-    for one in accounts:
-        state = "may sign in" if one.is_active and one.has_password else "no password yet"
-        table.add_row(escape(one.login), escape(one.name), one.role, state if one.is_active else "may not sign in")
+    for account in accounts:
+        active = "may sign in" if account.has_password else "no password yet"
+        state = active if account.is_active else "may not sign in"
+        table.add_row(escape(account.login), escape(account.name), account.role, state)
     return table
 
 
@@ -161,9 +162,9 @@ def list_tokens(
 
 def _tokens(tokens: Sequence[Token]) -> Table:
     table = table_of("token", "login", "for", "role", "until", "last used", "revoked", right=("token",))
-    for one in tokens:
-        days = (f"{at:%Y-%m-%d}" if at else "" for at in (one.expires_at, one.last_used_at, one.revoked_at))
-        table.add_row(str(one.id), escape(one.login), escape(one.label), one.role, *days)
+    for listed in tokens:
+        days = (f"{at:%Y-%m-%d}" if at else "" for at in (listed.expires_at, listed.last_used_at, listed.revoked_at))
+        table.add_row(str(listed.id), escape(listed.login), escape(listed.label), listed.role, *days)
     return table
 
 

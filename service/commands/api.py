@@ -195,15 +195,15 @@ def _show_withdrawn_service(record: Answer) -> None:
 
 
 def _show_event(event: Answer) -> None:
-    what = translated(event.get("kind", "note").replace("-", " "))
-    said = translated("{what} {id} recorded", what=what, id=event["id"])
+    kind = translated(event.get("kind", "note").replace("-", " "))
+    said = translated("{what} {id} recorded", what=kind, id=event["id"])
     screen().print(f"[bold]{escape(event['unit'])}[/]  {event['at'][:10]}  {said}")
 
 
 def _show_flag(flag: Answer) -> None:
-    unit, what = escape(flag["unit"]), escape(translated(flag["summary"]))
+    unit, summary = escape(flag["unit"]), escape(translated(flag["summary"]))
     heading = translated("Flag {id}", id=flag["id"])
-    screen().print(f"{heading}  [bold]{unit}[/]  {_flag_state(flag)}  {what}")
+    screen().print(f"{heading}  [bold]{unit}[/]  {_flag_state(flag)}  {summary}")
 
 
 def _flag_state(flag: Answer) -> str:

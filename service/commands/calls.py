@@ -62,7 +62,7 @@ class Call:
     """One line; empty where it is in the catalogue."""
     has_json: bool = False
     """Whether ``--json`` prints the answer as it is; lists always have it."""
-    then: str = ""
+    shown_instead: str = ""
     """Address of an answer shown in place of the first, with names of its fields."""
     is_failure: Callable[[Answer], bool] = lambda _: False
     """Whether an answer ends the command with exit code 1."""
@@ -102,7 +102,7 @@ class Call:
         method, path, rest = _request(self.request, sent)
         body = {"params": rest} if method == "GET" else {"json": rest}
         answer: Answer = client.answer(method, path, **body).json()
-        return client.get(in_address(self.then, answer)).json() if self.then else answer
+        return client.get(in_address(self.shown_instead, answer)).json() if self.shown_instead else answer
 
     def function(self, name: str, *, is_group: bool) -> Callable[..., None]:
         """The function of a Typer command; for a group it is a no-op where a subcommand was named."""
@@ -113,9 +113,9 @@ class Call:
             if context is None or context.invoked_subcommand is None:
                 self.run(given)
 
-        signature = inspect.Signature([_parameter(key, one) for key, one in parameters.items()])
+        signature = inspect.Signature([_parameter(key, parameter) for key, parameter in parameters.items()])
         command.__signature__ = signature  # type: ignore[attr-defined]  # which Typer reads
-        command.__annotations__ = {key: one.annotation for key, one in signature.parameters.items()}
+        command.__annotations__ = {key: parameter.annotation for key, parameter in signature.parameters.items()}
         command.__doc__ = self.help or CATALOGUE[name].says
         return command
 

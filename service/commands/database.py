@@ -113,8 +113,8 @@ def write(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder 
     manifest = write_backup(settings.database, Files(settings.files), file, datetime.now(UTC))
     typer.echo(f"{file}: {_contents(manifest)}.")
     if manifest.lost:
-        lost, one = counted(len(manifest.lost), "uploaded file"), len(manifest.lost) == 1
-        say(f"{lost} {'is' if one else 'are'} missing or damaged and not in it: {', '.join(manifest.lost)}.")
+        lost, is_one = counted(len(manifest.lost), "uploaded file"), len(manifest.lost) == 1
+        say(f"{lost} {'is' if is_one else 'are'} missing or damaged and not in it: {', '.join(manifest.lost)}.")
         raise typer.Exit(FAILED)
 
 

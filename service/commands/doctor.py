@@ -245,8 +245,8 @@ def doctor(
         else:
             remedy = f"\n      {escape(translated(finding.remedy))}" if finding.remedy else ""
             mark = f"[{COLOURS[finding.state]}]{translated(MARKS[finding.state]):4}[/]"
-            what, text = escape(translated(finding.what)), escape(translated(finding.text))
-            screen().print(f"{mark}  [bold]{what}[/]: {text}{remedy}", soft_wrap=True)
+            subject, text = escape(translated(finding.what)), escape(translated(finding.text))
+            screen().print(f"{mark}  [bold]{subject}[/]: {text}{remedy}", soft_wrap=True)
     if any(finding.state is CheckState.FAIL for finding in findings):
         raise typer.Exit(FAILED)
 

@@ -99,7 +99,7 @@ def hidden_in(
     """The last session before its pulses are counted, with the requested cause in it; exit code 2 with a sentence where
     that is impossible."""
     rng = np.random.default_rng([seed, RANDOM_STREAM])
-    names = [one.name for one in sessions[-1].sensors]
+    names = [s.name for s in sessions[-1].sensors]
     if request.sensor is not None and request.sensor not in names:
         refuse(f"--sensor {request.sensor} is not there; the block has {names[0]} to {names[-1]}")
     sensor = None if request.sensor is None else names.index(request.sensor)

@@ -100,9 +100,9 @@ def _work(job: Answer) -> str:
     return translated("{kind} of {subject}", kind=kind, subject=_subject(job))
 
 
-def _subject(of: Answer) -> str:
+def _subject(model: Answer) -> str:
     """``unit BA-017``"""
-    return f"{translated(of['scope'].replace('-', ' '))} {of['subject']}"
+    return f"{translated(model['scope'].replace('-', ' '))} {model['subject']}"
 
 
 def _state(job: Answer) -> str:
@@ -153,11 +153,11 @@ MODELS = ListColumns(
     "models",
     "No cause is accepted.",
     {
-        "revision": lambda one: str(one["id"]),
-        "model of": lambda one: escape(_subject(one)),
-        "cause": lambda one: escape(_cause(one)),
-        "accepted": lambda one: (
-            translated("withdraws {id}", id=one["withdraws"]) if one["withdraws"] else one["accepted_at"][:10]
+        "revision": lambda model: str(model["id"]),
+        "model of": lambda model: escape(_subject(model)),
+        "cause": lambda model: escape(_cause(model)),
+        "accepted": lambda model: (
+            translated("withdraws {id}", id=model["withdraws"]) if model["withdraws"] else model["accepted_at"][:10]
         ),
     },
     is_paged=True,
@@ -209,7 +209,7 @@ COMMANDS: dict[str, Row] = {
         _show_model,
         "Take an accepted cause out of the model again.",
         has_json=True,
-        then="/models/{id}",
+        shown_instead="/models/{id}",
     ),
     "models show": Call(
         "GET /models/{id}",

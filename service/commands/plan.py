@@ -191,9 +191,9 @@ def _parameters(found: Plan, coverage: str) -> Table:
     rows = [found.judged[i : i + len(PARAMETERS)] for i in range(0, len(found.judged), len(PARAMETERS))]
     for row in rows:
         cells = []
-        for one in row:
-            verdict = "" if one.verdict == "not judged" else f"{tolerance_in_words(one)}, {one.verdict}"
-            cells.append(f"{sigma_in_words(one, found.request.coverage)} {verdict}".strip())
+        for judged in row:
+            verdict = "" if judged.verdict == "not judged" else f"{tolerance_in_words(judged)}, {judged.verdict}"
+            cells.append(f"{sigma_in_words(judged, found.request.coverage)} {verdict}".strip())
         table.add_row(row[0].sensor, *cells)
     return table
 

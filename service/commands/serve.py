@@ -90,11 +90,11 @@ def _demonstration(settings: Settings) -> Filling | None:
 
     def store(advance: Callable[[], None]) -> None:
         """Every session of the fleet."""
-        own = Storage(open_database(settings.database), Files(settings.files))
+        filled = Storage(open_database(settings.database), Files(settings.files))
         try:
-            demo_fleet.fill(own, settings.coverage_factor, advance)
+            demo_fleet.fill(filled, settings.coverage_factor, advance)
         finally:
-            own.database.close()
+            filled.database.close()
 
     say(
         f"Filling the empty database with a simulated demonstration fleet, {demo_fleet.FILES} sessions; "

@@ -206,19 +206,19 @@ def simulate_files(
         else _simulated(schedule, changes, sessions, noise, rng, in_service=programme == IN_SERVICE)
     )
     back = back_from_future(sessions, programme, datetime.now(UTC))
-    _write((_earlier(one, back) for one in made), wish, seed, f"{out}/{safe_name(unit)}", as_json=as_json)
+    _write((_earlier(session, back) for session in made), wish, seed, f"{out}/{safe_name(unit)}", as_json=as_json)
 
 
 def _write(made: Iterator[Simulated], wish: HidingRequest | None, seed: int, start: str, *, as_json: bool) -> None:
     """The sessions as files that begin with ``start``; nothing is written of what cannot be hidden."""
     if wish is not None:
         *before, last = made
-        session, hidden = hidden_in([*(whole_pulses(one.session) for one in before), last.session], wish, seed)
+        session, hidden = hidden_in([*(whole_pulses(s.session) for s in before), last.session], wish, seed)
         made = iter((*before, replace(last, session=session)))
     for number, simulated in enumerate(made, 1):
         programme = simulated.session.programme
-        what = "" if programme == TWO_AXIS_STAND else f"{programme}-"
-        file = Path(f"{start}-{what}{number:03d}.json")
+        prefix = "" if programme == TWO_AXIS_STAND else f"{programme}-"
+        file = Path(f"{start}-{prefix}{number:03d}.json")
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(json.dumps(session_document(whole_pulses(simulated.session))), encoding="utf-8")
         if as_json:
@@ -349,6 +349,6 @@ def check_block(block: str, programme: str) -> None:
 
 def noise_of(schedule: CalibrationSession, noise: float | None) -> Array:
     """(m,) one sigma of an averaged reading, reading units: ``noise`` is µg, of a block of pulse gyros pulses."""
-    own = USUAL_NOISE[schedule.block] if noise is None else noise
-    found = [MICRO_G * own * s.nominal_scale if s.kind == ACCELEROMETER else RATE_NOISE for s in schedule.sensors]
-    return np.array(found) if schedule.count_time is None else np.full(len(found), own)
+    level = USUAL_NOISE[schedule.block] if noise is None else noise
+    found = [MICRO_G * level * s.nominal_scale if s.kind == ACCELEROMETER else RATE_NOISE for s in schedule.sensors]
+    return np.array(found) if schedule.count_time is None else np.full(len(found), level)

@@ -214,7 +214,7 @@ def _counts(outcomes: Counter[str]) -> str:
         STORED: translated("{count} stored", count=outcomes[STORED]),
         BEFORE: translated("{count} stored before", count=outcomes[BEFORE]),
     }
-    return ", ".join(text for one, text in said.items() if outcomes[one])
+    return ", ".join(text for outcome, text in said.items() if outcomes[outcome])
 
 
 def _verdict_of(uploader: Uploader, file: Path) -> Json:

@@ -46,6 +46,8 @@ MOST_PANELS = 9
 """Sensors that are drawn one way of looking, three rows of three; the page says how many are left out."""
 MODELS = ("before", "after")
 """Names of the models in the data, without the named causes and with them."""
+CHANGE = "{change}"
+"""Blank: the name of the tooltip's number, with its unit."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ def _chart_set(sides: Sides, across: Across, columns: list[int], several: bool) 
     return ChartSet(
         name=f"diagnosis-{kind}-{across.name}",
         heading=say("{heading}, {kind}", heading=across.heading, kind=f"{kind}s") if several else across.heading,
-        spec=_spec(across, measure, largest * measure.factor, wider=noise.times is not None),
+        spec=_spec_of(across, measure, largest * measure.factor, wider=noise.times is not None),
         panels=tuple(_panel(sides, i, across, measure) for i in columns),
     )
 
@@ -113,7 +115,7 @@ def _rms(side: Residuals, column: int, measure: Measure) -> str:
 
 
 def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list[Json]:
-    both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
+    models = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
     flipped = sides.before.flipped
     return [
         {
@@ -125,18 +127,28 @@ def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list
             "model": model,
             "row": row + 1,
         }
-        for model, side in both
+        for model, side in models
         for row in range(min(len(across.values), len(side.value)))
         if np.isfinite(side.value[row, column]) and np.isfinite(sides.noise.stated[row, column])
     ]
 
 
-def _spec(across: Across, measure: Measure, largest: float, *, wider: bool) -> Json:
-    domain = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
-    axis, scale = alt.Axis(**ticks(across.name)), alt.Scale(domain=domain, nice=False, zero=False)
-    x = alt.X("x:Q", title=across.title, axis=axis, scale=scale)
-    y_scale = alt.Scale(domain=padded(-largest, largest))
-    y = alt.Y("y:Q", title=measure.label, axis=alt.Axis(tickCount=5), scale=y_scale)
+def _spec_of(across: Across, measure: Measure, largest: float, *, wider: bool) -> Json:
+    left, right = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
+    low, high = padded(-largest, largest)
+    ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
+    texts = {UNIT: measure.label, CHANGE: say("measured − simulated, {label}", label=measure.label)}
+    found: Json = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
+    return found
+
+
+@cache
+def _spec(name: str, title: str, *, wider: bool) -> Json:
+    """With blanks for the unit and the ranges."""
+    axis, scale = alt.Axis(**ticks(name)), alt.Scale(domain=[LEFT, RIGHT], nice=False, zero=False)
+    x = alt.X("x:Q", title=title, axis=axis, scale=scale)
+    y_scale = alt.Scale(domain=[LOW, HIGH])
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--muted)", opacity=0.1)
     return specification(
@@ -144,14 +156,14 @@ def _spec(across: Across, measure: Measure, largest: float, *, wider: bool) -> J
             band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
             *(edges(base, y_scale, "var(--muted)") if wider else ()),
             zero_line(),
-            _marks(base, y, measure, MODELS[0]),
-            _marks(base, y, measure, MODELS[1]),
+            _marks(base, y, MODELS[0]),
+            _marks(base, y, MODELS[1]),
         ],
         HEIGHT,
     )
 
 
-def _marks(base: "alt.Chart", y: "alt.Y", measure: Measure, model: str) -> "alt.Chart":
+def _marks(base: "alt.Chart", y: "alt.Y", model: str) -> "alt.Chart":
     """Before as empty marks, after as full ones; direct round, flipped pointed."""
     first = model == MODELS[0]
     colour = "var(--second)" if first else "var(--accent)"
@@ -167,15 +179,11 @@ def _marks(base: "alt.Chart", y: "alt.Y", measure: Measure, model: str) -> "alt.
                 alt.Tooltip("row:Q", title="row"),
                 alt.Tooltip("run:N", title="run"),
                 alt.Tooltip("model:N", title="model"),
-                alt.Tooltip("y:Q", title=say("measured − simulated, {label}", label=measure.label)),
+                alt.Tooltip("y:Q", title=CHANGE),
             ],
         )
     )
     return chart
-
-
-CHANGE = "{change}"
-"""Blank: the name of the tooltip's number, with its unit."""
 
 
 def course_charts(course: Course, residuals: Residuals, name: str) -> tuple[ChartSet, ...]:
@@ -197,7 +205,7 @@ def measure_of(course: Course, component: str) -> Measure:
     """Of what changes: an angle, or relative; components of one unit share it."""
     is_size = component == SIZE
     values = [
-        abs(row[k]) for row in course.values for k, one in enumerate(course.components) if (one == SIZE) == is_size
+        abs(row[k]) for row in course.values for k, other in enumerate(course.components) if (other == SIZE) == is_size
     ]
     return deviation_measure(ACCELEROMETER, "scale" if is_size else "axis", max(values, default=0.0))
 

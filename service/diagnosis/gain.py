@@ -116,13 +116,13 @@ def _rows(before: Score, after: Score, kinds: Sequence[str]) -> tuple[GainRow, .
 
 def _rms(before: Score, after: Score, kind: str, *, several: bool) -> GainRow:
     """Of one kind of sensor; earlier versions stated that of the leading kind alone."""
-    own = tuple(score.rms_by_kind.get(kind, nan if several else score.rms) for score in (before, after))
-    measure = deviation_measure(kind, "bias", max((x for x in own if isfinite(x)), default=0.0))
+    rms = tuple(score.rms_by_kind.get(kind, nan if several else score.rms) for score in (before, after))
+    measure = deviation_measure(kind, "bias", max((x for x in rms if isfinite(x)), default=0.0))
     who = say(" of {kind}s", kind=kind) if several else ""
     return GainRow(
         "rms",
         say("error of prediction{sensors}, {label}", sensors=who, label=measure.label),
-        *(number(x * measure.factor, 3) for x in own),
+        *(number(x * measure.factor, 3) for x in rms),
     )
 
 

@@ -60,10 +60,10 @@ class Diagnoses(Queries):
 
     def put_reservations(self, session: str, reservations: Sequence[Reservation]) -> None:
         """Works out a verdict's reservations anew, because the verdict or its model changed."""
-        own = DiagnosisRow.session_id == session
+        of_session = DiagnosisRow.session_id == session
         written = reservations_to_list(reservations)
         self._touch(session)
-        self._session.execute(update(DiagnosisRow).where(own).values(reservations=written))
+        self._session.execute(update(DiagnosisRow).where(of_session).values(reservations=written))
         self._session.expire_all()
 
     def get(self, session: str) -> StoredDiagnosis | None:

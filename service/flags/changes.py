@@ -65,8 +65,8 @@ def assignee_of(store: Store, said: str) -> Assignee:
     accounts = [account for account in Accounts(store).every() if account.is_active]
     if not Accounts(store).any():
         return Assignee(meant)
-    by_login = [one for one in accounts if one.login == meant.lower()]
-    found = by_login or [one for one in accounts if one.name == meant]
+    by_login = [account for account in accounts if account.login == meant.lower()]
+    found = by_login or [account for account in accounts if account.name == meant]
     if len(found) != 1:
         fault = SEVERAL if found else UNKNOWN
         raise RefusedError("The flag cannot be assigned.", (Problem("to", fault),))

@@ -118,9 +118,9 @@ class DeliveryTurns:
         if len(self._running) >= MOST_AT_ONCE:
             return 0
         claimed = await asyncio.to_thread(self._outbox.claim, tuple(self._running))
-        for id in dict.fromkeys(one.webhook.id for one in claimed):
-            own = [one for one in claimed if one.webhook.id == id]
-            self._running[id] = asyncio.create_task(self._turn(own))
+        for id in dict.fromkeys(outgoing.webhook.id for outgoing in claimed):
+            of_webhook = [outgoing for outgoing in claimed if outgoing.webhook.id == id]
+            self._running[id] = asyncio.create_task(self._turn(of_webhook))
         return len(claimed)
 
     async def done(self) -> None:
@@ -133,9 +133,9 @@ class DeliveryTurns:
             turn.cancel()
         await asyncio.gather(*self._running.values(), return_exceptions=True)
 
-    async def _turn(self, own: Sequence[Outgoing]) -> None:
+    async def _turn(self, batch: Sequence[Outgoing]) -> None:
         """The messages of one receiver, one after another, oldest first."""
-        for outgoing in own:
+        for outgoing in batch:
             with self._guard.alone("outbox", outgoing.webhook.url):
                 accepted, outcome = await _attempt(outgoing, self._outbox.ways, self._http)
                 await asyncio.to_thread(self._outbox.put, outgoing, outcome, accepted=accepted)

@@ -107,8 +107,8 @@ def _is_resolved(number: int) -> ScalarSelect[int]:
 
 
 def _is_on(serial: str) -> ColumnElement[bool]:
-    own = select(UnitRow.id).where(UnitRow.serial == serial).scalar_subquery()
-    return and_(FlagRow.unit_id == own, IS_OF_UNIT)
+    unit = select(UnitRow.id).where(UnitRow.serial == serial).scalar_subquery()
+    return and_(FlagRow.unit_id == unit, IS_OF_UNIT)
 
 
 def _is_about(stand: str) -> ColumnElement[bool]:
@@ -156,8 +156,8 @@ class Flags(Queries):
     def open_stands_of(self, unit: int) -> tuple[str, ...]:
         """Stands that a unit was ever measured on, and that have an open flag for what sessions found on them."""
         on = select(StandRow.name).join(SessionRow, SessionRow.stand_id == StandRow.id)
-        own = (FlagRow.matter == Matter.STAND, FlagRow.scope == Scope.STAND, FlagRow.state != FlagState.RESOLVED)
-        query = select(FlagRow.place).where(*own, FlagRow.place.in_(on.where(SessionRow.unit_id == unit)))
+        conditions = (FlagRow.matter == Matter.STAND, FlagRow.scope == Scope.STAND, FlagRow.state != FlagState.RESOLVED)
+        query = select(FlagRow.place).where(*conditions, FlagRow.place.in_(on.where(SessionRow.unit_id == unit)))
         return tuple(self._session.scalars(query.distinct()))
 
     def open_about(self, *matters: Matter) -> tuple[Flag, ...]:
@@ -169,8 +169,8 @@ class Flags(Queries):
     def of_group(self, matter: Matter, place: str) -> tuple[Flag, ...]:
         """All flags on a matter at places that begin so, oldest first, without their lives."""
         query = select(FlagRow, UnitRow.serial).join(UnitRow, UnitRow.id == FlagRow.unit_id)
-        own = (FlagRow.matter == matter, FlagRow.place.startswith(place, autoescape=True))
-        found = self._session.execute(query.where(*own).order_by(FlagRow.id))
+        conditions = (FlagRow.matter == matter, FlagRow.place.startswith(place, autoescape=True))
+        found = self._session.execute(query.where(*conditions).order_by(FlagRow.id))
         return tuple(_flag(row, serial) for row, serial in found)
 
     def unit_of(self, id: int) -> str:
@@ -243,7 +243,7 @@ _OPEN_OF = (
 
 
 def _with_lives(rows: Iterable[Row[FlagRow, str, NoticeRow]]) -> tuple[Flag, ...]:
-    return tuple(_grouped(list(own)) for _, own in groupby(rows, key=lambda row: row[0].id))
+    return tuple(_grouped(list(lives)) for _, lives in groupby(rows, key=lambda row: row[0].id))
 
 
 def _grouped(rows: list[Row[FlagRow, str, NoticeRow]]) -> Flag:

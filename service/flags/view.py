@@ -25,7 +25,7 @@ def assignee_meant(store: Store, asked: str, person: Person) -> Assignee | None:
         return None
     if asked == ME:
         return _me(person)
-    known = (one for one in Flags(store).assignees() if asked in (one.login, one.name))
+    known = (assignee for assignee in Flags(store).assignees() if asked in (assignee.login, assignee.name))
     return NOBODY if asked == OF_NOBODY else next(known, Assignee(asked))
 
 
@@ -33,7 +33,7 @@ def active_names(store: Store) -> tuple[str, ...]:
     """Whom a flag can be given to; empty where there are no accounts, so that anybody can be named."""
     active = [account for account in Accounts(store).every() if account.is_active]
     often = Counter(account.name for account in active)
-    return tuple(one.name if one.name and often[one.name] == 1 else one.login for one in active)
+    return tuple(account.name if account.name and often[account.name] == 1 else account.login for account in active)
 
 
 def _me(person: Person) -> Assignee:
@@ -76,9 +76,9 @@ class FlagsView(ListView):
     after: FlagNumber = ""
     before: FlagNumber = ""
 
-    def doing(self, what: str) -> str:
+    def doing(self, action: str) -> str:
         """Where the form of ticked flags is sent, so that this view comes back."""
-        return self.url().replace(self.PATH, f"{self.PATH}/{what}", 1)
+        return self.url().replace(self.PATH, f"{self.PATH}/{action}", 1)
 
     def query(self, assignee: Assignee | None) -> FlagQuery:
         """What the store is asked: one flag more than fit on the page, which says whether there are others."""
@@ -97,5 +97,5 @@ class FlagsView(ListView):
 
 def choices_of(assignees: tuple[Assignee, ...], *, is_signed_in: bool) -> dict[str, str]:
     """Whose flags can be asked for, in words."""
-    own = {ME: MINE} if is_signed_in else {}
-    return own | {OF_NOBODY: NOBODYS} | {one.login or one.name: one.name for one in assignees}
+    of_person = {ME: MINE} if is_signed_in else {}
+    return of_person | {OF_NOBODY: NOBODYS} | {assignee.login or assignee.name: assignee.name for assignee in assignees}

@@ -161,9 +161,9 @@ class FleetCondition:
             for verdict, count in sorted(self.verdicts.items(), key=lambda item: -item[0].severity)
         ]
         references = ConditionCount(REFERENCE, self.references, self.reserved_references)
-        judged = (one.without(references) if one.condition is UNDECIDED else one for one in found)
+        judged = (counted.without(references) if counted.condition is UNDECIDED else counted for counted in found)
         unmeasured = ConditionCount(NOT_MEASURED, self.uncalibrated, 0)
-        return (*judged, *(one for one in (references, unmeasured) if one.count))
+        return (*judged, *(counted for counted in (references, unmeasured) if counted.count))
 
     @classmethod
     def of(cls, tallies: Sequence[Tally], of_groups: int = 0, uncalibrated: int = 0) -> "FleetCondition":

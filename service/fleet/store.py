@@ -150,7 +150,7 @@ class Fleet(Queries):
         lots = select(literal("lots"), UnitRow.lot).where(UnitRow.lot.is_not(None)).distinct()
         held = (_held("locations", UnitRow.location), _held("custodians", UnitRow.custodian))
         rows: Sequence[Any] = self._session.execute(union_all(types, stands, lots, *held)).all()
-        return FleetChoices(**{of: tuple(sorted(n for place, n in rows if place == of)) for of in CHOICES})
+        return FleetChoices(**{choice: tuple(sorted(n for place, n in rows if place == choice)) for choice in CHOICES})
 
     def unit(self, serial: str) -> UnitSummary | None:
         """One unit."""
@@ -260,9 +260,9 @@ def _listed(retired: bool | None) -> Select[int]:
     return listed if retired is None else listed.where(UnitRow.retired_at.is_not(None) == retired)
 
 
-def _summaries(of: FromClause = UnitRow.__table__) -> Summaries:
+def _summaries(units: FromClause = UnitRow.__table__) -> Summaries:
     """Units with their latest accepted session, if any. PostgreSQL joins so many tables in the order they are written
-    in, so that ``of``, the units to read, comes first."""
+    in, so that ``units``, those to read, comes first."""
     return (
         select(
             UnitRow,
@@ -277,7 +277,7 @@ def _summaries(of: FromClause = UnitRow.__table__) -> Summaries:
             func.abs(DecisionRow.deviation) / DecisionRow.tolerance,
         )
         .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
-        .select_from(of)
+        .select_from(units)
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)

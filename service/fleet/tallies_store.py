@@ -83,7 +83,7 @@ class Tallies(Queries):
     def _stood_and_stands(self, units: Collection[int]) -> tuple[dict[Stood, int], dict[Stood, int]]:
         """Sessions by unit and stand as they were counted so far, and by the rows of now."""
         rows = self._session.execute(_STOOD_AND_STANDS, {"units": sorted(units)}).all()
-        was, now = ({(unit, stand): count for what, unit, stand, count in rows if what == of} for of in ("was", "now"))
+        was, now = ({(unit, stand): count for t, unit, stand, count in rows if t == time} for time in ("was", "now"))
         return was, now
 
 

@@ -83,13 +83,13 @@ class Announcements(Queries):
 
     def all(self, questioned: int, found: int) -> Announced:
         """At most so many of the second and of the third."""
-        of = lists("stands", "questioned", "found")
+        listed = lists("stands", "questioned", "found")
         shifts, waiting, together = _shifts(), _questioned(questioned), _found(found)
         query = (
-            select(of.c.list, shifts.c.document, waiting, together)
-            .outerjoin_from(of, shifts, of.c.list == "stands")
-            .outerjoin(waiting, of.c.list == "questioned")
-            .outerjoin(together, of.c.list == "found")
+            select(listed.c.list, shifts.c.document, waiting, together)
+            .outerjoin_from(listed, shifts, listed.c.list == "stands")
+            .outerjoin(waiting, listed.c.list == "questioned")
+            .outerjoin(together, listed.c.list == "found")
             .order_by(shifts.c.name, waiting.c.uploaded_at.desc(), waiting.c.id, together.c.place, together.c.group_id)
         )
         rows = self._session.execute(query).mappings().all()

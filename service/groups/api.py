@@ -146,21 +146,21 @@ def read_stand_diagnosis(name: StandName, groups: GroupReaderOf) -> Response | G
 
 
 @router.post("/units/{serial:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
-def accept_for_unit(serial: Serial, new: NewLastingSchema, own: AcceptingOf) -> ModelDocument:
+def accept_for_unit(serial: Serial, new: NewLastingSchema, accepting: AcceptingOf) -> ModelDocument:
     """Accept what a unit's sessions show together; every session that it concerns is computed again."""
-    return own.accepted(Level.UNIT, serial, new)
+    return accepting.accepted(Level.UNIT, serial, new)
 
 
 @router.post("/unit-types/{name:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
-def accept_for_unit_type(name: TypeName, new: NewLastingSchema, own: AcceptingOf) -> ModelDocument:
+def accept_for_unit_type(name: TypeName, new: NewLastingSchema, accepting: AcceptingOf) -> ModelDocument:
     """Accept what the sessions of a type show together; every session that it concerns is computed again."""
-    return own.accepted(Level.TYPE, name, new)
+    return accepting.accepted(Level.TYPE, name, new)
 
 
 @router.post("/stands/{name:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
-def accept_for_stand(name: StandName, new: NewLastingSchema, own: AcceptingOf) -> ModelDocument:
+def accept_for_stand(name: StandName, new: NewLastingSchema, accepting: AcceptingOf) -> ModelDocument:
     """Accept what the sessions on a stand show together; every session that it concerns is computed again."""
-    return own.accepted(Level.STAND, name, new)
+    return accepting.accepted(Level.STAND, name, new)
 
 
 def _answer(found: GroupAnswer | None, level: Level, name: str) -> Response | GroupDocument:

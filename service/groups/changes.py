@@ -60,7 +60,7 @@ def keep_statistics(storage: Storage, session: str, now: datetime) -> None:
     finally:
         with storage.database.writing() as store:
             groups = Groups(store).of_unit(stored.unit)
-            WorkQueue(store, WorkKind.GROUP).enqueue_each((one.place for one in groups), now)
+            WorkQueue(store, WorkKind.GROUP).enqueue_each((group.place for group in groups), now)
 
 
 def add_statistics(storage: Storage, session: str, sha256: str, filename: str) -> None:

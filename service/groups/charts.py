@@ -64,11 +64,11 @@ class Element:
 
 def elements_of(finding: GroupFinding) -> Iterator[Element]:
     """Those that the sessions see."""
-    each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
+    width = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
     for k, (value, sigma) in enumerate(zip(finding.amplitude, finding.sigma, strict=True)):
         if sigma is not None:
-            who = finding.sensors[k // each] if len(finding.sensors) > 1 else ""
-            which = part_of(finding.cause, k % each) if each > 1 else ""
+            who = finding.sensors[k // width] if len(finding.sensors) > 1 else ""
+            which = part_of(finding.cause, k % width) if width > 1 else ""
             unit = finding.units[k % len(finding.units)]
             largest = max(abs(value), COVERAGE * sigma)
             yield Element(
@@ -81,7 +81,7 @@ def elements_of(finding: GroupFinding) -> Iterator[Element]:
 def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
     """A panel an amplitude; None where no session sees one, or none has a date."""
     elements = list(elements_of(finding))
-    times = [moment(one.started_at) for one in finding.sessions if one.started_at]
+    times = [moment(session.started_at) for session in finding.sessions if session.started_at]
     if not elements or not times:
         return None
     span = [_iso(min(times)), _iso(max(times))]
@@ -100,8 +100,8 @@ def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
 def _spreads(finding: GroupFinding, element: Element) -> list[tuple[float, float]]:
     """Every session's |amplitude| and U, as they are drawn."""
     k, factor = element.number, element.measure.factor
-    own = ((one.amplitude[k], one.sigma[k]) for one in finding.sessions)
-    return [(abs(value) * factor, COVERAGE * sigma * factor) for value, sigma in own if sigma is not None]
+    amplitudes = ((session.amplitude[k], session.sigma[k]) for session in finding.sessions)
+    return [(abs(value) * factor, COVERAGE * sigma * factor) for value, sigma in amplitudes if sigma is not None]
 
 
 def _reach(finding: GroupFinding, element: Element) -> float:
@@ -137,16 +137,16 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
 
 def _session_points(finding: GroupFinding, element: Element) -> Iterator[Json]:
     k, factor = element.number, element.measure.factor
-    for one in finding.sessions:
-        sigma = one.sigma[k]
-        if sigma is not None and one.started_at is not None:
-            at, value, spread = moment(one.started_at), one.amplitude[k], COVERAGE * sigma
+    for session in finding.sessions:
+        sigma = session.sigma[k]
+        if sigma is not None and session.started_at is not None:
+            at, value, spread = moment(session.started_at), session.amplitude[k], COVERAGE * sigma
             yield {
                 "t": _iso(at),
                 "y": _short(value * factor),
                 "lo": _short((value - spread) * factor),
                 "hi": _short((value + spread) * factor),
-                "unit": one.unit,
+                "unit": session.unit,
                 "date": day_of(at),
                 "value": measured(value, spread, element.measure),
             }

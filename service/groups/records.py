@@ -98,7 +98,7 @@ class FoundTogether:
 STRUCTURES = Form(
     list,
     lambda listed: tuple(
-        say("{place} ({subject})", place=with_messages(one["where"]), subject=one["subject"]) for one in listed
+        say("{place} ({subject})", place=with_messages(f["where"]), subject=f["subject"]) for f in listed
     ),
 )
 """Read from what the estimator found; never written."""

@@ -68,7 +68,7 @@ class FoundLine:
 
 def found_line(announced: Announced) -> FoundLine | None:
     """Of the fleet page; None where no sessions together show anything."""
-    lines = tuple((home_of(one.group), whose(one.group), one.own) for one in announced.found)
+    lines = tuple((home_of(shown.group), whose(shown.group), shown.own) for shown in announced.found)
     return FoundLine(lines, announced.groups - len(lines)) if lines else None
 
 

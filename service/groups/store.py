@@ -109,11 +109,11 @@ class Groups(Queries):
 
         To those of a stand come older ones of the same units elsewhere: they tell a stand's effect from a unit's.
         """
-        own = _belongs(group)
+        belongs = _belongs(group)
         if since is not None:
-            own = and_(own, SessionRow.started_at >= since)
-        found = self._newest(own)
-        count = self._session.scalar(select(func.count()).select_from(SessionRow).where(own, *_COUNTS)) or 0
+            belongs = and_(belongs, SessionRow.started_at >= since)
+        found = self._newest(belongs)
+        count = self._session.scalar(select(func.count()).select_from(SessionRow).where(belongs, *_COUNTS)) or 0
         elsewhere: tuple[Member, ...] = ()
         if group.level is Level.STAND and found:
             units = UnitRow.serial.in_({m.unit for m in found})
@@ -136,8 +136,8 @@ class Groups(Queries):
         """A group by its name, what is stored of it, whether it is asked for again since, and why that failed; in one
         query."""
         row, number = GroupDiagnosisRow, KEYS[level]
-        own = (WorkRow.kind == WorkKind.GROUP, WorkRow.key == literal(f"{level} ") + cast(number, String))
-        again, failed = select(WorkRow.id).where(*own).exists(), select(func.max(WorkRow.failed)).where(*own)
+        work = (WorkRow.kind == WorkKind.GROUP, WorkRow.key == literal(f"{level} ") + cast(number, String))
+        again, failed = select(WorkRow.id).where(*work).exists(), select(func.max(WorkRow.failed)).where(*work)
         stored = and_(row.level == level.value, row.group_id == number)
         query = select(number, row, again, failed.scalar_subquery()).select_from(number.class_).outerjoin(row, stored)
         found = self._session.execute(query.where(CALLED[level] == name)).one_or_none()
@@ -147,18 +147,18 @@ class Groups(Queries):
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
         """Stores what was found of a group in place of what was."""
-        own = (GroupDiagnosisRow.level == group.level, GroupDiagnosisRow.group_id == group.key)
-        self._session.execute(delete(GroupDiagnosisRow).where(*own))
+        conditions = (GroupDiagnosisRow.level == group.level, GroupDiagnosisRow.group_id == group.key)
+        self._session.execute(delete(GroupDiagnosisRow).where(*conditions))
         document = None if answer.document is None else zlib.compress(answer.document.encode())
         values = {**vars(answer), "document": document}
         self.insert_once(GroupDiagnosisRow, level=group.level, group_id=group.key, **values)
         self._session.expire_all()
 
-    def put_own(self, group: Group, own: str) -> None:
+    def put_own(self, group: Group, sentence: str) -> None:
         """Stores what a group shows of its own, in a line."""
         row = GroupDiagnosisRow
         known = update(row).where(row.level == group.level, row.group_id == group.key)
-        self._session.execute(known.values(own=own))
+        self._session.execute(known.values(own=sentence))
         self._session.expire_all()
 
 
@@ -263,8 +263,8 @@ class Statistics(Queries):
         return {id: SessionStatistics.from_dict(json.loads(zlib.decompress(packed))) for id, packed in kept.items()}
 
     def _put(self, session: str, **values: Any) -> None:
-        own = update(SessionStatisticsRow).where(SessionStatisticsRow.session_id == session)
-        self._session.execute(own.values(**values))
+        query = update(SessionStatisticsRow).where(SessionStatisticsRow.session_id == session)
+        self._session.execute(query.values(**values))
         self._session.expire_all()
 
 

@@ -74,14 +74,14 @@ def place_in_words(place: str, subject: str) -> str:
     cause, bracket, sensors = rest.partition(" (")
     if not known:
         return place
-    of = say(" ({sensors})", sensors=sensors.removesuffix(")")) if bracket else ""
-    return say("{scope} {subject}: {cause}{sensors}", scope=scope, subject=subject, cause=cause, sensors=of)
+    where = say(" ({sensors})", sensors=sensors.removesuffix(")")) if bracket else ""
+    return say("{scope} {subject}: {cause}{sensors}", scope=scope, subject=subject, cause=cause, sensors=where)
 
 
 def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = None) -> str:
     """``stand ODG-1: beta eccentricity``: where a flag on it is; without a finding how those of a group begin."""
-    whose = f"{scope} {subject}: "
-    return whose if finding is None else f"{whose}{cause_on(finding.cause, finding.sensors)}"[:LONGEST_PLACE]
+    owner = f"{scope} {subject}: "
+    return owner if finding is None else f"{owner}{cause_on(finding.cause, finding.sensors)}"[:LONGEST_PLACE]
 
 
 def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
@@ -148,8 +148,8 @@ def term_view(term: EmpiricalTerm, accepted: Sequence[ModelRevision] = ()) -> Te
 def holds_term(revision: ModelRevision, term: EmpiricalTerm) -> bool:
     """Whether a revision accepted a learned term of this place: an equation that was learned anew is another one of
     it, and not beside it."""
-    own = (revision.cause, revision.scope, revision.subject, revision.sensors)
-    return own == (EMPIRICAL, SCOPES.get(term.level), term.subject, term.sensors)
+    key = (revision.cause, revision.scope, revision.subject, revision.sensors)
+    return key == (EMPIRICAL, SCOPES.get(term.level), term.subject, term.sensors)
 
 
 def equation_of(term: EmpiricalTerm) -> str:
@@ -157,8 +157,8 @@ def equation_of(term: EmpiricalTerm) -> str:
     return joined(
         " ",
         (
-            say("{quantity} {equation}.", quantity=capitalised(what), equation=equation)
-            for what, equation in _lines(term)
+            say("{quantity} {equation}.", quantity=capitalised(quantity), equation=equation)
+            for quantity, equation in _lines(term)
         ),
     )
 
@@ -321,7 +321,7 @@ def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> Lasting
         evidence=say("{strength} over all of them", strength=standard_errors(finding.strength)),
         advice=RULE_OUT if finding.alternatives else finding.advice,
         choices=tuple(map(_choice, finding.rivals)),
-        rows=tuple(_row(finding, one) for one in reversed(finding.sessions)),
+        rows=tuple(_row(finding, session) for session in reversed(finding.sessions)),
     )
 
 
@@ -333,30 +333,30 @@ def _spread(finding: GroupFinding) -> str:
 
 def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
     """Whether a revision accepted what a group shows."""
-    own = (revision.scope, revision.subject, revision.cause)
+    key = (revision.scope, revision.subject, revision.cause)
     theirs = (SCOPES[finding.level], finding.subject, finding.cause)
-    return own == theirs and set(finding.sensors) <= set(revision.sensors)
+    return key == theirs and set(finding.sensors) <= set(revision.sensors)
 
 
 def _choice(rival: GroupRival) -> GroupChoice:
-    whose = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
+    level = "" if rival.level == "unit" else say(", of the {level} {subject}", level=rival.level, subject=rival.subject)
     count = "" if rival.sessions is None else say_count(", {n} such session", ", {n} such sessions", rival.sessions)
     sensors = () if "*" in rival.sensors else rival.sensors
     measurement = (
         joined("", (rival.measurement, count)) if rival.measurement else "no planned session can separate them"
     )
-    return GroupChoice(joined("", (cause_on(rival.cause, sensors), whose)), percent(rival.probability), measurement)
+    return GroupChoice(joined("", (cause_on(rival.cause, sensors), level)), percent(rival.probability), measurement)
 
 
-def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
-    own = replace(finding, amplitude=one.amplitude, sigma=one.sigma)
-    day = BLIND if one.started_at is None else day_in_words(one.started_at)
-    return ForestRow(day, one.unit, joined("; ", amplitudes_of(own)) or BLIND)
+def _row(finding: GroupFinding, session: SessionAmplitude) -> ForestRow:
+    in_session = replace(finding, amplitude=session.amplitude, sigma=session.sigma)
+    day = BLIND if session.started_at is None else day_in_words(session.started_at)
+    return ForestRow(day, session.unit, joined("; ", amplitudes_of(in_session)) or BLIND)
 
 
 def _limit(limit: PoolLimit) -> tuple[str, str, str]:
-    one = replace(limit, amplitude=limit.one_session)
-    of_one = size_of(one, ACCELEROMETER) if one.amplitude else BLIND
+    single = replace(limit, amplitude=limit.one_session)
+    of_one = size_of(single, ACCELEROMETER) if single.amplitude else BLIND
     return cause_on(limit.cause, ()), size_of(limit, ACCELEROMETER), of_one
 
 

@@ -280,7 +280,7 @@ class _Scan:
     def _needed(self) -> list[str]:
         """Columns of a session; others are checked once, by their names."""
         sensors = self.document.get("sensors")
-        names = [one.get("name") for one in sensors if isinstance(one, dict)] if isinstance(sensors, list) else []
+        names = [s.get("name") for s in sensors if isinstance(s, dict)] if isinstance(sensors, list) else []
         known = {*COLUMNS, *names, *(f"{name}_se" for name in names)}
         return [name for name in self.rows.names if name in known]
 
@@ -307,7 +307,7 @@ class _Scan:
         try:
             return read_session({**self.document, "table": table}, name=self.filename, most=Extent(), part=True)
         except FormatError as fault:
-            problems = [Problem(one.field, one.message, one.row and one.row + offset) for one in fault.problems]
+            problems = [Problem(p.field, p.message, p.row and p.row + offset) for p in fault.problems]
             raise FormatError(problems, self.filename) from fault
 
 

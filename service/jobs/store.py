@@ -267,7 +267,7 @@ class Failures(Queries):
         query = (
             select(failures.c.kind, failures.c.of, failures.c.why).order_by(failures.c.kind, failures.c.of).limit(limit)
         )
-        return tuple(_failed(FailedKind(kind), of, why) for kind, of, why in self._session.execute(query))
+        return tuple(_failed(FailedKind(kind), subject, why) for kind, subject, why in self._session.execute(query))
 
     def try_again(self) -> int:
         """Retries all failed work in the queue at once, except derivations, which are retried anyway; returns the
@@ -312,12 +312,12 @@ _PLACE = GroupDiagnosisRow.level + literal(" ") + cast(GroupDiagnosisRow.group_i
 """`Group.place`."""
 
 
-def _line(kind: FailedKind, of: Text, why: Text) -> Select[str, str, str]:
-    return select(literal(kind.value).label("kind"), of.label("of"), why.label("why"))
+def _line(kind: FailedKind, subject: Text, why: Text) -> Select[str, str, str]:
+    return select(literal(kind.value).label("kind"), subject.label("of"), why.label("why"))
 
 
-def _failed(kind: FailedKind, of: str, why: str) -> Failed:
-    return Failed(kind, task_of(of).unit if kind is FailedKind.RECOMPUTATION else of, why)
+def _failed(kind: FailedKind, subject: str, why: str) -> Failed:
+    return Failed(kind, task_of(subject).unit if kind is FailedKind.RECOMPUTATION else subject, why)
 
 
 def _ended(since: datetime) -> tuple[Select[str, str, str], ...]:

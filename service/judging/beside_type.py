@@ -46,8 +46,8 @@ class Type:
 
     def scales(self) -> dict[str, float]:
         """The median scale factor of each sensor."""
-        return {name: float(np.median([v.value for v in own])) for (name, what), own in self.values.items()
-                if what == "scale"}  # fmt: skip
+        return {name: float(np.median([v.value for v in known])) for (name, parameter), known in self.values.items()
+                if parameter == "scale"}  # fmt: skip
 
     def far(self, kind: str, parameter: str, width: float) -> float:
         """What no unit lies apart, unit of the parameter."""
@@ -60,13 +60,13 @@ def type_of_references(values: Sequence[ParameterValue], tolerances: Tolerances)
     for value in values:
         if value.value is not None or value.axis is not None:
             grouped.setdefault((value.sensor, value.parameter), []).append(value)
-    return Type({key: tuple(own) for key, own in grouped.items() if len(own) >= FEWEST}, tolerances)
+    return Type({key: tuple(known) for key, known in grouped.items() if len(known) >= FEWEST}, tolerances)
 
 
-def beside_type(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doubt]:
+def beside_type(sensors: Sequence[SensorCalibration], peers: Type) -> Iterator[Doubt]:
     """What no unit of the type has; the scale factors apart."""
     for parameter, name in (("bias", "bias"), ("quadratic", "quadratic term")):
-        away = {s.name: d for s in sensors if (d := _distance(s, parameter, of)) is not None}
+        away = {s.name: d for s in sensors if (d := _distance(s, parameter, peers)) is not None}
         if away:
             kind = next(s.kind for s in sensors if s.name in away)
             who, most = joined(", ", away), in_words(kind, parameter, max(away.values(), key=abs))
@@ -79,29 +79,29 @@ def beside_type(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doub
                 ),
                 ANOTHER,
             )
-    yield from _directions(sensors, of)
-    yield from _uncertainties(sensors, of)
+    yield from _directions(sensors, peers)
+    yield from _uncertainties(sensors, peers)
 
 
-def _distance(sensor: SensorCalibration, parameter: str, of: Type) -> float | None:
+def _distance(sensor: SensorCalibration, parameter: str, peers: Type) -> float | None:
     """From the type's median, SI, of a value that is too far from it."""
-    known, own = of.values.get((sensor.name, parameter), ()), getattr(sensor, parameter)
-    if not known or own.value is None or (sensor.kind, parameter) not in MEASURES:
+    known, seen = peers.values.get((sensor.name, parameter), ()), getattr(sensor, parameter)
+    if not known or seen.value is None or (sensor.kind, parameter) not in MEASURES:
         return None
     centre, width = spread(np.array([v.value for v in known]), np.array([v.u or 0.0 for v in known]))
-    away = float(own.value - centre)
-    return away if abs(away) > of.far(sensor.kind, parameter, float(np.hypot(width, own.sigma or 0.0))) else None
+    away = float(seen.value - centre)
+    return away if abs(away) > peers.far(sensor.kind, parameter, float(np.hypot(width, seen.sigma or 0.0))) else None
 
 
-def _directions(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doubt]:
+def _directions(sensors: Sequence[SensorCalibration], peers: Type) -> Iterator[Doubt]:
     """Axes that point where the type's do not."""
-    means = {name: _mean(own) for (name, what), own in of.values.items() if what == "axis"}
+    means = {name: _mean(known) for (name, parameter), known in peers.values.items() if parameter == "axis"}
     for sensor in sensors:
         if sensor.axis is None or sensor.name not in means:
             continue
         angle = _angle(sensor.axis, means[sensor.name])
-        others = [_angle(np.array(v.axis), means[sensor.name]) for v in of.values[sensor.name, "axis"]]
-        if angle <= of.far(sensor.kind, "axis", float(np.median(others)) / RAYLEIGH):
+        others = [_angle(np.array(v.axis), means[sensor.name]) for v in peers.values[sensor.name, "axis"]]
+        if angle <= peers.far(sensor.kind, "axis", float(np.median(others)) / RAYLEIGH):
             continue
         other = next((o for o, mean in means.items() if o != sensor.name and sensor.axis @ mean > NEAR), None)
         where = "" if other is None else say(", along the axis of {other}", other=other)
@@ -116,11 +116,11 @@ def _directions(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doub
         )
 
 
-def _uncertainties(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doubt]:
+def _uncertainties(sensors: Sequence[SensorCalibration], peers: Type) -> Iterator[Doubt]:
     """Zeros that are known hundreds of times better or worse."""
     ratios = []
     for sensor in sensors:
-        usual = [v.u for v in of.values.get((sensor.name, "bias"), ()) if v.u]
+        usual = [v.u for v in peers.values.get((sensor.name, "bias"), ()) if v.u]
         if usual and sensor.bias.sigma:
             ratios.append(sensor.bias.sigma / float(np.median(usual)))
     ratio = float(np.median(ratios)) if ratios else 1.0
@@ -136,9 +136,9 @@ def _uncertainties(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[D
         )
 
 
-def _mean(own: Sequence[ParameterValue]) -> Array:
+def _mean(values: Sequence[ParameterValue]) -> Array:
     """(3,) direction about which a sensor's axes lie, dimensionless."""
-    middle = np.median(np.array([v.axis for v in own]), axis=0)
+    middle = np.median(np.array([v.axis for v in values]), axis=0)
     return np.asarray(middle / np.linalg.norm(middle))
 
 

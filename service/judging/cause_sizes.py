@@ -73,48 +73,50 @@ class Yardstick:
     """By kind of sensor and parameter."""
 
 
-def size_of_cause(finding: Finding, by: Yardstick) -> Size | None:
+def size_of_cause(finding: Finding, yardstick: Yardstick) -> Size | None:
     """Where and how much a named cause weighs most; None where no tolerance is set for what it changes."""
-    return max(_sizes(finding, by), key=lambda size: size.share, default=None)
+    return max(_sizes(finding, yardstick), key=lambda size: size.share, default=None)
 
 
-def size_of_structure(structure: Structure, by: Yardstick) -> Size | None:
+def size_of_structure(structure: Structure, yardstick: Yardstick) -> Size | None:
     """The root mean square of unexplained structure at the input, as a zero; None where nothing says it."""
     if structure.course is not None and structure.course.components:
-        kind = _leading(by)
+        kind = _leading(yardstick)
         angles = np.array(structure.course.values)
-        return _beside(by, (), kind, "bias", (INPUTS[kind] * float(np.sqrt(np.mean(np.sum(angles**2, axis=1)))), None))
-    return _by_strength(structure.sensors, structure.strength, by)
+        return _beside(
+            yardstick, (), kind, "bias", (INPUTS[kind] * float(np.sqrt(np.mean(np.sum(angles**2, axis=1)))), None)
+        )
+    return _by_strength(structure.sensors, structure.strength, yardstick)
 
 
-def _sizes(finding: Finding, by: Yardstick) -> Iterator[Size]:
+def _sizes(finding: Finding, yardstick: Yardstick) -> Iterator[Size]:
     """Of every sensor that the cause acts on, or of all together."""
     count = max(1, len(finding.sensors))
-    each = len(finding.amplitude) // count
+    width = len(finding.amplitude) // count
     known = find(finding.cause)
-    if not each or known is None or known.clips or "vibration" in known.needs:
-        size = _by_strength(finding.sensors, finding.strength, by)
+    if not width or known is None or known.clips or "vibration" in known.needs:
+        size = _by_strength(finding.sensors, finding.strength, yardstick)
         yield from () if size is None else (size,)
         return
     for k in range(count):
-        sensors, own = finding.sensors[k : k + 1], slice(k * each, (k + 1) * each)
-        kind = by.calibration.sensor(sensors[0]).kind if sensors else _leading(by)
-        found = _of_sensor(finding, own, kind, by, _left(finding, k))
-        size = None if found is None else _beside(by, sensors, kind, *found)
+        sensors, part = finding.sensors[k : k + 1], slice(k * width, (k + 1) * width)
+        kind = yardstick.calibration.sensor(sensors[0]).kind if sensors else _leading(yardstick)
+        found = _of_sensor(finding, part, kind, yardstick, _left(finding, k))
+        size = None if found is None else _beside(yardstick, sensors, kind, *found)
         yield from () if size is None else (size,)
 
 
 def _of_sensor(
-    finding: Finding, own: slice, kind: str, by: Yardstick, left: float
+    finding: Finding, part: slice, kind: str, yardstick: Yardstick, left: float
 ) -> tuple[str, tuple[float, float | None]] | None:
     """The parameter, and the length of a sensor's amplitudes with its sigma, of which a share is left in the session;
     None where it is nothing."""
-    parameter, times = _effect(finding.cause, finding.units[own][0], kind, by.residuals)
+    parameter, times = _effect(finding.cause, finding.units[part][0], kind, yardstick.residuals)
     times *= left
-    value = hypot(*(x for x in finding.amplitude[own] if isfinite(x)))
+    value = hypot(*(x for x in finding.amplitude[part] if isfinite(x)))
     if parameter is None or value == 0:
         return None
-    spread = hypot(*(a * s / value for a, s in zip(finding.amplitude[own], finding.sigma[own], strict=True)))
+    spread = hypot(*(a * s / value for a, s in zip(finding.amplitude[part], finding.sigma[part], strict=True)))
     return parameter, (value * times, spread * times if isfinite(spread) else None)
 
 
@@ -122,8 +124,8 @@ def _left(finding: Finding, k: int) -> float:
     """The share of the k-th sensor's amplitude that is left at the first row: 1 but of what settles since power-on."""
     if finding.since_power_on is None:
         return 1.0
-    each = finding.nonlinear_each
-    return exp(-finding.since_power_on / each[k if len(each) > 1 else 0]["s"])
+    shapes = finding.nonlinear_each
+    return exp(-finding.since_power_on / shapes[k if len(shapes) > 1 else 0]["s"])
 
 
 def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str | None, float]:
@@ -133,8 +135,8 @@ def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str
         return "axis", _span(residuals.time)
     if known is not None and known.scope == "stand" and unit == "1":
         return "axis", _span(residuals.beta)
-    parameter, by = ACTS_ON.get(by_input(unit), (None, "nothing"))
-    return parameter, _times(by, kind, residuals)
+    parameter, factor = ACTS_ON.get(by_input(unit), (None, "nothing"))
+    return parameter, _times(factor, kind, residuals)
 
 
 def by_input(unit: str) -> str:
@@ -143,8 +145,8 @@ def by_input(unit: str) -> str:
     return f"{head.replace('m/s²', 'input').replace('rad/s', 'input')}{unit[len(head) :]}"
 
 
-def _times(by: str, kind: str, residuals: Residuals) -> float:
-    match by:
+def _times(factor: str, kind: str, residuals: Residuals) -> float:
+    match factor:
         case "temperature":
             return _span(residuals.temperature)
         case "temperature²":
@@ -175,23 +177,23 @@ def _span(column: NDArray[np.float64] | None) -> float:
     return 0.0 if column is None else float(np.ptp(column))
 
 
-def _by_strength(sensors: tuple[str, ...], strength: float, by: Yardstick) -> Size | None:
+def _by_strength(sensors: tuple[str, ...], strength: float, yardstick: Yardstick) -> Size | None:
     """The root mean square at the input of an effect of so many standard errors, over the rows of its sensors."""
-    names = [sensor.name for sensor in by.calibration.sensors]
+    names = [sensor.name for sensor in yardstick.calibration.sensors]
     places = [names.index(name) for name in sensors if name in names] or list(range(len(names)))
-    errors = by.residuals.sigma[:, places]
-    kind = by.calibration.sensors[places[0]].kind if sensors else _leading(by)
+    errors = yardstick.residuals.sigma[:, places]
+    kind = yardstick.calibration.sensors[places[0]].kind if sensors else _leading(yardstick)
     rms = strength * float(np.sqrt(np.mean(errors**2))) / sqrt(errors.size)
-    return _beside(by, sensors, kind, "bias", (rms, None)) if isfinite(rms) else None
+    return _beside(yardstick, sensors, kind, "bias", (rms, None)) if isfinite(rms) else None
 
 
-def _leading(by: Yardstick) -> str:
-    return leading_kind({sensor.kind for sensor in by.calibration.sensors})
+def _leading(yardstick: Yardstick) -> str:
+    return leading_kind({sensor.kind for sensor in yardstick.calibration.sensors})
 
 
 def _beside(
-    by: Yardstick, sensors: tuple[str, ...], kind: str, parameter: str, size: tuple[float, float | None]
+    yardstick: Yardstick, sensors: tuple[str, ...], kind: str, parameter: str, size: tuple[float, float | None]
 ) -> Size | None:
     """A size, with its standard uncertainty, beside the tolerance; None where there is none."""
-    tolerance = by.tolerances.get((kind, parameter))
+    tolerance = yardstick.tolerances.get((kind, parameter))
     return None if tolerance is None else Size(sensors, kind, parameter, *size, tolerance)

@@ -34,8 +34,8 @@ def covered(
     reference's is not known."""
     if reference.temperature is None:
         return None
-    own = [float(celsius) for celsius in reference.temperature]
+    of_reference = [float(celsius) for celsius in reference.temperature]
     within = [celsius for celsius, verdict in measured if celsius is not None and verdict in WITHIN]
     laws = [end for step in steps for end in (step.lowest, step.highest) if end is not None]
-    every = (*own, *within, *laws)
-    return CoveredTemperatures(min(every), max(every), sum(own) / len(own))
+    every = (*of_reference, *within, *laws)
+    return CoveredTemperatures(min(every), max(every), sum(of_reference) / len(of_reference))

@@ -31,17 +31,17 @@ class Covering(Queries):
 
     def up_to(self, session: StoredSession, programmes: tuple[str, ...], most: int) -> CoveringRows:
         """Up to a session that is judged against those of some programmes, with so many earlier ones at most."""
-        of, reference, earlier, laws = (
+        listed, reference, earlier, laws = (
             lists("reference", "earlier", "laws"),
             _reference(session, programmes),
             _earlier(session, most),
             _laws(session),
         )
         query = (
-            select(of.c.list, reference.c.document, earlier.c.temperature, earlier.c.verdict, laws.c.taken)
-            .outerjoin(reference, of.c.list == "reference")
-            .outerjoin(earlier, of.c.list == "earlier")
-            .outerjoin(laws, of.c.list == "laws")
+            select(listed.c.list, reference.c.document, earlier.c.temperature, earlier.c.verdict, laws.c.taken)
+            .outerjoin(reference, listed.c.list == "reference")
+            .outerjoin(earlier, listed.c.list == "earlier")
+            .outerjoin(laws, listed.c.list == "laws")
         )
         rows = self._session.execute(query).all()
         return CoveringRows(
@@ -63,14 +63,14 @@ def _earlier(session: StoredSession, most: int) -> Subquery:
     """The last ones of the same programme, not before the epoch of the session."""
     since, _ = epoch_bounds(UnitRow.id.expression, session.started_at)
     query = select(SessionRow.temperature, SessionRow.verdict).join(UnitRow, UnitRow.id == SessionRow.unit_id)
-    own = query.where(
+    earlier = query.where(
         UnitRow.serial == session.unit,
         SessionRow.programme == session.programme,
         SessionRow.started_at < session.started_at,
         or_(since.is_(None), SessionRow.started_at >= since),
         IS_ACCEPTED,
     )
-    return own.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most).subquery()
+    return earlier.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most).subquery()
 
 
 def _laws(session: StoredSession) -> Subquery:

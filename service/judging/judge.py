@@ -86,7 +86,7 @@ def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: U
 
 def as_decisions(judgements: Iterable[ParameterJudgement], basis: str) -> tuple[Decision, ...]:
     """Judgements by a rule of a version, with tolerances of a revision."""
-    return tuple(Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), rule=basis) for own in judgements)
+    return tuple(Decision(**(vars(j) | {"verdict": Verdict(j.verdict)}), rule=basis) for j in judgements)
 
 
 def moved_verdicts(before: Mapping[str, StoredSession], after: Sequence[StoredSession]) -> Iterator[MovedVerdict]:
@@ -111,7 +111,7 @@ def moved_parameters(
 
 def furthest(moved: Sequence[MovedParameter]) -> MovedParameter | None:
     """The one that moved most, in its own uncertainty; None where nothing did."""
-    found = max(moved, key=lambda one: abs(one.change) / one.u, default=None)
+    found = max(moved, key=lambda parameter: abs(parameter.change) / parameter.u, default=None)
     return found if found is not None and found.change else None
 
 

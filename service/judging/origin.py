@@ -85,11 +85,11 @@ def folded(serial: str) -> str:
     return "".join("-" if unicodedata.category(c) == "Pd" else c for c in plain if not c.isspace())
 
 
-def is_one_keystroke(one: str, other: str) -> bool:
+def is_one_keystroke(new: str, other: str) -> bool:
     """Whether one character was written for another, left out or added, or two beside one another exchanged; of serial
     numbers that are long enough to tell."""
-    a, b, _ = _difference(one, other)
-    if max(len(one), len(other)) < SHORTEST:
+    a, b, _ = _difference(new, other)
+    if max(len(new), len(other)) < SHORTEST:
         return False
     return sorted((len(a), len(b))) in ([0, 1], [1, 1]) or (len(a) == 2 and a == b[::-1])
 
@@ -103,18 +103,18 @@ def is_slip(new: str, known: str, fleet: Collection[str]) -> bool:
     return not DIGITS.issuperset(a + b) or _leaves_series(new, known, place, fleet)
 
 
-def _difference(one: str, other: str) -> tuple[str, str, int]:
+def _difference(new: str, other: str) -> tuple[str, str, int]:
     """What lies between the same beginning and the same end of both, and where."""
-    start = next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
-    rest = list(zip(one[start:][::-1], other[start:][::-1], strict=False))
+    start = next((i for i, (a, b) in enumerate(zip(new, other, strict=False)) if a != b), min(len(new), len(other)))
+    rest = list(zip(new[start:][::-1], other[start:][::-1], strict=False))
     end = next((i for i, (a, b) in enumerate(rest) if a != b), len(rest))
-    return one[start : len(one) - end], other[start : len(other) - end], start
+    return new[start : len(new) - end], other[start : len(other) - end], start
 
 
 def _tells_apart(new: str, place: int, fleet: Iterable[str]) -> bool:
     """Whether units of the fleet differ by a letter at a place."""
     frame = _frame(new, place)
-    letters = {one[place] for one in fleet if len(one) == len(new) and _frame(one, place) == frame}
+    letters = {s[place] for s in fleet if len(s) == len(new) and _frame(s, place) == frame}
     return len(letters - DIGITS) >= SEVERAL
 
 
@@ -126,10 +126,10 @@ def _frame(serial: str, place: int) -> str:
 def _leaves_series(new: str, known: str, place: int, fleet: Iterable[str]) -> bool:
     """Whether a number with a digit more or less is none that the series would have."""
     head, number, tail = _around(new, place)
-    own = known[len(head) : len(known) - len(tail)]
-    if not number or not own or int(number) == int(own):
+    known_number = known[len(head) : len(known) - len(tail)]
+    if not number or not known_number or int(number) == int(known_number):
         return True
-    heads = (one[len(head) : len(one) - len(tail)] for one in fleet if one.startswith(head) and one.endswith(tail))
+    heads = (s[len(head) : len(s) - len(tail)] for s in fleet if s.startswith(head) and s.endswith(tail))
     numbers = [int(run) for run in heads if run and DIGITS.issuperset(run)]
     span = max(max(numbers) - min(numbers), LEAST_SPAN)
     return not min(numbers) - span <= int(number) <= max(numbers) + span
@@ -177,7 +177,7 @@ def of_unit(
             stands_for=copy.id,
         )
         return
-    is_new = not any(one.id not in but for one in known.records.counted)
+    is_new = not any(counted.id not in but for counted in known.records.counted)
     if is_new and len(but) == 1:  # one that replaces another was looked at by somebody
         near = _near(known, new, sensors)
         if near is not None:
@@ -235,14 +235,14 @@ def _is_chance_small(sensors: Sequence[SensorCalibration], near: Values, rest: S
     squares = []
     for sensor in sensors:
         for parameter in ("scale", "bias"):
-            own, stored = getattr(sensor, parameter), near.get((sensor.name, parameter))
-            values = [v for one in rest if (v := one.get((sensor.name, parameter))) is not None and v.value is not None]
-            if own.value is None or stored is None or stored.value is None or len(values) < FEWEST:
+            estimate, stored = getattr(sensor, parameter), near.get((sensor.name, parameter))
+            values = [v for r in rest if (v := r.get((sensor.name, parameter))) is not None and v.value is not None]
+            if estimate.value is None or stored is None or stored.value is None or len(values) < FEWEST:
                 continue
             _, wide = spread(np.array([v.value for v in values]), np.array([v.u or 0.0 for v in values]))
-            sure = float(np.hypot(own.sigma or 0.0, stored.u or 0.0))
+            sure = float(np.hypot(estimate.sigma or 0.0, stored.u or 0.0))
             if wide > APART * sure:
-                squares.append((own.value - stored.value) ** 2 / (2 * wide**2))
+                squares.append((estimate.value - stored.value) ** 2 / (2 * wide**2))
     return bool(squares) and float(gammainc(len(squares) / 2, sum(squares) / 2)) < CHANCE
 
 
@@ -261,7 +261,7 @@ def of_date(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[Do
     if at < FIRST_CLOCK or MILLENNIUM <= at < MILLENNIUM + RUNNING:
         yield Doubt(say("It is dated {day}", day=day), LOST)
         return
-    first = next((one.at for one in known.records.counted if one.id not in but), None)
+    first = next((counted.at for counted in known.records.counted if counted.id not in but), None)
     if first is not None and first - at > LONGEST_LIFE:
         years = (first - at).days // 365
         yield Doubt(say("It is dated {day}, {years} years before the unit's first session", day=day, years=years), LOST)
@@ -272,11 +272,11 @@ def of_moment(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[
     session = new.session
     if session.started_at is None:
         return
-    own = (session.block, session.programme, new.measured_at)
-    for one in known.records.counted:
-        if (one.block, one.programme, one.at) != own or one.id in but:
+    occasion = (session.block, session.programme, new.measured_at)
+    for counted in known.records.counted:
+        if (counted.block, counted.programme, counted.at) != occasion or counted.id in but:
             continue
-        rival = Sessions(known.store).get(one.id)
+        rival = Sessions(known.store).get(counted.id)
         if not _are_apart(known, rival, new):
             yield Doubt(
                 say(

@@ -78,8 +78,8 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
 def _of_dead(session: CalibrationSession) -> Iterator[Doubt]:
     """Channels that read the same at every position of a stand."""
     for name in dead_channels(session):
-        what = say("{name} has the same reading in every row, although its input changes", name=name)
-        yield Doubt(what, "the sensor is dead, or its channel is not connected")
+        problem = say("{name} has the same reading in every row, although its input changes", name=name)
+        yield Doubt(problem, "the sensor is dead, or its channel is not connected")
 
 
 Found = list[tuple[Sensor, SensorCalibration]]
@@ -116,13 +116,13 @@ def _is_design(found: Found, kind: UnitType) -> bool:
     )
 
 
-def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy = Remedy.READINGS) -> Iterator[Doubt]:
+def _of_scale(found: Found, basis: str, known: dict[str, float], remedy: Remedy = Remedy.READINGS) -> Iterator[Doubt]:
     """Scale factors far from known ones; sensors that are off alike together. ``remedy`` is what corrects readings in
     another unit: with nominal values that agree with them, both."""
     ratios = {
-        sensor.name: abs(own.scale.value / known[sensor.name])
-        for sensor, own in found
-        if own.scale.value and known.get(sensor.name) and own.observable.get("scale")
+        sensor.name: abs(estimates.scale.value / known[sensor.name])
+        for sensor, estimates in found
+        if estimates.scale.value and known.get(sensor.name) and estimates.observable.get("scale")
     }
     off = {name: r for name, r in ratios.items() if not 1 / LEAST_RATIO < r < LEAST_RATIO}
     for alike in _alike(off):
@@ -138,7 +138,7 @@ def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy =
                 "{subject_and_verb} {ratio} times its {reference}",
                 subject_and_verb=who,
                 ratio=f"{ratio:.4g}",
-                reference=what,
+                reference=basis,
             ),
             slip,
             correction,
@@ -181,7 +181,7 @@ def _scales(sensors: Sequence[SensorCalibration]) -> dict[str, float]:
 def _of_axes(found: Found) -> Iterator[Doubt]:
     """Input axes that point elsewhere than the file says: along another sensor's, or backwards."""
     nominal = {sensor.name: np.asarray(sensor.nominal_axis) for sensor, _ in found}
-    measured = {own.name: _axis(own) for _, own in found if own.axis is not None and own.observable.get("axis")}
+    measured = {s.name: _axis(s) for _, s in found if s.axis is not None and s.observable.get("axis")}
     off = {name: axis for name, axis in measured.items() if axis @ nominal[name] < FAR}
     done: set[str] = set()
     for name, axis in off.items():
@@ -217,11 +217,11 @@ def _of_axes(found: Found) -> Iterator[Doubt]:
 EXCHANGED = "their channels are exchanged"
 
 
-def _axis(own: SensorCalibration) -> Array:
+def _axis(sensor: SensorCalibration) -> Array:
     """Along which the sensor reads more, as its positive nominal scale factor says."""
-    sign = -1.0 if (own.scale.value or 1.0) < 0 else 1.0
-    return sign * np.asarray(own.axis)
+    sign = -1.0 if (sensor.scale.value or 1.0) < 0 else 1.0
+    return sign * np.asarray(sensor.axis)
 
 
-def _exchanged(one: str, other: str, measured: dict[str, Array], nominal: dict[str, Array]) -> bool:
-    return bool(measured[one] @ nominal[other] > NEAR and measured[other] @ nominal[one] > NEAR)
+def _exchanged(sensor: str, other: str, measured: dict[str, Array], nominal: dict[str, Array]) -> bool:
+    return bool(measured[sensor] @ nominal[other] > NEAR and measured[other] @ nominal[sensor] > NEAR)

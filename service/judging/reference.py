@@ -66,21 +66,21 @@ class KnownUnit:
         if len(unread) > 1:
             self.read.update(Calibrations(self.store).in_force(unread))
 
-    def is_blind(self, one: Counted) -> bool:
+    def is_blind(self, session: Counted) -> bool:
         """Whether a session gives no uncertainty; a reference gave one when it was taken for it."""
-        return not one.is_reference and bool(too_few(self.calibration(one.id)))
+        return not session.is_reference and bool(too_few(self.calibration(session.id)))
 
     def reference(self, block: str, programme: str, at: datetime) -> str | None:
         """The session that one of a block, programme and time is judged against."""
         since, until = epoch(self.records.breaks, at)
         return next(
             (
-                one.id
-                for one in self.records.counted
-                if one.is_reference
-                and (one.block, one.programme in alike(programme)) == (block, True)
-                and (since is None or one.at >= since)
-                and (until is None or one.at < until)
+                counted.id
+                for counted in self.records.counted
+                if counted.is_reference
+                and (counted.block, counted.programme in alike(programme)) == (block, True)
+                and (since is None or counted.at >= since)
+                and (until is None or counted.at < until)
             ),
             None,
         )
@@ -95,7 +95,7 @@ def known_unit(
     """A unit as its rows are now, with calibrations that were stored just before, and with those of references that
     were read already, by session and revision."""
     records = Derivations(store).records(unit)
-    current = {(one.id, one.revision) for one in records.counted}
+    current = {(counted.id, counted.revision) for counted in records.counted}
     read = {id: found for (id, revision), found in references.items() if (id, revision) in current}
     return KnownUnit(store, unit, records, made or {}, read)
 
@@ -125,8 +125,8 @@ def covered_at(store: Store, session: StoredSession) -> CoveredTemperatures | No
         residuals = calibration_of(found.reference).residuals
     except UnreadableError:  # a damaged document costs the session's page this range, not the page
         return None
-    own = session.temperature, session.verdict
-    return covered(residuals, (*found.measured, own), found.steps)
+    judged = session.temperature, session.verdict
+    return covered(residuals, (*found.measured, judged), found.steps)
 
 
 def alike(programme: str) -> tuple[str, ...]:

@@ -99,8 +99,8 @@ def worth_of(covered: Covered) -> tuple[Size, ...] | None:
     if not laws or any(law is None for law in laws):
         return None
     step = (covered.reference, covered.now)
-    each = zip(known.keys, known.tracks, laws, strict=True)
-    return tuple(_size(key, track.tolerance, law, step) for key, track, law in each if law is not None)
+    rows = zip(known.keys, known.tracks, laws, strict=True)
+    return tuple(_size(key, track.tolerance, law, step) for key, track, law in rows if law is not None)
 
 
 def _law(track: Track) -> Warmth | None:
@@ -168,10 +168,10 @@ def verdicts_under_alternatives(
     others = tuple((f.cause, _once(f.sensors)) for f in findings[1:] if acts_within(f.cause))
     for name in _of_the_session(first)[:MOST_ALTERNATIVES]:
         if name == UNKNOWN_CAUSE or acts_within(name):
-            own = () if name == UNKNOWN_CAUSE else ((name, _sensors(name, first)),)
-            causes = (*own, *others)
+            chosen = () if name == UNKNOWN_CAUSE else ((name, _sensors(name, first)),)
+            causes = (*chosen, *others)
             verdict = basis.verdict_of(calibrate_extended(session, causes))
-            yield Otherwise(tuple(cause for cause, _ in causes), own[0][1] if own else (), verdict)
+            yield Otherwise(tuple(cause for cause, _ in causes), chosen[0][1] if chosen else (), verdict)
 
 
 def _of_the_session(first: Finding) -> tuple[str, ...]:
@@ -224,7 +224,7 @@ class Doubted:
     findings: tuple[Finding, ...]
     structures: tuple[Structure, ...]
     noise: tuple[NoiseScale, ...]
-    by: Yardstick
+    yardstick: Yardstick
     otherwise: tuple[Otherwise, ...]
     """Verdicts under the other models that are left standing."""
     known: Known = frozenset()
@@ -244,7 +244,7 @@ def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
         *_of_errors(session),
         *_of_readings(session),
     )
-    return tuple(sorted(found, key=lambda one: (list(Doubt).index(one.kind), -(one.share or 0.0))))
+    return tuple(sorted(found, key=lambda r: (list(Doubt).index(r.kind), -(r.share or 0.0))))
 
 
 def _of_findings(session: Doubted) -> Iterator[Reservation]:
@@ -252,7 +252,7 @@ def _of_findings(session: Doubted) -> Iterator[Reservation]:
     and what is in the model already is taken care of."""
     for finding in session.findings:
         of_record = is_of_record(finding.cause)
-        size = None if of_record or not acts_within(finding.cause) else size_of_cause(finding, session.by)
+        size = None if of_record or not acts_within(finding.cause) else size_of_cause(finding, session.yardstick)
         if of_record or (_is_large(size) and not _is_known(finding, session.known)):
             kind, text = Doubt.RECORD if of_record else Doubt.CAUSE, named(finding, _in_words(size))
             plain = Reservation(kind, text, advice_on(finding.cause), finding.sensors, finding.cause)
@@ -267,15 +267,15 @@ def reservations_at(temperatures: Covered | None) -> tuple[Reservation, ...]:
 def worth_at(temperatures: Covered | None, taken: Collection[tuple[str, str]] = ()) -> tuple[Size, ...] | None:
     """What a step out of the temperatures that a unit covers is worth in every parameter but those that it was taken
     off of; None where there is none, or where that is not known."""
-    each = None if temperatures is None or not temperatures.is_far else worth_of(temperatures)
-    return None if each is None else tuple(one for one in each if (one.sensors[0], one.parameter) not in taken)
+    sizes = None if temperatures is None or not temperatures.is_far else worth_of(temperatures)
+    return None if sizes is None else tuple(size for size in sizes if (size.sensors[0], size.parameter) not in taken)
 
 
-def _of_temperature(seen: Covered | None, each: tuple[Size, ...] | None) -> Iterator[Reservation]:
+def _of_temperature(seen: Covered | None, sizes: tuple[Size, ...] | None) -> Iterator[Reservation]:
     """Where the session lies outside what its unit covers, unless that is known to be worth little."""
-    if seen is None or not seen.is_far or each == ():
+    if seen is None or not seen.is_far or sizes == ():
         return
-    worth = None if each is None else max(each, key=_at_most)
+    worth = None if sizes is None else max(sizes, key=_at_most)
     if worth is not None and _at_most(worth) <= WORTH_SAYING:
         return
     known = "" if worth is None else worth_in(worth.parameter, worth.sensors[0], _in_words(worth))
@@ -300,7 +300,7 @@ def _is_known(finding: Finding, known: Known) -> bool:
 def _of_models(session: Doubted) -> Iterator[Reservation]:
     """Each other verdict once, the worst first."""
     named: set[Verdict] = {session.verdict} if session.verdict is not None else set(Verdict)
-    for other in sorted(session.otherwise, key=lambda one: -one.verdict.severity):
+    for other in sorted(session.otherwise, key=lambda alternative: -alternative.verdict.severity):
         if other.verdict not in named:
             named.add(other.verdict)
             text = otherwise(other.verdict, other.causes, other.sensors, named=other.named)
@@ -313,7 +313,7 @@ def _of_structures(session: Doubted) -> Iterator[Reservation]:
     if record:
         yield Reservation(Doubt.RECORD, unexplained(record, ""), CORRECT)
         return
-    sized = ((s, size_of_structure(s, session.by)) for s in session.structures)
+    sized = ((s, size_of_structure(s, session.yardstick)) for s in session.structures)
     large = [(s, size) for s, size in sized if size is not None and _is_large(size)]
     if large:
         first, size = max(large, key=lambda pair: pair[1].share)
@@ -325,7 +325,7 @@ def _of_errors(session: Doubted) -> Iterator[Reservation]:
     """Errors stated too large only make a verdict plainer, so they are named where one is in doubt."""
     in_doubt = session.verdict not in (None, Verdict.PASS, Verdict.FAIL)
     wrong = (scale for scale in session.noise if scale.factor > 1 or in_doubt)
-    kinds = {sensor.kind for sensor in session.by.calibration.sensors}
+    kinds = {sensor.kind for sensor in session.yardstick.calibration.sensors}
     for scale in wrong:
         [sentence] = wrong_errors((scale,), kinds)
         yield Reservation(Doubt.STATED_ERRORS, within(sentence), RESTATE, scale.sensors)
@@ -333,7 +333,7 @@ def _of_errors(session: Doubted) -> Iterator[Reservation]:
 
 def _of_readings(session: Doubted) -> Iterable[Reservation]:
     """Nothing is left over to look for causes in."""
-    exact = session.by.calibration.fit.is_exact and not session.findings
+    exact = session.yardstick.calibration.fit.is_exact and not session.findings
     return (Reservation(Doubt.NOT_CHECKED, TOO_FEW, ADD),) if exact else ()
 
 

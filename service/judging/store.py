@@ -78,10 +78,10 @@ ALL: CompoundSelect[*tuple[Any, ...]] = union_all(SESSIONS, BREAKS, CHOICES, LAW
 def unit_records(transaction: Session, unit: int) -> UnitRecords:
     """Read in one statement."""
     rows = transaction.execute(ALL, {"unit": unit}).all()
-    sessions, breaks, choices = ([row for row in rows if row.what == what] for what in ("session", "break", "choice"))
+    sessions, breaks, choices = ([row for row in rows if row.what == kind] for kind in ("session", "break", "choice"))
     accepted = (Counted(*row[1:9]) for row in sessions if row.state == RecordState.ACCEPTED)
     return UnitRecords(
-        counted=tuple(sorted(accepted, key=lambda one: (one.at, one.id))),
+        counted=tuple(sorted(accepted, key=lambda session: (session.at, session.id))),
         breaks=tuple(sorted({row.at for row in breaks})),
         choices=tuple(row.id for row in sorted(choices, key=lambda row: row.number)),
         references=frozenset(row.id for row in sessions if row.is_reference),
@@ -119,14 +119,14 @@ class Derivations(Queries):
     def put_references(self, unit: int, references: Iterable[str]) -> None:
         """Says which of a unit's sessions others are judged against."""
         wanted = SessionRow.id.in_(tuple(references))
-        own = (SessionRow.unit_id == unit, SessionRow.is_reference != wanted)
-        self._session.execute(update(SessionRow).where(*own).values(is_reference=wanted))
+        conditions = (SessionRow.unit_id == unit, SessionRow.is_reference != wanted)
+        self._session.execute(update(SessionRow).where(*conditions).values(is_reference=wanted))
         self._session.expire_all()
 
     def put_revisions(self, revisions: Mapping[str, int]) -> None:
         """Makes sessions speak for their calibrations of a revision; the ones before stay where they are."""
-        own = [{"session": id, "new_revision": revision, "new_basis": NOT_JUDGED} for id, revision in revisions.items()]
-        self._session.execute(_REVISED, own)
+        new = [{"session": id, "new_revision": revision, "new_basis": NOT_JUDGED} for id, revision in revisions.items()]
+        self._session.execute(_REVISED, new)
         self._session.expire_all()
 
     def wait(self, ids: Collection[str]) -> None:
@@ -145,34 +145,34 @@ class Derivations(Queries):
     def waiting_of(self, serial: str) -> int:
         """How many accepted sessions of a unit are to be judged or weighed."""
         query = select(func.count()).select_from(SessionRow).join(UnitRow, UnitRow.id == SessionRow.unit_id)
-        own = (UnitRow.serial == serial, is_waiting(SessionRow.basis), IS_ACCEPTED)
-        return self._session.scalar(query.where(*own)) or 0
+        conditions = (UnitRow.serial == serial, is_waiting(SessionRow.basis), IS_ACCEPTED)
+        return self._session.scalar(query.where(*conditions)) or 0
 
     def put_weighed(self, ids: Collection[str]) -> None:
         """Nothing more is to be done about the verdicts of sessions."""
-        own = SessionRow.id.in_(tuple(ids)), SessionRow.basis.startswith(UNWEIGHED)
+        conditions = SessionRow.id.in_(tuple(ids)), SessionRow.basis.startswith(UNWEIGHED)
         weighed = func.substr(SessionRow.basis, len(UNWEIGHED) + 1)
-        self._session.execute(update(SessionRow).where(*own).values(basis=weighed))
+        self._session.execute(update(SessionRow).where(*conditions).values(basis=weighed))
         self._session.expire_all()
 
     def put_judged(self, decided: Sequence[Decided]) -> None:
         """What was decided of sessions under their revisions, in place of what was; the calibrations stay."""
         if not decided:
             return
-        again = [one.session for one in decided if not one.is_first]
+        again = [d.session for d in decided if not d.is_first]
         for table in (DecisionRow, CommonMotionRow) if again else ():
-            own = select(SessionRow.revision).where(SessionRow.id == table.session_id).scalar_subquery()
-            self._session.execute(delete(table).where(table.session_id.in_(again), table.revision == own))
-        self._session.execute(_JUDGED, [_judged(one) for one in decided])
-        self._session.execute(_JUDGED_UNDER, [_judged_under(one) for one in decided])
-        self.insert_many(DecisionRow, [row for one in decided for row in _decision_rows(one)])
-        self.insert_many(CommonMotionRow, [row for one in decided for row in _motion_rows(one)])
+            in_force = select(SessionRow.revision).where(SessionRow.id == table.session_id).scalar_subquery()
+            self._session.execute(delete(table).where(table.session_id.in_(again), table.revision == in_force))
+        self._session.execute(_JUDGED, [_judged(d) for d in decided])
+        self._session.execute(_JUDGED_UNDER, [_judged_under(d) for d in decided])
+        self.insert_many(DecisionRow, [row for d in decided for row in _decision_rows(d)])
+        self.insert_many(CommonMotionRow, [row for d in decided for row in _motion_rows(d)])
         self._session.expire_all()
 
     def keep_evidence(self, id: str, evidence: FlagEvidence) -> None:
         """Keeps what the diagnosis of a session says for flags."""
-        own = update(DiagnosisRow).where(DiagnosisRow.session_id == id)
-        self._session.execute(own.values(tells=evidence_to_dict(evidence)))
+        query = update(DiagnosisRow).where(DiagnosisRow.session_id == id)
+        self._session.execute(query.values(tells=evidence_to_dict(evidence)))
         self._session.expire_all()
 
     def evidence(self, unit: int) -> tuple[SessionEvidence, ...]:
@@ -196,15 +196,15 @@ class Derivations(Queries):
 
     def settled_of_stand(self, stand: str, by_service: str) -> Moment | None:
         """The same of flags that sessions on a stand raised on it."""
-        own = self._settled(by_service, FlagRow.matter == Matter.STAND, FlagRow.place == stand)
-        return own.get((Matter.STAND, stand))
+        settled = self._settled(by_service, FlagRow.matter == Matter.STAND, FlagRow.place == stand)
+        return settled.get((Matter.STAND, stand))
 
-    def _settled(self, by_service: str, *own: ColumnElement[bool]) -> dict[Key, Moment]:
+    def _settled(self, by_service: str, *conditions: ColumnElement[bool]) -> dict[Key, Moment]:
         by_person = select(NoticeRow.flag_id).where(NoticeRow.kind == NoticeKind.RESOLVED, NoticeRow.who != by_service)
         query = select(FlagRow.matter, FlagRow.place, SessionRow.started_at, SessionRow.id).join(
             SessionRow, SessionRow.id == FlagRow.session_id
         )
-        query = query.where(*own, FlagRow.state == FlagState.RESOLVED, FlagRow.id.in_(by_person))
+        query = query.where(*conditions, FlagRow.state == FlagState.RESOLVED, FlagRow.id.in_(by_person))
         found: dict[Key, Moment] = {}
         for matter, place, at, id in self._session.execute(query):
             found[matter, place] = max(found.get((matter, place), (at, id)), (at, id))
@@ -224,8 +224,8 @@ class Derivations(Queries):
         concerned = select(SessionRow.id).where(
             SessionRow.unit_id == unit, or_(SessionRow.started_at >= since, SessionRow.id.in_(judged))
         )
-        own = (WorkRow.kind == WorkKind.DIAGNOSIS, WorkRow.key.in_(concerned))
-        self._session.execute(update(WorkRow).where(*own).values(ticket=uuid4().hex))
+        conditions = (WorkRow.kind == WorkKind.DIAGNOSIS, WorkRow.key.in_(concerned))
+        self._session.execute(update(WorkRow).where(*conditions).values(ticket=uuid4().hex))
 
     def forget_diagnosis(self, id: str) -> tuple[str, ...]:
         """The same of one session; none where it has none."""
@@ -235,9 +235,9 @@ class Derivations(Queries):
 
 def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Update:
     """An update of columns by parameters of their names."""
-    own = table.__table__
-    assert isinstance(own, Table)
-    return update(own).values({name: bindparam(f"new_{name}") for name in names})
+    core_table = table.__table__
+    assert isinstance(core_table, Table)
+    return update(core_table).values({name: bindparam(f"new_{name}") for name in names})
 
 
 MOST_OF_STAND = 500
@@ -267,30 +267,30 @@ _JUDGED_UNDER = _changed(CalibrationRow, *_SUMMARY).where(
 
 
 def _summary(judged: Judged) -> dict[str, Any]:
-    own = {"verdict": judged.verdict, "reason": judged.reason, **worst_columns(judged.worst)}
-    return {f"new_{name}": value for name, value in own.items()}
+    summary = {"verdict": judged.verdict, "reason": judged.reason, **worst_columns(judged.worst)}
+    return {f"new_{name}": value for name, value in summary.items()}
 
 
-def _judged(one: Decided) -> dict[str, Any]:
-    tells = None if one.evidence is None else evidence_to_dict(one.evidence)
-    return {"session": one.session, "new_basis": one.basis, "new_tells": tells, **_summary(one.judged)}
+def _judged(decided: Decided) -> dict[str, Any]:
+    tells = None if decided.evidence is None else evidence_to_dict(decided.evidence)
+    return {"session": decided.session, "new_basis": decided.basis, "new_tells": tells, **_summary(decided.judged)}
 
 
-def _judged_under(one: Decided) -> dict[str, Any]:
-    return {"session": one.session, "under": one.revision, **_summary(one.judged)}
+def _judged_under(decided: Decided) -> dict[str, Any]:
+    return {"session": decided.session, "under": decided.revision, **_summary(decided.judged)}
 
 
-def _decision_rows(one: Decided) -> Iterator[dict[str, Any]]:
-    own = {"session_id": one.session, "revision": one.revision}
-    for position, decision in enumerate(one.judged.decisions):
+def _decision_rows(decided: Decided) -> Iterator[dict[str, Any]]:
+    key = {"session_id": decided.session, "revision": decided.revision}
+    for position, decision in enumerate(decided.judged.decisions):
         taken = decision.temperature_correction
         kept = {"guard_band": decision.guard_band, "temperature_correction": None if taken is None else vars(taken)}
-        yield {**own, "position": position, **vars(decision), **kept}
+        yield {**key, "position": position, **vars(decision), **kept}
 
 
-def _motion_rows(one: Decided) -> Iterator[dict[str, Any]]:
-    for motion in one.judged.motions:
-        yield {"session_id": one.session, "revision": one.revision, **vars(motion)}
+def _motion_rows(decided: Decided) -> Iterator[dict[str, Any]]:
+    for motion in decided.judged.motions:
+        yield {"session_id": decided.session, "revision": decided.revision, **vars(motion)}
 
 
 def evidence_to_dict(evidence: FlagEvidence) -> dict[str, list[list[Any]]]:

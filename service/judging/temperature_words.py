@@ -40,11 +40,11 @@ def _learned(step: TemperatureCorrection) -> str:
 def laws_in_words(decisions: tuple[Decision, ...]) -> tuple[str, ...]:
     """One sentence on what temperature was taken off of in a session, what it was worth most in first; none where it
     was not."""
-    taken = [(one, step) for one in decisions if (step := one.temperature_correction) is not None]
+    taken = [(decision, step) for decision in decisions if (step := decision.temperature_correction) is not None]
     taken.sort(key=lambda pair: -abs(pair[1].worth) / pair[0].tolerance)
     if not taken:
         return ()
-    step = max((own for _, own in taken), key=lambda own: (own.units, own.sessions))
+    step = max((law for _, law in taken), key=lambda law: (law.units, law.sessions))
     sentence = say(
         "Measured at {temperature} and judged at {reference}, by the law of {learned}: {changes}.",
         temperature=in_degrees(step.temperature),

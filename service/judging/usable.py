@@ -50,7 +50,7 @@ Rule = Callable[[UseFacts, datetime], Iterator[Objection]]
 
 def usable(facts: UseFacts, now: datetime) -> Usable:
     """The answer for one unit."""
-    against = tuple(sorted(_found(AGAINST, facts, now), key=lambda one: one.is_pending))
+    against = tuple(sorted(_found(AGAINST, facts, now), key=lambda objection: objection.is_pending))
     reserved = _found(RESERVING, facts, now)
     use, unit = _use(against, reserved), facts.unit
     is_judged = not unit.is_reference and not _is_serviced_since(facts)
@@ -58,9 +58,9 @@ def usable(facts: UseFacts, now: datetime) -> Usable:
         usable=not against,
         use=use,
         why=against[0].text if against else _yes(facts),
-        action=next((one.action for one in (against or reserved) if one.action), ""),
-        reasons=tuple(one.text for one in against),
-        reservations=tuple(one.text for one in reserved),
+        action=next((objection.action for objection in (against or reserved) if objection.action), ""),
+        reasons=tuple(objection.text for objection in against),
+        reservations=tuple(objection.text for objection in reserved),
         until=None if unit.retired_at is not None else unit.due,
         verdict=unit.verdict if is_judged else None,
         session=unit.last_session if is_judged else None,
@@ -71,12 +71,12 @@ def usable(facts: UseFacts, now: datetime) -> Usable:
 
 
 def _found(rules: tuple[Rule, ...], facts: UseFacts, now: datetime) -> tuple[Objection, ...]:
-    return tuple(one for rule in rules for one in rule(facts, now))
+    return tuple(objection for rule in rules for objection in rule(facts, now))
 
 
 def _use(against: tuple[Objection, ...], reserved: tuple[Objection, ...]) -> Use:
     if against:
-        return Use.PENDING if all(one.is_pending for one in against) else Use.NO
+        return Use.PENDING if all(objection.is_pending for objection in against) else Use.NO
     return Use.RESERVED if reserved else Use.YES
 
 
@@ -127,8 +127,8 @@ def _uncertain(facts: UseFacts, _: datetime) -> Iterator[Objection]:
     found, at = facts.uncertain, facts.unit.last_at
     if found and at is not None and _is_measured(facts):
         more = say(" and {most_named} more", most_named=len(found) - MOST_NAMED) if len(found) > MOST_NAMED else ""
-        what = joined(", ", found[:MOST_NAMED]) + more
-        yield Objection(words.on(words.TOO_COARSE, at, what=what), words.MORE_POSITIONS)
+        parameters = joined(", ", found[:MOST_NAMED]) + more
+        yield Objection(words.on(words.TOO_COARSE, at, what=parameters), words.MORE_POSITIONS)
 
 
 def _dated_later(facts: UseFacts, now: datetime) -> Iterator[Objection]:
@@ -146,18 +146,18 @@ def _said_with(facts: UseFacts, *, forbidding: bool) -> Iterator[Objection]:
     """The verdict's reservations, each with the action that the verdict itself ends with."""
     every = facts.unit.reservations or ()
     action = joined(" and ", advice_of(every[:MOST_TOLD]))
-    for one in every:
-        if forbids(one) is forbidding:
-            yield Objection(words.reserved(one), action)
+    for reservation in every:
+        if forbids(reservation) is forbidding:
+            yield Objection(words.reserved(reservation), action)
 
 
-def forbids(one: Reservation) -> bool:
+def forbids(reservation: Reservation) -> bool:
     """Whether the verdict cannot be relied on at all: the file is wrong, the unit is unfit under a model that the
     readings leave standing, or what the verdict leaves out is as large as the tolerance."""
-    if one.kind is Doubt.OTHER_MODEL:
-        return one.verdict in UNFIT
-    is_large = one.share is not None and one.share >= WHOLE_TOLERANCE
-    return one.kind is Doubt.RECORD or (is_large and one.kind in (Doubt.CAUSE, Doubt.UNEXPLAINED))
+    if reservation.kind is Doubt.OTHER_MODEL:
+        return reservation.verdict in UNFIT
+    is_large = reservation.share is not None and reservation.share >= WHOLE_TOLERANCE
+    return reservation.kind is Doubt.RECORD or (is_large and reservation.kind in (Doubt.CAUSE, Doubt.UNEXPLAINED))
 
 
 def _flagged(facts: UseFacts, _: datetime) -> Iterator[Objection]:
@@ -215,9 +215,9 @@ def _questioned(facts: UseFacts, _: datetime) -> Iterator[Objection]:
 
 
 def _untraceable(facts: UseFacts, _: datetime) -> Iterator[Objection]:
-    own, at = facts.expired, facts.unit.last_at
-    if own is not None and at is not None and _is_measured(facts):
-        text = words.on(words.EXPIRED, at, number=own.number, stand=own.stand, until=day_of(own.valid_until))
+    lapsed, at = facts.expired, facts.unit.last_at
+    if lapsed is not None and at is not None and _is_measured(facts):
+        text = words.on(words.EXPIRED, at, number=lapsed.number, stand=lapsed.stand, until=day_of(lapsed.valid_until))
         yield Objection(text, words.CERTIFY)
 
 

@@ -21,7 +21,7 @@ def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict
     found: dict[str, Usable] = {}
     for start in range(0, max(len(units), 1), AT_A_TIME):
         facts = UseStore(store).facts(units[start : start + AT_A_TIME], now)
-        found |= {one.unit.serial: usable(one, now) for one in facts}
+        found |= {unit_facts.unit.serial: usable(unit_facts, now) for unit_facts in facts}
     return found
 
 

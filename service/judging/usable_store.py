@@ -62,7 +62,7 @@ def _facts(now: datetime) -> Select[*tuple[Any, ...]]:
     """A row for each open flag of a unit, or one; the calibration of a session only where it is a reference, which may
     stand alone."""
     in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
-    own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
+    calibrated = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
     diagnosis = (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id)
     flags = (FlagRow.unit_id == UnitRow.id) & (FlagRow.scope == Scope.UNIT) & (FlagRow.state != RESOLVED)
     serviced = _serviced(now)
@@ -81,36 +81,36 @@ def _facts(now: datetime) -> Select[*tuple[Any, ...]]:
         .outerjoin(FlagRow, flags)
         .outerjoin(WorkRow, diagnosis)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
-        .outerjoin(CalibrationRow, own & SessionRow.is_reference)
+        .outerjoin(CalibrationRow, calibrated & SessionRow.is_reference)
     )  # fmt: skip
 
 
 def _serviced(now: datetime) -> ScalarSelect[datetime]:
     """When a unit was last serviced, up to now."""
-    own = (ServiceRow.unit_id == UnitRow.id, IS_BREAK, ServiceRow.at <= now)
-    return select(func.max(ServiceRow.at)).where(*own).correlate(UnitRow).scalar_subquery()
+    conditions = (ServiceRow.unit_id == UnitRow.id, IS_BREAK, ServiceRow.at <= now)
+    return select(func.max(ServiceRow.at)).where(*conditions).correlate(UnitRow).scalar_subquery()
 
 
 def _correction(serviced: ScalarSelect[datetime]) -> ScalarSelect[str]:
     """The latest calibration of every sensor since then."""
-    own = (Other.unit_id == UnitRow.id, Other.state == RecordState.ACCEPTED, Other.programme.in_(CALIBRATIONS))
-    query = select(Other.id).where(*own, or_(serviced.is_(None), Other.started_at >= serviced))
+    conditions = (Other.unit_id == UnitRow.id, Other.state == RecordState.ACCEPTED, Other.programme.in_(CALIBRATIONS))
+    query = select(Other.id).where(*conditions, or_(serviced.is_(None), Other.started_at >= serviced))
     return query.order_by(Other.started_at.desc(), Other.id.desc()).limit(1).correlate(UnitRow).scalar_subquery()
 
 
 def _questioned() -> ScalarSelect[datetime]:
     """When the latest session after the one that counts was measured that waits for an engineer."""
     later = or_(SessionRow.started_at.is_(None), Other.started_at > SessionRow.started_at)
-    own = (Other.unit_id == UnitRow.id, Other.state == RecordState.QUESTIONED, later)
-    return select(func.max(Other.started_at)).where(*own).correlate(UnitRow, SessionRow).scalar_subquery()
+    conditions = (Other.unit_id == UnitRow.id, Other.state == RecordState.QUESTIONED, later)
+    return select(func.max(Other.started_at)).where(*conditions).correlate(UnitRow, SessionRow).scalar_subquery()
 
 
 def _certificate() -> ScalarSelect[int]:
     """The latest certificate of the stand that was issued by the day of measurement."""
     row = StandCertificateRow
     renewed = exists().where(Renewed.stand_id == row.stand_id, Renewed.number == row.number, Renewed.id > row.id)
-    own = (row.stand_id == SessionRow.stand_id, row.issued_on <= SessionRow.started_at, ~renewed)
-    query = select(row.id).where(*own).order_by(row.issued_on.desc(), row.id.desc()).limit(1)
+    conditions = (row.stand_id == SessionRow.stand_id, row.issued_on <= SessionRow.started_at, ~renewed)
+    query = select(row.id).where(*conditions).order_by(row.issued_on.desc(), row.id.desc()).limit(1)
     return query.correlate(SessionRow).scalar_subquery()
 
 

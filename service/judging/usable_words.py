@@ -54,9 +54,9 @@ def flagged(flag: OpenFlag) -> str:
     return say(FLAGGED, id=flag.id, summary=flag.summary)
 
 
-def reserved(one: Reservation) -> str:
+def reserved(reservation: Reservation) -> str:
     """A verdict's reservations as one sentence."""
-    return say("{problem}: {advice}.", problem=capitalised(one.text), advice=one.advice)
+    return say("{problem}: {advice}.", problem=capitalised(reservation.text), advice=reservation.advice)
 
 
 def on(sentence: str, at: datetime, **more: str) -> str:

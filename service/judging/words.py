@@ -55,8 +55,8 @@ def advice_on(cause: str) -> str:
 
 def named(finding: Finding, size: str) -> str:
     """``the bias of A2 has one step (51 ± 4 µg, tolerance 50 µg)``; of a choice its names."""
-    what = choice_of(finding) if finding.alternatives else finding.sentence
-    return say("{limit}{size}", limit=within(what), size=say(" ({size})", size=size) if size else "")
+    cause_text = choice_of(finding) if finding.alternatives else finding.sentence
+    return say("{limit}{size}", limit=within(cause_text), size=say(" ({size})", size=size) if size else "")
 
 
 def unexplained(structures: Sequence[Structure], size: str) -> str:
@@ -141,7 +141,7 @@ def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
 def _by_law(worst: Decision, decisions: tuple[Decision, ...]) -> str:
     """What temperature was worth, of the worst parameter, or of the one that it was worth most in; empty where nothing
     was taken off."""
-    taken = [(one, step) for one in decisions if (step := one.temperature_correction) is not None]
+    taken = [(decision, step) for decision in decisions if (step := decision.temperature_correction) is not None]
     most = max(taken, key=lambda pair: (pair[0] is worst, abs(pair[1].worth) / pair[0].tolerance), default=None)
     return "" if most is None else law_in_words(*most)
 

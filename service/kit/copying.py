@@ -16,8 +16,8 @@ def copied(kind: type[T], row: object, /, **others: Any) -> T:
     that the field holds.
     """
     plain: type = kind
-    own = {name: made(getattr(row, name)) for name, made in _fields(plain).items() if name not in others}
-    return kind(**own, **others)
+    values = {name: made(getattr(row, name)) for name, made in _fields(plain).items() if name not in others}
+    return kind(**values, **others)
 
 
 @cache

@@ -36,7 +36,7 @@ class Catalogue:
 
     def __init__(self, language: Language, stored: Catalog) -> None:
         self._stored = stored
-        self._known = {texts[0]: forms_of(one) for one in stored if (texts := _texts(one.id)) and forms_of(one)}
+        self._known = {texts[0]: forms_of(m) for m in stored if (texts := _texts(m.id)) and forms_of(m)}
         self._locale = LOCALE[language]
         self.plural = c2py(stored.plural_expr)
 
@@ -78,7 +78,7 @@ def said_in(record: T, language: Language) -> T:
 
     def said(name: str, value: Any) -> Any:
         if isinstance(value, tuple):
-            return tuple(said(name, one) for one in value)
+            return tuple(said(name, item) for item in value)
         if is_dataclass(value):
             return said_in(value, language)
         return say(value) if isinstance(value, str) and name in SENTENCES else value
@@ -95,7 +95,7 @@ def forms_of(stored: Stored) -> tuple[str, ...]:
 def _texts(text: object) -> tuple[str, ...]:
     """Of one message, or of its forms; empty for the header of the file."""
     texts = text if isinstance(text, tuple | list) else (text,)
-    return tuple(str(one) for one in texts) if texts != ("",) else ()
+    return tuple(str(form) for form in texts) if texts != ("",) else ()
 
 
 def path_of(language: Language) -> Path:

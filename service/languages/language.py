@@ -27,7 +27,7 @@ class Language(Enum):
 
 def named(tag: str) -> Language | None:
     """The language of a tag, ``ru`` or ``ru-RU``."""
-    return next((one for one in Language if one.value == tag.strip().lower().split("-")[0]), None)
+    return next((language for language in Language if language.value == tag.strip().lower().split("-")[0]), None)
 
 
 def chosen_by_query(query: str) -> Language | None:
@@ -73,7 +73,7 @@ def preferred(header: str) -> Language:
 
 def _by_weight(header: str) -> Iterator[str]:
     weighted = [(tag.strip(), _weight(rest)) for tag, _, rest in (part.partition(";") for part in header.split(","))]
-    yield from (tag for tag, weight in sorted(weighted, key=lambda one: -one[1]) if tag and weight > 0)
+    yield from (tag for tag, weight in sorted(weighted, key=lambda pair: -pair[1]) if tag and weight > 0)
 
 
 def _weight(parameter: str) -> float:

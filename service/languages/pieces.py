@@ -60,14 +60,14 @@ class Piece:
 
     def message(self, file: str) -> MessageEntry:
         """As a catalogue has it: spaces and line ends are one space."""
-        one, many = " ".join(self.one.split()), " ".join(self.many.split())
+        singular, plural = " ".join(self.one.split()), " ".join(self.many.split())
         if not self.counted:
-            return MessageEntry(one, place=file)
+            return MessageEntry(singular, place=file)
         number = next((n for n, s in self.sources.items() if s.strip("{} ") == self.counted), "")
         if number:
-            one, many = (text.replace(f"{{{number}}}", f"{{{COUNT}}}") for text in (one, many))
+            singular, plural = (text.replace(f"{{{number}}}", f"{{{COUNT}}}") for text in (singular, plural))
             self.sources[COUNT] = self.sources.pop(number)
-        return MessageEntry(one, many, file)
+        return MessageEntry(singular, plural, file)
 
 
 def name_of(expression: str) -> str:

@@ -104,7 +104,7 @@ def _templates(call: ast.Call) -> list[str]:
     """The literal templates of a call."""
     name = _name(call.func)
     arguments = call.args[-1:] if name in HELPERS else call.args[: TEMPLATES.get(name, 0)]
-    return [one.value for one in arguments if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+    return [a.value for a in arguments if isinstance(a, ast.Constant) and isinstance(a.value, str)]
 
 
 def _of_call(call: ast.Call) -> MessageEntry:

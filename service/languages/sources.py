@@ -87,7 +87,7 @@ IGNORED = (
 
 def messages() -> Iterator[MessageEntry]:
     """Every message of the product, in the order of its files; some occur in several."""
-    return (one for one in _all() if LETTERS.search(PLACE.sub(" ", one.text)) and one.text not in NAMES)
+    return (message for message in _all() if LETTERS.search(PLACE.sub(" ", message.text)) and message.text not in NAMES)
 
 
 def _all() -> Iterator[MessageEntry]:

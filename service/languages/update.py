@@ -42,7 +42,7 @@ def written(catalogue: Catalog, head: str) -> str:
 
 def untranslated(catalogue: Catalog) -> list[str]:
     """English texts without a translation."""
-    return [str(one.id) for one in catalogue if one.id and not forms_of(one)]
+    return [str(message.id) for message in catalogue if message.id and not forms_of(message)]
 
 
 def update() -> list[str]:

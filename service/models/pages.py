@@ -98,7 +98,7 @@ def model_page(
         progress=progress_of(recomputations),
         verdicts=tuple(_moved(recomputations)),
         units=tuple(map(_unit, recomputations)),
-        follow=SOONEST if any(one.state is Progress.WAITING for one in recomputations) else None,
+        follow=SOONEST if any(recomputation.state is Progress.WAITING for recomputation in recomputations) else None,
     )
 
 

@@ -219,7 +219,7 @@ class Recomputations(Queries):
         """Stores the result of a unit, once; whether that was now."""
         document = {
             **asdict(outcome),
-            "verdicts": [asdict(one) | {"started_at": one.started_at.isoformat()} for one in outcome.verdicts],
+            "verdicts": [asdict(v) | {"started_at": v.started_at.isoformat()} for v in outcome.verdicts],
         }
         statement = update(RecomputationRow).where(*_of(task), RecomputationRow.state == Progress.WAITING)
         stored = statement.values(state=Progress.DONE, done_at=now, outcome=document).returning(
@@ -279,7 +279,7 @@ def _read(document: Json) -> Recomputed:
         sessions=document["sessions"],
         recomputed=document["recomputed"],
         left=document["left"],
-        verdicts=tuple(_moved(one) for one in document["verdicts"]),
+        verdicts=tuple(_moved(verdict) for verdict in document["verdicts"]),
         furthest=None if furthest is None else MovedParameter(**furthest),
     )
 

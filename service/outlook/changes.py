@@ -83,7 +83,7 @@ def worked_out(sources: Sources) -> UnitOutlook:
 @lru_cache(maxsize=AT_HAND)
 def learned(rows: tuple[bytes, ...]) -> Prior:
     """What the histories of a type's units let expect of a parameter. It is the same for most units of a large type."""
-    return learn([one for row in rows for one in unpacked(row)])
+    return learn([item for row in rows for item in unpacked(row)])
 
 
 def of_type(store: Store, unit: int) -> TypeHistories:

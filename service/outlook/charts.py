@@ -11,6 +11,7 @@ from service.kit.libraries import alt
 from service.kit.measures import Measure, day_of, deviation_measure, in_measure, limit, measured, signed
 from service.outlook.records import ParameterTrend
 from service.outlook.rules.histories import MeasuredChange, changes_of
+from service.outlook.rules.thinned import kept
 from service.sessions.charts import (
     DATA_FORM,
     HIGH,
@@ -44,6 +45,8 @@ class TrackPoint:
     """Counts the service events before the session: a line never runs across one."""
     text: str
     condition: Condition
+    is_drawn: bool = True
+    """Whether a chart shows it; others that are close may stand for it."""
 
     @property
     def limits(self) -> tuple[float, float] | None:
@@ -80,7 +83,8 @@ class ParameterCourse:
 
 
 def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> tuple[tuple[ParameterCourse, ...], ...]:
-    """The tracks of a unit, grouped by parameter and kind of sensor, sensors in the order they come."""
+    """The tracks of a unit as charts show them, grouped by parameter and kind of sensor, sensors in the order they
+    come."""
     groups: dict[tuple[int, str], dict[str, list[HistoryPoint]]] = {}
     for point in sorted(history, key=lambda p: p.at):
         group = groups.setdefault((ALL_PARAMETERS.index(point.parameter), point.kind), {})
@@ -93,11 +97,10 @@ def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]
     first = next(iter(changes.values()))[0].point
     largest = max(change.largest for course in changes.values() for change in course)
     unit = deviation_measure(first.kind, first.parameter, largest)
+    name = f"{first.parameter}-{first.kind}"
     return tuple(
-        ParameterCourse(
-            f"{first.parameter}-{first.kind}", name, first.parameter, unit, tuple(_track_point(c, unit) for c in course)
-        )
-        for name, course in changes.items()
+        ParameterCourse(name, sensor, first.parameter, unit, tuple(_track_point(*one, unit) for one in kept(course)))
+        for sensor, course in changes.items()
     )
 
 
@@ -107,7 +110,7 @@ def _natural(name: str) -> tuple[str, int, str]:
     return name.rstrip("0123456789"), int(digits or 0), name
 
 
-def _track_point(change: MeasuredChange, unit: Measure) -> TrackPoint:
+def _track_point(change: MeasuredChange, is_drawn: bool, unit: Measure) -> TrackPoint:
     point, allowed = change.point, in_measure(change.tolerance, unit)
     floor = None if allowed is None else -allowed
     return TrackPoint(
@@ -120,10 +123,14 @@ def _track_point(change: MeasuredChange, unit: Measure) -> TrackPoint:
         limit_upper=allowed,
         epoch=change.epoch,
         text=_text(change, unit),
-        condition=NOT_JUDGED
-        if point.tolerance is None
-        else condition_of(point.verdict, is_reference=point.is_reference),
+        condition=judged_as(point),
+        is_drawn=is_drawn,
     )
+
+
+def judged_as(point: HistoryPoint) -> Condition:
+    """What a point is marked as."""
+    return NOT_JUDGED if point.tolerance is None else condition_of(point.verdict, is_reference=point.is_reference)
 
 
 def _text(change: MeasuredChange, unit: Measure) -> str:
@@ -171,15 +178,15 @@ def forecast_data(
     trend = trend_of(track, trends)
     if trend is None or not trend.fan or trend.since is None:
         return {name: [] for name in NAMES}
-    one, last = track.unit.factor, trend.fan[0].at
+    factor, last = track.unit.factor, trend.fan[0].at
     start = trend.level - trend.rate_per_year * (last - trend.since).total_seconds() / YEAR_SECONDS
     return {
         "fan": [
-            {"t": iso(p.at), "lo9": short(p.low_90 * one), "lo5": short(p.low_50 * one), "y": short(p.middle * one),
-             "hi5": short(p.high_50 * one), "hi9": short(p.high_90 * one)}
+            {"t": iso(p.at), "lo9": short(p.low_90 * factor), "lo5": short(p.low_50 * factor),
+             "y": short(p.middle * factor), "hi5": short(p.high_50 * factor), "hi9": short(p.high_90 * factor)}
             for p in trend.fan
         ],
-        "trend": [{"t": iso(at), "y": short(y * one)} for at, y in ((trend.since, start), (last, trend.level))],
+        "trend": [{"t": iso(at), "y": short(y * factor)} for at, y in ((trend.since, start), (last, trend.level))],
     }  # fmt: skip
 
 
@@ -320,7 +327,7 @@ def _panel(
         description=track.points[-1].text,
         condition=track.points[-1].condition if track.points[-1].limits else None,
         datasets={
-            DATA_FORM: [_point(p) for p in track.points if p.shown is not None],
+            DATA_FORM: [_point(p) for p in track.points if p.shown is not None and p.is_drawn],
             "limits": _limits(track, span),
             **forecast_data(track, trends, _iso, _short),
             "services": [{"t": _iso(s.at), "what": s.kind, "note": s.note} for s in services],
@@ -352,7 +359,7 @@ def _limits(track: ParameterCourse, span: list[str]) -> list[Json]:
 
 
 def _iso(at: datetime) -> str:
-    return at.strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+    return f"{at.replace(tzinfo=None).isoformat(timespec='microseconds')}Z"
 
 
 def _short(value: float | None) -> float | None:

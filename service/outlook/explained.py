@@ -50,27 +50,25 @@ def left_of(
 ) -> dict[Place, Left]:
     """What is left of a unit's changes, where a diagnosis explains a part of them."""
     rows: tuple[ChangeRow | ReferenceRow, ...] = (*references, *changes)
-    sessions = {one.session: (one.block, comparable(one.programme)) for one in rows}
-    found = {id: one for id, one in Diagnoses(store).with_findings(sessions).items() if explains(one)}
+    sessions = {row.session: (row.block, comparable(row.programme)) for row in rows}
+    found = {id: diagnosed for id, diagnosed in Diagnoses(store).with_findings(sessions).items() if explains(diagnosed)}
     if not found:
         return {}
-    first = {(one.block, comparable(one.programme)): one.session for one in reversed(references)}
+    first = {(r.block, comparable(r.programme)): r.session for r in reversed(references)}
     against = {id: first[sessions[id]] for id in found if sessions[id] in first}
     known = Calibrations(store).in_force({*against, *against.values()})
     tolerances = tolerances_of(UnitTypes(store).of_unit(serial))
-    each = (_ExplainedSession(id, found[id], known[id], known[reference]) for id, reference in against.items())
-    return {place: left for one in each for place, left in _left(one, tolerances).items()}
+    explained = (_ExplainedSession(id, found[id], known[id], known[reference]) for id, reference in against.items())
+    return {place: left for session in explained for place, left in _left(session, tolerances).items()}
 
 
 @outside_writing
-def _left(one: _ExplainedSession, tolerances: Mapping[tuple[str, str], float]) -> dict[Place, Left]:
-    whole = {(judged.sensor, judged.parameter): judged for judged in judge(one.calibration, one.reference, tolerances)}
-    rest = {
-        (judged.sensor, judged.parameter): judged for judged in judge(one.found.calibration, one.reference, tolerances)
-    }
-    doubt, apart = _doubt(one.found.findings), _with_causes_of_their_own(one.found.findings)
+def _left(session: _ExplainedSession, tolerances: Mapping[tuple[str, str], float]) -> dict[Place, Left]:
+    whole = {(j.sensor, j.parameter): j for j in judge(session.calibration, session.reference, tolerances)}
+    rest = {(j.sensor, j.parameter): j for j in judge(session.found.calibration, session.reference, tolerances)}
+    doubt, apart = _doubt(session.found.findings), _with_causes_of_their_own(session.found.findings)
     pairs = {key: (whole[key], rest[key]) for key in whole.keys() & rest.keys() if key[0] not in apart}
-    found = {(one.session, *key): _beside(*pair, doubt) for key, pair in pairs.items()}
+    found = {(session.session, *key): _beside(*pair, doubt) for key, pair in pairs.items()}
     return {place: left for place, left in found.items() if left is not None}
 
 
@@ -80,7 +78,7 @@ def _beside(whole: ParameterJudgement, rest: ParameterJudgement, doubt: float) -
         return None
     part = np.subtract(whole.change, rest.change)
     sigma = np.sqrt(np.square(rest.change_own) + doubt * part**2)
-    return Left(change=list(rest.change), own=sigma.tolist(), dof=rest.dof, part=part.tolist())
+    return Left(change=list(rest.change), sigma=sigma.tolist(), dof=rest.dof, part=part.tolist())
 
 
 def explains(found: Diagnosed) -> bool:
@@ -94,8 +92,8 @@ def _is_shared(finding: Finding) -> bool:
     possible = (finding.cause, *finding.alternatives)
     if UNKNOWN_CAUSE in possible:
         return False
-    each = (name in OF_TEMPERATURE or cause(name).scope in SHARED_SCOPES for name in possible)
-    return finding.shared is not None or all(each)
+    are_shared = (name in OF_TEMPERATURE or cause(name).scope in SHARED_SCOPES for name in possible)
+    return finding.shared is not None or all(are_shared)
 
 
 def _with_causes_of_their_own(findings: Iterable[Finding]) -> set[str]:

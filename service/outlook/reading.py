@@ -43,7 +43,7 @@ def nothing_known(serial: str) -> UnitOutlook:
 
 def compared(outlook: UnitOutlook, populations: Iterable[Population], now: datetime) -> UnitOutlook:
     """Set against the clock, and every rate against those of the same parameter in other units of the type."""
-    known = {(one.kind, one.parameter): one for one in populations if one.rates}
+    known = {(population.kind, population.parameter): population for population in populations if population.rates}
     trends = tuple(_placed(trend, known.get((trend.kind, trend.parameter))) for trend in outlook.trends)
     return replace(outlook, overdue=outlook.due is not None and outlook.due < now, trends=trends)
 

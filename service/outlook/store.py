@@ -319,7 +319,7 @@ class Populations(Queries):
     def put(self, unit_type: int, found: Sequence[Population], at: datetime) -> None:
         """Rewrites what is known of a type."""
         self._session.execute(delete(PopulationRow).where(PopulationRow.unit_type_id == unit_type))
-        self._session.add_all(_row(unit_type, one, at) for one in found)
+        self._session.add_all(_row(unit_type, population, at) for population in found)
         self._session.flush()
 
     def of_type(self, name: str) -> tuple[Population, ...]:
@@ -361,22 +361,22 @@ def _populations() -> Select[PopulationRow, str]:
     return select(PopulationRow, UnitTypeRow.name).join(UnitTypeRow, UnitTypeRow.id == PopulationRow.unit_type_id)
 
 
-def _row(unit_type: int, one: Population, at: datetime) -> PopulationRow:
+def _row(unit_type: int, population: Population, at: datetime) -> PopulationRow:
     return PopulationRow(
         unit_type_id=unit_type,
-        kind=one.kind,
-        parameter=one.parameter,
-        centre=one.centre,
-        spread=one.spread,
-        rates=one.rates,
-        lots=one.lots,
-        furthest=max((abs(placed.z) for placed in one.fast), default=0.0),
-        furthest_lot=max((abs(z) for _, z in one.far_lots), default=0.0),
-        most_evident=max((abs(placed.z) for placed in one.evident), default=0.0),
+        kind=population.kind,
+        parameter=population.parameter,
+        centre=population.centre,
+        spread=population.spread,
+        rates=population.rates,
+        lots=population.lots,
+        furthest=max((abs(placed.z) for placed in population.fast), default=0.0),
+        furthest_lot=max((abs(z) for _, z in population.far_lots), default=0.0),
+        most_evident=max((abs(placed.z) for placed in population.evident), default=0.0),
         far={
-            "fast": [asdict(placed) for placed in one.fast],
-            "evident": [asdict(placed) for placed in one.evident],
-            "lots": [list(lot) for lot in one.far_lots],
+            "fast": [asdict(placed) for placed in population.fast],
+            "evident": [asdict(placed) for placed in population.evident],
+            "lots": [list(lot) for lot in population.far_lots],
         },
         made_at=at,
     )

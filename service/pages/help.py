@@ -84,7 +84,7 @@ def _plain(value: Any) -> str:
     if value is None or value == "" or value == ():
         return NONE
     if isinstance(value, tuple):
-        return joined(", ", ("=".join(one) if isinstance(one, tuple) else str(one) for one in value))
+        return joined(", ", ("=".join(item) if isinstance(item, tuple) else str(item) for item in value))
     if isinstance(value, Mapping | Path):
         return str(value)
     return (
@@ -230,7 +230,7 @@ def _kind(schema: Mapping[str, Any]) -> str:
         return str(schema["$ref"]).removeprefix(SCHEMAS)
     for combined in ("anyOf", "oneOf", "allOf"):
         if combined in schema:
-            return " or ".join(dict.fromkeys(_kind(one) for one in schema[combined]))
+            return " or ".join(dict.fromkeys(_kind(option) for option in schema[combined]))
     if "enum" in schema:
         return " | ".join(map(str, schema["enum"]))
     if "const" in schema:
@@ -245,7 +245,7 @@ def _schema_of(schema: Mapping[str, Any]) -> str:
     if "$ref" in schema:
         return str(schema["$ref"]).removeprefix(SCHEMAS)
     inner = [*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ()), schema.get("items", {})]
-    return next(filter(None, (_schema_of(one) for one in inner if one)), "")
+    return next(filter(None, (_schema_of(part) for part in inner if part)), "")
 
 
 WORDS = (

@@ -5,7 +5,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
+from estimator.allan.results import TERMS
+from estimator.message import say
 from service.diagnosis.store import Diagnoses
+from service.errors import NotFoundError
 from service.flags.store import FlagQuery, Flags
 from service.fleet.store import Fleet
 from service.fleet.wanted_store import Announcements
@@ -21,11 +24,13 @@ from service.models.rules import model_as_of
 from service.models.store import Models
 from service.outlook.reading import dated
 from service.outlook.rules.populations import fleet_standouts
+from service.outlook.store import Outlooks
 from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
 from service.pages.fleet.view import FleetView
 from service.pages.saved import saved
 from service.pages.session.pages import session_page
 from service.pages.unit.pages import unit_page
+from service.pages.unit.parameters import parameter_heads, parameter_page
 from service.pages.unit.remarks import remarks
 from service.pages.unit.report import covered_now, unit_report
 from service.papers.certified import traceability_of
@@ -42,10 +47,12 @@ from service.records.dependencies import ReceptionOf
 from service.records.register import retired_in_words
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.doubt import Remedies
+from service.sessions.history_store import History, HistoryQuery
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
 from service.units.register_store import Register
 from service.units.remarks_store import SaidOf
+from service.units.store import Units
 from service.uploads.correct import remedies_of
 from service.uploads.layout.form import carried
 from service.uploads.pages import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
@@ -60,7 +67,7 @@ from service.work.dependencies import JobDeskOf, ReadingFleet
 MOST_QUESTIONED = 20
 """Sessions that the fleet page names; the latest."""
 HISTORY_LIMIT = 10_000
-"""Points of one unit's history that a page draws, of its newest sessions: 400 of six sensors, 50 of 48."""
+"""Points of one parameter's history that a page draws, of the newest sessions: 1,600 of six sensors, 200 of 48."""
 FLAG_LIMIT = 50
 """Flags of a unit that its page lists: open ones, then the newest of those that are resolved."""
 
@@ -98,6 +105,20 @@ def show_fleet(
     return render(request, "fleet.html", shown)
 
 
+@router.get("/units/{serial:path}/parameters/{name}")
+def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw: bool = False) -> HTMLResponse:
+    """The history of one parameter of all sensors of a kind; ``raw``: what the whole block did is left in."""
+    heads = parameter_heads(History(store).latest(Units(store).key(serial)), None)
+    head = next((head for head in heads if head.anchor == name), None)
+    if head is None:
+        raise NotFoundError(say("Unit {serial} has no history of {name}.", serial=serial, name=repr(name)))
+    wanted = HistoryQuery(parameter=head.parameter, kind=head.kind, raw=raw)
+    points = recent_history(store, serial, HISTORY_LIMIT, wanted)
+    outlook = Outlooks(store).of_unit(serial)
+    page = parameter_page(serial, head, points, HISTORY_LIMIT, SaidOf(store).unit(serial), outlook, raw=raw)
+    return render(request, "parameter.html", page)
+
+
 @router.get("/units/{serial:path}")
 def show_unit(
     request: Request,
@@ -107,8 +128,10 @@ def show_unit(
     serial: Key,
     raw: bool = False,
 ) -> HTMLResponse:
-    """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
+    """One unit; ``raw``: histories of its parameters with what the whole block did left in."""
     report = unit_report(store, serial, now)
+    latest = History(store).latest(Units(store).key(serial))
+    is_heard = any(point.parameter in TERMS for point in latest)
     is_judged_later = report.waiting and not report.summary.failed
     is_pending = report.summary.is_undated and not report.summary.failed
     return render(
@@ -116,9 +139,10 @@ def show_unit(
         "unit.html",
         unit_page(
             report,
-            recent_history(store, serial, HISTORY_LIMIT, raw=raw, noise=True),
+            latest,
             usable_of(store, (report.summary,), now)[serial],
             raw=raw,
+            noise=recent_history(store, serial, HISTORY_LIMIT, HistoryQuery(noise=True)) if is_heard else (),
             flags=Flags(store).page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=report.said.notes,
             pair=found_and_left(store, report.unit_type, report.sessions, settings.coverage_factor),

@@ -52,7 +52,7 @@ class Saved:
     links: tuple[SavedLink, ...]
     query: str
     """Of the view that is shown; empty where nothing is asked, which needs no name."""
-    own: bool
+    is_signed_in: bool
     """Whether somebody can keep one for themselves."""
     may_share: bool
 
@@ -60,7 +60,7 @@ class Saved:
     def may_save(self) -> bool:
         """Whether the view that is shown can be kept, and is not yet."""
         is_known = any(link.is_shown for link in self.links)
-        return bool(self.query) and not is_known and (self.own or self.may_share)
+        return bool(self.query) and not is_known and (self.is_signed_in or self.may_share)
 
     @property
     def shown(self) -> SavedLink | None:
@@ -71,13 +71,13 @@ class Saved:
 def saved(found: Sequence[SavedView], view: ListView, page: ListPage, person: Person) -> Saved:
     """The links above a list."""
     first = view.first()
-    return Saved(page, tuple(_link(one, first, person) for one in found), query_of(first), bool(person.login),
+    return Saved(page, tuple(_link(s, first, person) for s in found), query_of(first), bool(person.login),
                  may_share(person))  # fmt: skip
 
 
-def _link(one: SavedView, first: str, person: Person) -> SavedLink:
-    url = address(one)
-    return SavedLink(one.id, one.name, url, url == first, one.shared, may_remove(one, person))
+def _link(view: SavedView, first: str, person: Person) -> SavedLink:
+    url = address(view)
+    return SavedLink(view.id, view.name, url, url == first, view.shared, may_remove(view, person))
 
 
 def address(view: SavedView) -> str:

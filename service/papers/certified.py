@@ -23,6 +23,7 @@ from service.papers.session_report import SessionReport, recent_history, session
 from service.papers.words import traceability
 from service.sessions.calibrations_store import Calibrations
 from service.sessions.decision import nominal_factor_of
+from service.sessions.history_store import HistoryQuery
 from service.sessions.records import HistoryPoint, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
@@ -151,7 +152,7 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
             revisions=in_force(revisions),
             model=_model(revisions, stored),
             services=tuple(s for s in Services(store).of_unit(stored.unit) if s.at < until),
-            history=recent_history(store, stored.unit, MOST_POINTS, until=until),
+            history=recent_history(store, stored.unit, MOST_POINTS, HistoryQuery(until=until)),
             laboratory=laboratory,
             customer=Units(store).customer(stored.unit),
             traceability=traceability_of(store, stored),

@@ -137,10 +137,10 @@ def _temperatures(curves: ThermalCurves | None) -> Json:
 
 def _over_temperature(sensor: SensorCorrection, curves: ThermalCurves | None) -> Json:
     """Coefficients in rising powers of dT."""
-    own = None if curves is None else next((one for one in curves.sensors if one.name == sensor.name), None)
-    if own is None:
+    fitted = None if curves is None else next((c for c in curves.sensors if c.name == sensor.name), None)
+    if fitted is None:
         return {}
-    curved = {"scale_over_temperature": own.scale, "bias_over_temperature": own.bias}
+    curved = {"scale_over_temperature": fitted.scale, "bias_over_temperature": fitted.bias}
     return {name: c.coefficients[: c.order + 1].tolist() for name, c in curved.items() if c is not None}
 
 

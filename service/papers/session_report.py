@@ -1,7 +1,6 @@
 """Everything that is known of one session."""
 
-from dataclasses import dataclass
-from datetime import datetime
+from dataclasses import dataclass, replace
 
 from estimator.health.common_motion import CommonMotion
 from estimator.results import Calibration
@@ -42,16 +41,10 @@ def session_report(store: Store, id: str) -> SessionReport:
     return SessionReport(session, calibration, decisions, motions, states, diagnosis, failed)
 
 
-def recent_history(
-    store: Store, serial: str, most: int, *, until: datetime | None = None, raw: bool = False, noise: bool = False
-) -> tuple[HistoryPoint, ...]:
-    """The newest sessions of a unit's history before a time, whole, with at most so many points; oldest first.
-
-    ``raw``: what the whole block did is left in; ``noise``: the terms of noise stand among them.
-    """
+def recent_history(store: Store, serial: str, most: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
+    """The newest sessions of the wanted part of a unit's history, whole, with at most so many points; oldest first."""
     unit = Units(store).key(serial)
-    wanted = HistoryQuery(until=until, limit=most + 1, newest=True, raw=raw, noise=noise)
-    found = History(store).points(unit, wanted)
+    found = History(store).points(unit, replace(wanted, limit=most + 1, newest=True))
     if len(found) <= most:
         return found
     return tuple(point for point in found if point.session != found[0].session)

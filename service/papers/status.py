@@ -84,7 +84,7 @@ def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
         facts=tuple(_facts(unit, use, session)),
         reservations=said[:MOST_RESERVATIONS],
         more=max(0, len(said) - MOST_RESERVATIONS),
-        rows=tuple(_row(one) for one in closest(decisions)),
+        rows=tuple(_row(decision) for decision in closest(decisions)),
         of=len(decisions),
         software=VERSION,
         simulated=unit.simulated,
@@ -93,13 +93,13 @@ def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
 
 def closest(decisions: tuple[Decision, ...]) -> tuple[Decision, ...]:
     """Those that matter, the worst first, then by least margin to tolerance."""
-    ranked = sorted(decisions, key=lambda one: (-one.verdict.severity, one.margin if one.margin is not None else 0.0))
+    ranked = sorted(decisions, key=lambda d: (-d.verdict.severity, d.margin if d.margin is not None else 0.0))
     return tuple(ranked[:MOST_PARAMETERS])
 
 
-def _row(one: Decision) -> StatusRow:
-    used = "" if one.margin is None else f"{number(100 * (1 - one.margin), 0)}{THIN}%"
-    return StatusRow(moved(one), used)
+def _row(decision: Decision) -> StatusRow:
+    used = "" if decision.margin is None else f"{number(100 * (1 - decision.margin), 0)}{THIN}%"
+    return StatusRow(moved(decision), used)
 
 
 def _facts(unit: UnitSummary, use: Usable, session: StoredSession | None) -> list[Fact]:

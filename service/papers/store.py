@@ -50,16 +50,16 @@ class Certificates(Queries):
     def unsigned(self, most: int) -> tuple[tuple[Issue, str, Meaning | None], ...]:
         """Newest issues of sessions that count and were measured, not approved yet, with their unit and last signature;
         where nobody ever signed, none."""
-        own, later = CertificateRow, aliased(CertificateRow)
-        signed = select(SignatureRow.meaning).where(SignatureRow.certificate_id == own.id)
+        certificate, later = CertificateRow, aliased(CertificateRow)
+        signed = select(SignatureRow.meaning).where(SignatureRow.certificate_id == certificate.id)
         reviewed, approved = (signed.where(SignatureRow.meaning == meaning).exists() for meaning in Meaning)
-        replaced = exists().where(later.session_id == own.session_id, later.id > own.id)
+        replaced = exists().where(later.session_id == certificate.session_id, later.id > certificate.id)
         query = (
-            select(own, UnitRow.serial, reviewed)
-            .join(SessionRow, SessionRow.id == own.session_id)
+            select(certificate, UnitRow.serial, reviewed)
+            .join(SessionRow, SessionRow.id == certificate.session_id)
             .join(UnitRow, UnitRow.id == SessionRow.unit_id)
             .where(~approved, ~replaced, IS_ACCEPTED, UnitRow.simulated.is_(False), select(SignatureRow.id).exists())
-            .order_by(own.id.desc())
+            .order_by(certificate.id.desc())
         )
         rows = self._session.execute(query.limit(most))
         return tuple((_issue(row), serial, Meaning.REVIEWED if seen else None) for row, serial, seen in rows)

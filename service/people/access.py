@@ -30,6 +30,7 @@ GET /oidc/callback
 VIEWER = f"""
 GET /
 GET /units/{{serial:path}}
+GET /units/{{serial:path}}/parameters/{{name}}
 GET /sessions
 GET /compare
 GET /sessions/{{id}}

@@ -113,7 +113,7 @@ def readiness_charts(found: Readiness, kinds: dict[str, str]) -> ChartSet | None
     """One panel a sensor, all of one scale; None where nothing was recorded. ``kinds`` by sensor."""
     if not len(found.time):
         return None
-    allowed = {one.name: one.allowed for one in found.outlooks}
+    allowed = {outlook.name: outlook.allowed for outlook in found.outlooks}
     panels = tuple(_drift_panel(found, i, kinds[name], allowed.get(name)) for i, name in enumerate(found.names))
     return ChartSet("readiness", "Change since the record began", _drift_spec(), panels)
 

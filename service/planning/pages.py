@@ -195,14 +195,17 @@ def _rows(plan: Plan) -> tuple[Row, ...]:
     """Sensors with equal cells share a row."""
     size, sensors_by_cells = len(PARAMETERS), dict[tuple[ExpectedCell, ...], list[str]]()
     for i in range(0, len(plan.judged), size):
-        cells = tuple(_cell(one, plan.request.coverage) for one in plan.judged[i : i + size])
+        cells = tuple(_cell(parameter, plan.request.coverage) for parameter in plan.judged[i : i + size])
         sensors_by_cells.setdefault(cells, []).append(plan.judged[i].sensor)
     return tuple(Row(joined(", ", names), cells) for cells, names in sensors_by_cells.items())
 
 
-def _cell(one: JudgedParameter, coverage: float) -> ExpectedCell:
+def _cell(judged: JudgedParameter, coverage: float) -> ExpectedCell:
     return ExpectedCell(
-        heading(one.parameter), sigma_in_words(one, coverage), tolerance_in_words(one), CONDITIONS.get(one.verdict)
+        heading(judged.parameter),
+        sigma_in_words(judged, coverage),
+        tolerance_in_words(judged),
+        CONDITIONS.get(judged.verdict),
     )
 
 

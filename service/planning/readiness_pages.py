@@ -83,7 +83,7 @@ def ready_form(asked: ReadyQuestion, types: Sequence[str]) -> ReadyPage:
 def ready_page(asked: ReadyQuestion, types: Sequence[str], answer: Asked) -> ReadyPage:
     """The page with the answer."""
     found = answer.found
-    kinds = {**dict.fromkeys(found.names, answer.kind), **{one.name: one.kind for one in found.outlooks}}
+    kinds = {**dict.fromkeys(found.names, answer.kind), **{outlook.name: outlook.kind for outlook in found.outlooks}}
     judged = found.outlooks if found.temperature is None else (*found.outlooks, found.temperature)
     return ReadyPage(
         asked,
@@ -120,14 +120,14 @@ def _facts(answer: Asked) -> tuple[tuple[str, str], ...]:
     return tuple(facts)
 
 
-def _drift(one: DriftOutlook) -> Drift:
+def _drift(drift: DriftOutlook) -> Drift:
     shares = [
         say("{share} % of the {kind}", share=number(100 * share, 0), kind=word)
-        for share, word in ((one.bias_share, "bias"), (one.scale_share, "scale factor"))
+        for share, word in ((drift.bias_share, "bias"), (drift.scale_share, "scale factor"))
         if share is not None
     ]
-    expected, bound, allowed = (amount(one.kind, value) for value in (one.expected, one.bound, one.allowed))
-    return Drift(one.name, expected, bound, allowed, joined(", ", shares))
+    expected, bound, allowed = (amount(drift.kind, value) for value in (drift.expected, drift.bound, drift.allowed))
+    return Drift(drift.name, expected, bound, allowed, joined(", ", shares))
 
 
 def _changes(found: Readiness, kinds: dict[str, str]) -> tuple[tuple[str, ...], ...]:
@@ -168,17 +168,17 @@ def _known(expected: tuple[ExpectedSigma, ...]) -> tuple[tuple[str, tuple[tuple[
     return tuple(
         (
             expected[i].sensor,
-            tuple((_spread(one, one.so_far), _spread(one, one.complete)) for one in expected[i : i + size]),
+            tuple((_spread(e, e.so_far), _spread(e, e.complete)) for e in expected[i : i + size]),
         )
         for i in range(0, len(expected), size)
     )
 
 
-def _spread(one: ExpectedSigma, sigma: float | None) -> str:
+def _spread(estimate: ExpectedSigma, sigma: float | None) -> str:
     """``±2.1 µg``: the expanded uncertainty."""
     if sigma is None:
         return UNSEEN
-    measure = MEASURES[one.kind, one.parameter]
+    measure = MEASURES[estimate.kind, estimate.parameter]
     return f"±{number(float(f'{COVERAGE * sigma * measure.factor:.2g}'))}{THIN}" + measure.label
 
 
@@ -252,5 +252,5 @@ def _read(kind: type[T], brought: Brought) -> T:
     try:
         return kind.model_validate({name: value.strip() for name, value in brought.fields.items()})
     except ValidationError as fault:
-        problems = tuple(Problem(".".join(map(str, one["loc"])), fault_in_words(one)) for one in fault.errors())
+        problems = tuple(Problem(".".join(map(str, error["loc"])), fault_in_words(error)) for error in fault.errors())
         raise RefusedError("The form cannot be used.", problems) from fault

@@ -1,6 +1,7 @@
 """A session planned, a unit found ready, what a session still lacks; nothing is stored."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.linalg import LinAlgError
@@ -35,7 +36,7 @@ MOST_TYPES = 500
 def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
     """The question with what the type knows filled in, and its plan."""
     if not question.unit_type:
-        return question, _planned(question, question.cone(), question.kind)
+        return question, _of_cone(question)
     with storage.database.reading() as store:
         unit_type = UnitTypes(store).get(question.unit_type)
     problems = why_not(unit_type)
@@ -43,6 +44,12 @@ def plan(storage: Storage, question: PlanQuestion) -> tuple[PlanQuestion, Plan]:
         raise RefusedError(say("Units of the type {name} cannot be planned for.", name=repr(unit_type.name)), problems)
     whole = completed(question, unit_type)
     return whole, _planned(whole, whole.block(sensors_of(unit_type)), whole.kind)
+
+
+@lru_cache(maxsize=64)
+def _of_cone(question: PlanQuestion) -> Plan:
+    """For sensors on a cone: the question alone decides it, and the empty one of the page is everybody's first."""
+    return _planned(question, question.cone(), question.kind)
 
 
 def _planned(question: PlanQuestion, like: CalibrationSession, kind: str) -> Plan:

@@ -33,7 +33,7 @@ def missing_in_words(found: Missing) -> tuple[str, ...]:
             remaining=len(found.settings) or len(found.directions),
         )
     ]
-    for run, settings in groupby(found.settings, key=lambda one: one[0]):
+    for run, settings in groupby(found.settings, key=lambda setting: setting[0]):
         angles = [f"{number(float(np.degrees(beta)), 2).rstrip('0').rstrip('.')}°" for _, beta in settings]
         rest = say(" and {number} more", number=len(angles) - MOST) if len(angles) > MOST else ""
         lines.append(say("{run}: β = {angles}{rest}", run=run, angles=", ".join(angles[:MOST]), rest=rest))
@@ -72,7 +72,7 @@ def seen(plan: Plan) -> tuple[SeenCause, ...]:
 def blind(plan: Plan) -> tuple[BlindCauses, ...]:
     """Causes that the plan cannot see; those of gyros are left out where there are none."""
     has_gyros = any(s.kind == GYROSCOPE for s in plan.schedule.sensors)
-    return blind_causes([one for one in plan.limits if has_gyros or one.cause not in OF_GYROS])
+    return blind_causes([limit for limit in plan.limits if has_gyros or limit.cause not in OF_GYROS])
 
 
 def unobserved(plan: Plan) -> str:
@@ -164,7 +164,7 @@ def readiness_headline(found: Readiness) -> str:
 def reasons(found: Readiness, kind: str) -> tuple[str, ...]:
     """Reasons and advice, the most important first."""
     lines = [fault_in_words(fault) for fault in found.faults]
-    lines += [disturbance_in_words(one, kind) for one in found.disturbances]
+    lines += [disturbance_in_words(event, kind) for event in found.disturbances]
     if found.worst is not None:
         lines += _drift_sentences(found, found.worst)
     return tuple(lines)
@@ -264,26 +264,26 @@ def _record_advice(found: Readiness, worst: DriftOutlook) -> list[str]:
 
 
 def _short(found: Readiness) -> str:
-    one = next(disturbance for disturbance in found.disturbances if not disturbance.passed)
-    return SHORT[one.kind](one)
+    first = next(disturbance for disturbance in found.disturbances if not disturbance.passed)
+    return SHORT[first.kind](first)
 
 
 SHORT: dict[DisturbanceKind, Callable[[Disturbance], str]] = {
-    DisturbanceKind.STEP: lambda one: say("somebody touched it at {start}", start=clock(one.start)),
-    DisturbanceKind.BURST: lambda one: say("it vibrated at {start}", start=clock(one.start)),
-    DisturbanceKind.SHAKING: lambda one: "it vibrates continuously",
-    DisturbanceKind.CLIPPED: lambda one: say("{sensors} at the end of the range", sensors=named(one.sensors)),
-    DisturbanceKind.CREEP: lambda one: "the fixture creeps",
+    DisturbanceKind.STEP: lambda d: say("somebody touched it at {start}", start=clock(d.start)),
+    DisturbanceKind.BURST: lambda d: say("it vibrated at {start}", start=clock(d.start)),
+    DisturbanceKind.SHAKING: lambda _: "it vibrates continuously",
+    DisturbanceKind.CLIPPED: lambda d: say("{sensors} at the end of the range", sensors=named(d.sensors)),
+    DisturbanceKind.CREEP: lambda _: "the fixture creeps",
 }
 """Disturbances in a few words."""
 
 
-def disturbance_in_words(one: Disturbance, kind: str) -> str:
+def disturbance_in_words(event: Disturbance, kind: str) -> str:
     """What happened, when, to whom, and what to do."""
-    sensors, size = named(one.sensors), amount(kind, one.size)
-    consequence = "; only the record after it is judged." if one.passed else ". Do not touch it, and record again."
-    parts = {"size": size, "start": clock(one.start), "stop": clock(one.stop), "consequence": consequence}
-    match one.kind:
+    sensors, size = named(event.sensors), amount(kind, event.size)
+    consequence = "; only the record after it is judged." if event.passed else ". Do not touch it, and record again."
+    parts = {"size": size, "start": clock(event.start), "stop": clock(event.stop), "consequence": consequence}
+    match event.kind:
         case DisturbanceKind.STEP:
             return say(
                 "{sensors} changed by {size} between {start} and {stop}: somebody touched it{consequence}",
@@ -300,14 +300,14 @@ def disturbance_in_words(one: Disturbance, kind: str) -> str:
                 size=size,
             )
         case DisturbanceKind.CLIPPED:
-            share = number(float(f"{100 * one.size:.2g}"))
+            share = number(float(f"{100 * event.size:.2g}"))
             return say(
                 "{who} is at the end of its range for {share} % of the samples: set a larger range, or stop the "
                 "vibration.",
                 who=sensors,
                 share=share,
             )
-    turn = number(float(f"{one.size * ARCSEC.factor:.2g}"))
+    turn = number(float(f"{event.size * ARCSEC.factor:.2g}"))
     return say(
         "All accelerometers drift as if the block turned by {turn} arcsec during the programme: the fixture creeps. "
         "Tighten the mounting, let the stand's locks settle, and record again.",

@@ -120,9 +120,9 @@ def correct(
 @router.post("/sessions/{id}/supersede", responses=REFUSALS, tags=["sessions"])
 def supersede(id: SessionId, given: Superseding, reception: ReceptionOf, now: Now, person: PersonOf) -> SaidSession:
     """Say that another stored session supersedes this one: a corrected file, of another unit or date."""
-    by = given.superseded_by or successor_of(reception.storage, id)
+    successor = given.superseded_by or successor_of(reception.storage, id)
     replaced = Replaced(id, person.signs(given.by), given.why)
-    session, _ = supersede_session(reception.storage, deriving(reception, now), replaced, by)
+    session, _ = supersede_session(reception.storage, deriving(reception, now), replaced, successor)
     reception.ring()
     return said_session(session)
 

@@ -70,14 +70,16 @@ NOTHING_KNOWN = Remedies()
 """Nothing that would put it right."""
 
 
-def question(store: Store, way: Deriving, session: StoredSession, why: str, remedies: Remedies = NOTHING_KNOWN) -> None:
+def question(
+    store: Store, context: Deriving, session: StoredSession, why: str, remedies: Remedies = NOTHING_KNOWN
+) -> None:
     """Takes a stored session out of what counts, and says why before everything else, and what would put it right."""
-    change(store, session, RecordState.QUESTIONED, Step(SERVICE, way.at, why), remedies=remedies)
+    change(store, session, RecordState.QUESTIONED, Step(SERVICE, context.at, why), remedies=remedies)
     unjudged = Judged(Calibrations(store).get(session.id), (), QUESTIONED + why, is_reference=False)
     Derivations(store).put_judged((Decided(session.id, session.revision, unjudged, NOT_JUDGED, None),))
 
 
-def question_diagnosed(store: Store, way: Deriving, id: str, found: Diagnosed) -> Derived | None:
+def question_diagnosed(store: Store, context: Deriving, id: str, found: Diagnosed) -> Derived | None:
     """Questions an accepted session whose diagnosis finds it written down otherwise than it was done.
 
     One that an engineer accepted stays so. What is left of what follows; None where nothing changed.
@@ -86,19 +88,19 @@ def question_diagnosed(store: Store, way: Deriving, id: str, found: Diagnosed) -
     session = Sessions(store).get(id)
     if not named or session.state is not RecordState.ACCEPTED or States(store).of(RecordKind.SESSION, id):
         return None
-    question(store, way, session, joined(" ", (finding.sentence for finding in named)))
-    return derive_again(store, way, session.unit, session.started_at, (id,))
+    question(store, context, session, joined(" ", (finding.sentence for finding in named)))
+    return derive_again(store, context, session.unit, session.started_at, (id,))
 
 
-def accept_session(storage: Storage, way: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
+def accept_session(storage: Storage, context: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
     """Accepts a session; ConflictError where it counts already, or where another has superseded it."""
     with storage.database.writing() as store:
         Units(store).hold(Sessions(store).get(id).unit)
         session = Sessions(store).get(id)
         _require_possible(store, session)
         change(store, session, RecordState.ACCEPTED, step)
-        derived = derive_again(store, way, session.unit, session.started_at, (id,))
-    follow(storage, way, session.unit, derived)
+        derived = derive_again(store, context, session.unit, session.started_at, (id,))
+    follow(storage, context, session.unit, derived)
     with storage.database.reading() as store:
         return Sessions(store).get(id), derived
 
@@ -124,7 +126,7 @@ POSSIBLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
 """States of a session that can be withdrawn."""
 
 
-def withdraw_session(storage: Storage, way: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
+def withdraw_session(storage: Storage, context: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
     """Withdraws a session; ConflictError where it does not count any more."""
     with storage.database.writing() as store:
         Units(store).hold(Sessions(store).get(id).unit)
@@ -132,13 +134,13 @@ def withdraw_session(storage: Storage, way: Deriving, id: str, step: Step) -> tu
         if session.state not in POSSIBLE:
             raise ConflictError(say("Session {id} is {state} already.", id=id, state=session.state))
         change(store, session, RecordState.WITHDRAWN, step)
-        derived = derive_again(store, way, session.unit, session.started_at, (id,))
-    follow(storage, way, session.unit, derived)
+        derived = derive_again(store, context, session.unit, session.started_at, (id,))
+    follow(storage, context, session.unit, derived)
     with storage.database.reading() as store:
         return Sessions(store).get(id), derived
 
 
-def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
+def choose_reference(storage: Storage, context: Deriving, id: str, step: Step) -> tuple[StoredSession, Derived]:
     """Makes a session the reference of its epoch, from the first session on; ConflictError where it cannot be one."""
     with storage.database.writing() as store:
         unit = Units(store).hold(Sessions(store).get(id).unit)
@@ -146,8 +148,8 @@ def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tu
         _require_choice(store, session)
         States(store).choose(unit, id, step)
         Audit(store).write(step.at, step.who, "choose reference", id, {"unit": session.unit, "why": step.why})
-        derived = derive_again(store, way, session.unit, session.started_at, (id,))
-    follow(storage, way, session.unit, derived)
+        derived = derive_again(store, context, session.unit, session.started_at, (id,))
+    follow(storage, context, session.unit, derived)
     with storage.database.reading() as store:
         return Sessions(store).get(id), derived
 
@@ -168,7 +170,7 @@ def _require_choice(store: Store, session: StoredSession) -> None:
         )
 
 
-def set_mark(storage: Storage, way: Deriving, id: str, step: Step, word: str, *, is_so: bool) -> StoredSession:
+def set_mark(storage: Storage, context: Deriving, id: str, step: Step, word: str, *, is_so: bool) -> StoredSession:
     """Marks a session and works out its unit's dates again; no verdict changes. The same mark again changes nothing."""
     derived: Derived | None = None
     with storage.database.writing() as store:
@@ -178,9 +180,9 @@ def set_mark(storage: Storage, way: Deriving, id: str, step: Step, word: str, *,
             Sessions(store).mark(id, **{MARKS[word]: is_so})
             details = {"unit": session.unit, MARKS[word]: is_so, "why": step.why}
             Audit(store).write(step.at, step.who, word, id, details)
-            derived = derive_again(store, way, session.unit, END_OF_TIME)
+            derived = derive_again(store, context, session.unit, END_OF_TIME)
     if derived is not None:
-        follow(storage, way, session.unit, derived)
+        follow(storage, context, session.unit, derived)
     with storage.database.reading() as store:
         return Sessions(store).get(id)
 
@@ -202,7 +204,7 @@ def record_service(
 
     One that was withdrawn and is recorded again counts again.
     """
-    way = Deriving(storage.files, coverage_factor, now)
+    context = Deriving(storage.files, coverage_factor, now)
     with storage.database.writing() as store:
         unit = Units(store).hold(serial)
         require_possible(store, serial, new, now)
@@ -217,9 +219,9 @@ def record_service(
             States(store).add(RecordKind.SERVICE, str(number), RecordState.ACCEPTED, step)
         details = {"kind": new.kind, "at": new.at.isoformat(), "note": new.note, "sensor": new.sensor}
         Audit(store).write(now, who, "service", serial, details)
-        derived = derive_again(store, way, serial, new.at)
+        derived = derive_again(store, context, serial, new.at)
         recorded = Services(store).get(number)
-    follow(storage, way, serial, derived)
+    follow(storage, context, serial, derived)
     return recorded, derived
 
 
@@ -240,7 +242,7 @@ def require_possible(store: Store, serial: str, new: NewService, now: datetime) 
         raise RefusedError("The service cannot be recorded.", tuple(found))
 
 
-def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -> tuple[Service, Derived]:
+def withdraw_service(storage: Storage, context: Deriving, number: int, step: Step) -> tuple[Service, Derived]:
     """Withdraws a service; ConflictError where that was done before."""
     with storage.database.writing() as store:
         Units(store).hold(Services(store).get(number).unit)
@@ -251,7 +253,7 @@ def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -
         States(store).add(RecordKind.SERVICE, str(number), RecordState.WITHDRAWN, step)
         details = {"service": number, "kind": service.kind, "at": service.at.isoformat(), "why": step.why}
         Audit(store).write(step.at, step.who, "withdraw service", service.unit, details)
-        derived = derive_again(store, way, service.unit, service.at)
+        derived = derive_again(store, context, service.unit, service.at)
         withdrawn = Services(store).get(number)
-    follow(storage, way, withdrawn.unit, derived)
+    follow(storage, context, withdrawn.unit, derived)
     return withdrawn, derived

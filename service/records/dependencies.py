@@ -11,9 +11,9 @@ from service.web.application import application_of
 
 
 def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Reception:
-    own = application_of(request)
-    k, later = own.settings.coverage_factor, own.settings.diagnosis_workers > 0
-    return Reception(storage, k, own.metrics, own.bell.ring, person.signs(CREW), is_dated_later=later)
+    application = application_of(request)
+    k, later = application.settings.coverage_factor, application.settings.diagnosis_workers > 0
+    return Reception(storage, k, application.metrics, application.bell.ring, person.signs(CREW), is_dated_later=later)
 
 
 ReceptionOf = Annotated[Reception, Depends(_reception)]

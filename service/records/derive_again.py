@@ -84,7 +84,7 @@ NOTHING_LEFT = Derived((), 0, None)
 
 def derive_again(
     store: Store,
-    way: Deriving,
+    context: Deriving,
     serial: str,
     since: datetime,
     touched: Sequence[str] = (),
@@ -103,52 +103,52 @@ def derive_again(
     references = {p.session.id for p in places if p.is_reference}
     if references != known.records.references:
         Derivations(store).put_references(known.unit, references)
-    now = _fitting(way, serial, known, stale, foreseen)
-    diagnosed = _ask_again(way, known, since, [p.session.id for p in now], _as_before(known, since, touched))
+    now = _fitting(context, serial, known, stale, foreseen)
+    diagnosed = _ask_again(context, known, since, [p.session.id for p in now], _as_before(known, since, touched))
     put(known, now, foreseen, diagnosed)
     left = [p for p in stale if p not in now]
     Derivations(store).wait([p.session.id for p in left])
-    own = _own(left, touched, way.at_once)
+    at_once = _own(left, touched, context.at_once)
     is_left = bool(left) or any(p.session.id in diagnosed for p in now)
-    latest = sum_up(store, way, serial) if not is_left or len(own) < len(left) else None
+    latest = sum_up(store, context, serial) if not is_left or len(at_once) < len(left) else None
     groups = Groups(store).of_unit(serial)
-    WorkQueue(store, WorkKind.GROUP).enqueue_each((group.place for group in groups), way.at)
+    WorkQueue(store, WorkKind.GROUP).enqueue_each((group.place for group in groups), context.at)
     shared = (group.place for group in groups if group.level is not Level.UNIT)
-    WorkQueue(store, WorkKind.SUMMARY).enqueue_each(shared, way.at)
-    return Derived((*(p.session.id for p in now), *own), len(left) - len(own), latest, is_left)
+    WorkQueue(store, WorkKind.SUMMARY).enqueue_each(shared, context.at)
+    return Derived((*(p.session.id for p in now), *at_once), len(left) - len(at_once), latest, is_left)
 
 
 def _fitting(
-    way: Deriving, serial: str, known: KnownUnit, stale: Sequence[Place], foreseen: Foreseen
+    context: Deriving, serial: str, known: KnownUnit, stale: Sequence[Place], foreseen: Foreseen
 ) -> tuple[Place, ...]:
     """Of the sessions that are to be judged those that were judged so before the transaction."""
     found = [p for p in stale if p.session.id in foreseen.outcomes]
     if not found:
         return ()
-    return fitting(judging(known, serial, found, way.files, way.coverage_factor, way.at), found, foreseen)
+    return fitting(judging(known, serial, found, context.files, context.coverage_factor, context.at), found, foreseen)
 
 
 def _as_before(known: KnownUnit, since: datetime, touched: Collection[str]) -> tuple[str, ...]:
     """Sessions whose diagnosis looks at nothing that has changed: a change of a record is none for itself, and another
     calibration is none for any."""
-    own = known.records.diagnosed
-    return tuple(id for id in touched if id in known.made or (id in own and own[id] <= since))
+    diagnosed = known.records.diagnosed
+    return tuple(id for id in touched if id in known.made or (id in diagnosed and diagnosed[id] <= since))
 
 
 def _ask_again(
-    way: Deriving, known: KnownUnit, since: datetime, judged: Collection[str], same: Collection[str]
+    context: Deriving, known: KnownUnit, since: datetime, judged: Collection[str], same: Collection[str]
 ) -> frozenset[str]:
     """Diagnoses that looked at what has changed are asked for again, and those that are being made look again; the
     sessions that keep theirs."""
-    store, own = known.store, known.records
+    store, records = known.store, known.records
     Fleet(store).touch(known.unit)
-    if any(at >= since or id in judged for id, at in own.waiting.items() if id not in known.made):
+    if any(at >= since or id in judged for id, at in records.waiting.items() if id not in known.made):
         Derivations(store).look_again(known.unit, since, judged)
     gone: tuple[str, ...] = ()
-    if any(at >= since and id not in same for id, at in own.diagnosed.items()):
+    if any(at >= since and id not in same for id, at in records.diagnosed.items()):
         gone = Derivations(store).forget_diagnoses(known.unit, since, same)
-        WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once(gone, way.at)
-    return frozenset(own.diagnosed.keys() - {*gone})
+        WorkQueue(store, WorkKind.DIAGNOSIS).enqueue_once(gone, context.at)
+    return frozenset(records.diagnosed.keys() - {*gone})
 
 
 def _own(left: Sequence[Place], touched: Sequence[str], most: int | None) -> tuple[str, ...]:
@@ -157,12 +157,12 @@ def _own(left: Sequence[Place], touched: Sequence[str], most: int | None) -> tup
     return tuple(p.session.id for p in left if few or p.session.id in touched)
 
 
-def sum_up(store: Store, way: Deriving, serial: str) -> StoredSession | None:
+def sum_up(store: Store, context: Deriving, serial: str) -> StoredSession | None:
     """The outlook, the unit's line and its flags; the latest session that counts."""
     unit = Units(store).key(serial)
     was = Fleet(store).refresh(unit)
     latest = was.latest
-    occasion = Occasion(unit, None if latest is None else latest.id, way.at)
+    occasion = Occasion(unit, None if latest is None else latest.id, context.at)
     if latest is None:
         Outlooks(store).drop(unit)
         WorkQueue(store, WorkKind.OUTLOOK).drop(serial)
@@ -174,8 +174,8 @@ def sum_up(store: Store, way: Deriving, serial: str) -> StoredSession | None:
         Fleet(store).count_flags(unit)
     tell_verdict(store, occasion, latest, was)
     settle_sessions(store, occasion)
-    if way.outlook:
-        WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, way.at)
+    if context.outlook:
+        WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(serial, context.at)
     return latest
 
 
@@ -185,10 +185,10 @@ NOT_STORED = 0
 """Number of such a unit, under which nothing is found."""
 
 
-def foresee_upload(store: Store, way: Deriving, new: StoredSession, made: Calibrated, but: str | None) -> Foreseen:
+def foresee_upload(store: Store, context: Deriving, new: StoredSession, made: Calibrated, but: str | None) -> Foreseen:
     """The verdict of a session that is to be stored; ``but`` is the session that it supersedes."""
     unit, block = Units(store).find(new.unit), made.checked.session.block
-    own = Counted(
+    added = Counted(
         new.id,
         block,
         new.programme,
@@ -199,36 +199,36 @@ def foresee_upload(store: Store, way: Deriving, new: StoredSession, made: Calibr
         temperature=new.temperature,
     )
     if unit is None:
-        known = KnownUnit(store, NOT_STORED, replace(NOTHING_STORED, counted=(own,)), {new.id: made.calibration})
-        by = _of_new_unit(store, way, made)
-        return judged(known, by, places_of(known))
+        known = KnownUnit(store, NOT_STORED, replace(NOTHING_STORED, counted=(added,)), {new.id: made.calibration})
+        rules = _of_new_unit(store, context, made)
+        return judged(known, rules, places_of(known))
     known = known_unit(store, unit, {new.id: made.calibration})
-    counted = _in_order([one for one in known.records.counted if one.id != but] + [own])
+    counted = _in_order([session for session in known.records.counted if session.id != but] + [added])
     files = {new.id: (new.sha256, new.filename)}
     known = replace(known, records=replace(known.records, counted=counted), files=files)
     places = [place for place in places_of(known) if place.session.id == new.id]
-    return judged(known, judging(known, new.unit, places, way.files, way.coverage_factor, way.at), places)
+    return judged(known, judging(known, new.unit, places, context.files, context.coverage_factor, context.at), places)
 
 
 def foresee_revisions(
-    store: Store, way: Deriving, serial: str, made: Mapping[str, tuple[int, Calibration]], since: datetime
+    store: Store, context: Deriving, serial: str, made: Mapping[str, tuple[int, Calibration]], since: datetime
 ) -> Foreseen:
     """The verdicts of a unit under other calibrations of its sessions, by session with the revision of each."""
     known = known_unit(store, Units(store).key(serial), {id: calibration for id, (_, calibration) in made.items()})
     revised = [
-        replace(one, revision=made[one.id][0], basis=NOT_JUDGED) if one.id in made else one
-        for one in known.records.counted
+        replace(session, revision=made[session.id][0], basis=NOT_JUDGED) if session.id in made else session
+        for session in known.records.counted
     ]
     known = replace(known, records=replace(known.records, counted=_in_order(revised)))
     places = needs_judging(places_of(known), since)
-    return judged(known, judging(known, serial, places, way.files, way.coverage_factor, way.at), places)
+    return judged(known, judging(known, serial, places, context.files, context.coverage_factor, context.at), places)
 
 
-def _of_new_unit(store: Store, way: Deriving, made: Calibrated) -> Judging:
+def _of_new_unit(store: Store, context: Deriving, made: Calibrated) -> Judging:
     kind = type_of(made.checked, made.calibration)
     kind = UnitTypes(store).find(kind.name) or kind
-    return Judging(way.files, way.coverage_factor, way.at, ((way.at, kind),), {})
+    return Judging(context.files, context.coverage_factor, context.at, ((context.at, kind),), {})
 
 
 def _in_order(sessions: Sequence[Counted]) -> tuple[Counted, ...]:
-    return tuple(sorted(sessions, key=lambda one: (one.at, one.id)))
+    return tuple(sorted(sessions, key=lambda session: (session.at, session.id)))

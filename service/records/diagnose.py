@@ -73,7 +73,7 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
 
     Where what it looks at changes meanwhile it is made anew.
     """
-    way = Deriving(storage.files, coverage_factor, now)
+    context = Deriving(storage.files, coverage_factor, now)
     while True:
         with storage.database.reading() as store:
             known = known_of(store, id)
@@ -82,9 +82,9 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
             task, asked = task_of(store, id), WorkQueue(store, WorkKind.DIAGNOSIS).get(id)
         made = _made(storage, task, now)
         with storage.database.writing() as store:
-            kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
+            kept = _keep(store, context, task.session.unit, made, None if asked is None else asked.ticket)
         if kept is not None:
-            follow(storage, way, task.session.unit, kept)
+            follow(storage, context, task.session.unit, kept)
             keep_noise(storage, id, now)
             if made.state is not DiagnosisState.FAILED:
                 keep_statistics(storage, id, now)
@@ -97,12 +97,12 @@ def give_up(storage: Storage, id: str, now: datetime) -> None:
         task, asked = task_of(store, id), WorkQueue(store, WorkKind.DIAGNOSIS).get(id)
     log.error("diagnosis given up", session=id, estimator_version=VERSION)
     summary = with_last_try(fault_of_the_program(id), "" if asked is None else asked.failed)
-    made, way = _failed(task, summary, now), Deriving(storage.files, COVERAGE, now)
+    made, context = _failed(task, summary, now), Deriving(storage.files, COVERAGE, now)
     with storage.database.writing() as store:
-        _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
+        _keep(store, context, task.session.unit, made, None if asked is None else asked.ticket)
 
 
-def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket: str | None) -> Derived | None:
+def _keep(store: Store, context: Deriving, unit: str, made: StoredDiagnosis, ticket: str | None) -> Derived | None:
     """Where it is of what is known now it is stored, unless another one was made meanwhile, and what is left of what
     follows is returned; None where it is not."""
     Units(store).hold(unit)
@@ -111,13 +111,13 @@ def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket:
     derived = None
     if Diagnoses(store).add_once(made):
         details = {"state": made.state.value, "summary": made.summary}
-        Audit(store).write(way.at, "diagnosis", "diagnose", made.session, details)
-        flag_diagnosis(store, made, way.at)
+        Audit(store).write(context.at, "diagnosis", "diagnose", made.session, details)
+        flag_diagnosis(store, made, context.at)
         is_counted = Sessions(store).get(made.session).state is RecordState.ACCEPTED
         if made.found is not None and is_counted and explains(made.found):
-            WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(unit, way.at)
+            WorkQueue(store, WorkKind.OUTLOOK).enqueue_again(unit, context.at)
         if made.found is not None:
-            derived = question_diagnosed(store, way, made.session, made.found)
+            derived = question_diagnosed(store, context, made.session, made.found)
     return derived or NOTHING_LEFT
 
 
@@ -151,8 +151,8 @@ def _found(storage: Storage, task: DiagnosisTask, now: datetime) -> StoredDiagno
     document = json_text(STORED.written(found))
     read = read_diagnosis(document)
     with storage.database.reading() as store:
-        by = weighing_of(store, task.session.id, session.block)
-    weighed = Weighed(None, ()) if read is None else weigh(session, read, by)
+        weighing = weighing_of(store, task.session.id, session.block)
+    weighed = Weighed(None, ()) if read is None else weigh(session, read, weighing)
     return replace(
         _nothing_found(task, state_of(found), summary_of(found), now),
         found=read,

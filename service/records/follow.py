@@ -34,90 +34,94 @@ from service.storage.queries import Store
 from service.units.store import Units
 
 
-def follow(storage: Storage, way: Deriving, serial: str, derived: Derived) -> None:
+def follow(storage: Storage, context: Deriving, serial: str, derived: Derived) -> None:
     """After a change of a unit's records: verdicts, their reservations, and dates. What fails is kept with why,
     and costs the change itself nothing."""
     with ending_here("derivations", serial):
-        derive_left(storage, way, serial, derived)
-    date(storage, way, serial)
+        derive_left(storage, context, serial, derived)
+    date(storage, context, serial)
 
 
-def derive_left(storage: Storage, way: Deriving, serial: str, derived: Derived) -> None:
+def derive_left(storage: Storage, context: Deriving, serial: str, derived: Derived) -> None:
     """What a transaction has left to whoever changed the records; the rest is left to background work."""
     if not derived.is_left:
         return
 
     def keep(why: str) -> None:
         with storage.database.writing() as store:
-            WorkQueue(store, WorkKind.DERIVATION).add_failed(serial, why, way.at)
+            WorkQueue(store, WorkKind.DERIVATION).add_failed(serial, why, context.at)
 
     with kept(keep):
         if derived.waiting:
-            judge_waiting(storage, way, serial, len(derived.judged), derived.judged)
+            judge_waiting(storage, context, serial, len(derived.judged), derived.judged)
             return
-        while derive_waiting_of(storage, way, serial, AT_ONCE):
+        while derive_waiting_of(storage, context, serial, AT_ONCE):
             pass
 
 
-def derive_waiting_of(storage: Storage, way: Deriving, serial: str, most: int) -> int:
+def derive_waiting_of(storage: Storage, context: Deriving, serial: str, most: int) -> int:
     """Judges the first of the sessions that wait, or weighs them once all are judged; how many still wait."""
     with storage.database.reading() as store:
         known = known_unit(store, Units(store).key(serial))
     counted = known.records.counted
-    if any(one.basis == NOT_JUDGED for one in counted):
-        return judge_waiting(storage, way, serial, most)
-    return _weigh_waiting(storage, way, serial, [one for one in counted if one.is_unweighed][:most])
+    if any(session.basis == NOT_JUDGED for session in counted):
+        return judge_waiting(storage, context, serial, most)
+    return _weigh_waiting(storage, context, serial, [session for session in counted if session.is_unweighed][:most])
 
 
-def judge_waiting(storage: Storage, way: Deriving, serial: str, most: int, only: tuple[str, ...] | None = None) -> int:
+def judge_waiting(
+    storage: Storage, context: Deriving, serial: str, most: int, only: tuple[str, ...] | None = None
+) -> int:
     """Judges the first of the sessions that are to be judged, or the first of some; how many wait for anything."""
     with storage.database.reading() as store:
         known = known_unit(store, Units(store).key(serial))
         waiting = tuple(p for p in places_of(known) if p.session.basis == NOT_JUDGED)
         places = tuple(p for p in waiting if only is None or p.session.id in only)[:most]
-        foreseen = judged(known, judging(known, serial, places, way.files, way.coverage_factor, way.at), places)
+        foreseen = judged(
+            known, judging(known, serial, places, context.files, context.coverage_factor, context.at), places
+        )
     with storage.database.writing() as store:
         known = known_unit(store, Units(store).hold(serial))
         waiting = tuple(p for p in places_of(known) if p.session.basis == NOT_JUDGED)
-        by = judging(known, serial, waiting, way.files, way.coverage_factor, way.at)
-        fit = fitting(by, waiting, foreseen)
+        rules = judging(known, serial, waiting, context.files, context.coverage_factor, context.at)
+        fit = fitting(rules, waiting, foreseen)
         Derivations(store).look_again(known.unit, END_OF_TIME, [p.session.id for p in fit])
         put(known, fit, foreseen, known.records.diagnosed.keys())
-        return _left(store, way, serial)
+        return _left(store, context, serial)
 
 
-def _weigh_waiting(storage: Storage, way: Deriving, serial: str, sessions: Sequence[Counted]) -> int:
+def _weigh_waiting(storage: Storage, context: Deriving, serial: str, sessions: Sequence[Counted]) -> int:
     """Sessions that are judged; those of which something changed meanwhile are left."""
     found = [weighed_again(storage, session) for session in sessions]
     with storage.database.writing() as store:
         known = known_unit(store, Units(store).hold(serial))
-        unweighed = {one.id: one for one in known.records.counted if one.is_unweighed}
-        for one in found:
-            own = unweighed.get(one.id)
-            if own is None or weighable(store, own) != one.of:
+        unweighed = {session.id: session for session in known.records.counted if session.is_unweighed}
+        for weighed in found:
+            session = unweighed.get(weighed.id)
+            if session is None or weighable(store, session) != weighed.weighable:
                 continue
-            if one.reservations is not None:
-                Diagnoses(store).put_reservations(one.id, one.reservations)
-            Derivations(store).put_weighed((one.id,))
-        return _left(store, way, serial)
+            if weighed.reservations is not None:
+                Diagnoses(store).put_reservations(weighed.id, weighed.reservations)
+            Derivations(store).put_weighed((weighed.id,))
+        return _left(store, context, serial)
 
 
-def _left(store: Store, way: Deriving, serial: str) -> int:
+def _left(store: Store, context: Deriving, serial: str) -> int:
     """How many sessions of a unit wait; where none does any more, what follows from all of them."""
     left = Derivations(store).waiting_of(serial)
     if not left:
         WorkQueue(store, WorkKind.DERIVATION).drop(serial)
-        sum_up(store, way, serial)
-        ask_for_summaries(store, serial, way.at)
+        sum_up(store, context, serial)
+        ask_for_summaries(store, serial, context.at)
     return left
 
 
-def date(storage: Storage, way: Deriving, *serials: str) -> None:
+def date(storage: Storage, context: Deriving, *serials: str) -> None:
     """After a change of records, where no background process does it. What fails is kept with why, and costs
     nobody else anything."""
-    for serial in () if way.is_dated_later or not way.outlook else serials:
+    for serial in () if context.is_dated_later or not context.outlook else serials:
         with ending_here("outlook", serial):
-            date_one(storage, serial, way.at)
+            date_one(storage, serial, context.at)
 
 
 def date_one(storage: Storage, serial: str, now: datetime) -> None:

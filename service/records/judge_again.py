@@ -65,17 +65,17 @@ class Place:
     @property
     def basis(self) -> str:
         """Everything that its verdict rests on: where this is another one, it is judged again."""
-        own, known = self.session, self.reference
+        session, known = self.session, self.reference
         against = "-" if known is None else f"{known.id}@{known.revision}"
         chosen = " chosen" if self.is_chosen and self.is_reference else ""
         since = "-" if self.since is None else self.since.isoformat()
-        return f"{against} {own.revision} {since}{chosen}{self._law}"
+        return f"{against} {session.revision} {since}{chosen}{self._law}"
 
     @property
     def _law(self) -> str:
         if not self.learned:
             return ""
-        learned = ",".join(f"{one.id}@{one.revision}" for one in self.learned)
+        learned = ",".join(f"{session.id}@{session.revision}" for session in self.learned)
         return " law " + sha256(learned.encode()).hexdigest()[:16]
 
 
@@ -93,35 +93,40 @@ def placed(
     """
     ordered = sorted(sessions, key=_moment)
     groups: dict[Group, list[Counted]] = {}
-    for one in ordered:
-        if one.programme != IN_SERVICE:
-            groups.setdefault(_group(one, breaks), []).append(one)
+    for counted in ordered:
+        if counted.programme != IN_SERVICE:
+            groups.setdefault(_group(counted, breaks), []).append(counted)
     rank = {id: number for number, id in enumerate(chosen)}
-    references = {group: _reference(own, rank, is_blind) for group, own in groups.items()}
+    references = {group: _reference(members, rank, is_blind) for group, members in groups.items()}
 
-    def place(one: Counted) -> Place:
-        group = _group(one, breaks)
+    def place(session: Counted) -> Place:
+        group = _group(session, breaks)
         reference = references.get(group)
-        learned = () if reference is None else _learned(one, reference, groups[group], enough)
-        return Place(one, reference, _since(one.at, breaks), one.id in rank, learned)
+        learned = () if reference is None else _learned(session, reference, groups[group], enough)
+        return Place(session, reference, _since(session.at, breaks), session.id in rank, learned)
 
-    return tuple(place(one) for one in ordered)
+    return tuple(place(session) for session in ordered)
 
 
-def _learned(one: Counted, reference: Counted, group: Sequence[Counted], enough: int) -> tuple[Counted, ...]:
+def _learned(session: Counted, reference: Counted, group: Sequence[Counted], enough: int) -> tuple[Counted, ...]:
     """The sessions of its group, in order of time, before one, and its reference, that may tell what its temperature is
     worth."""
-    if one.temperature is None or reference.temperature is None or one.programme == IN_SERVICE or one is reference:
+    if (
+        session.temperature is None
+        or reference.temperature is None
+        or session.programme == IN_SERVICE
+        or session is reference
+    ):
         return ()
-    earlier = group[: bisect_left(group, _moment(one), key=_moment)]
+    earlier = group[: bisect_left(group, _moment(session), key=_moment)]
     before = [s for s in earlier if s.temperature is not None and s is not reference]
-    own = sorted([reference, *before[-MOST_LEARNED:]], key=_moment)
-    warm = [s.temperature for s in own if s.temperature is not None]
-    return tuple(own) if can_tell(warm, reference.temperature, one.temperature, enough) else ()
+    kept = sorted([reference, *before[-MOST_LEARNED:]], key=_moment)
+    warm = [s.temperature for s in kept if s.temperature is not None]
+    return tuple(kept) if can_tell(warm, reference.temperature, session.temperature, enough) else ()
 
 
-def _moment(one: Counted) -> Moment:
-    return one.at, one.id
+def _moment(session: Counted) -> Moment:
+    return session.at, session.id
 
 
 def needs_judging(places: Sequence[Place], since: datetime) -> tuple[Place, ...]:
@@ -135,15 +140,15 @@ def needs_judging(places: Sequence[Place], since: datetime) -> tuple[Place, ...]
 
 
 def _is_stale(place: Place, since: datetime, moved: set[tuple[str, datetime | None]]) -> bool:
-    own = place.session
-    if own.basis is None:
-        return own.at >= since or (own.block, place.since) in moved
-    return own.rests_on != place.basis
+    session = place.session
+    if session.basis is None:
+        return session.at >= since or (session.block, place.since) in moved
+    return session.rests_on != place.basis
 
 
-def _group(one: Counted, breaks: Sequence[datetime]) -> Group:
+def _group(session: Counted, breaks: Sequence[datetime]) -> Group:
     """A recording in service is compared with the calibrations' reference."""
-    return one.block, alike(one.programme), bisect_right(breaks, one.at)
+    return session.block, alike(session.programme), bisect_right(breaks, session.at)
 
 
 def _since(at: datetime, breaks: Sequence[datetime]) -> datetime | None:
@@ -151,13 +156,13 @@ def _since(at: datetime, breaks: Sequence[datetime]) -> datetime | None:
     return breaks[number - 1] if number else None
 
 
-def _reference(own: Sequence[Counted], rank: dict[str, int], is_blind: Callable[[Counted], bool]) -> Counted | None:
+def _reference(group: Sequence[Counted], rank: dict[str, int], is_blind: Callable[[Counted], bool]) -> Counted | None:
     """The one chosen last, or the first that gives an uncertainty."""
-    chosen = max((one for one in own if one.id in rank), key=lambda one: rank[one.id], default=None)
+    chosen = max((s for s in group if s.id in rank), key=lambda s: rank[s.id], default=None)
     if chosen is not None:
         return chosen
-    in_order = sorted(own, key=_moment)
-    return next((one for one in in_order if not is_blind(one)), None)
+    in_order = sorted(group, key=_moment)
+    return next((s for s in in_order if not is_blind(s)), None)
 
 
 NOTHING_TO_COMPARE = (
@@ -204,9 +209,9 @@ class Foreseen:
 
 def places_of(known: KnownUnit) -> tuple[Place, ...]:
     """The unit's accepted sessions, each with its reference."""
-    own = known.records
-    enough = ENOUGH_WITH_TYPE if own.has_type_laws else ENOUGH_TO_BEND
-    return placed(own.counted, own.breaks, own.choices, known.is_blind, enough)
+    records = known.records
+    enough = ENOUGH_WITH_TYPE if records.has_type_laws else ENOUGH_TO_BEND
+    return placed(records.counted, records.breaks, records.choices, known.is_blind, enough)
 
 
 def judging(
@@ -217,26 +222,26 @@ def judging(
     return Judging(files, coverage_factor, at, UnitTypes(known.store).of_unit_through_time(serial), computed)
 
 
-def judged(known: KnownUnit, by: Judging, places: Sequence[Place]) -> Foreseen:
+def judged(known: KnownUnit, rules: Judging, places: Sequence[Place]) -> Foreseen:
     """The numerical part, on what is stored."""
     against = [p.reference for p in places if p.reference is not None]
-    learned = {one.id for p in places for one in p.learned}
-    known.read_all([*(p.session.id for p in places), *(one.id for one in against), *learned])
+    learned = {session.id for p in places for session in p.learned}
+    known.read_all([*(p.session.id for p in places), *(session.id for session in against), *learned])
     return Foreseen(
-        {place.session.id: _outcome(known, by, place) for place in places},
-        {(one.id, one.revision): known.calibration(one.id) for one in against},
+        {place.session.id: _outcome(known, rules, place) for place in places},
+        {(session.id, session.revision): known.calibration(session.id) for session in against},
     )
 
 
-def _outcome(known: KnownUnit, by: Judging, place: Place) -> Rejudgement:
-    unit_type = by.unit_type(place.session.id)
+def _outcome(known: KnownUnit, rules: Judging, place: Place) -> Rejudgement:
+    unit_type = rules.unit_type(place.session.id)
     if place.session.programme == IN_SERVICE:
-        return _of_recording(known, by, place, unit_type)
-    own = known.calibration(place.session.id)
+        return _of_recording(known, rules, place, unit_type)
+    calibration = known.calibration(place.session.id)
     against = None if place.is_reference or place.reference is None else known.calibration(place.reference.id)
     opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
     steps = NO_STEPS if against is None else _steps(known, place, against, unit_type)
-    decided = judge(own, against, unit_type, by.coverage_factor, opening=opening, steps=steps)
+    decided = judge(calibration, against, unit_type, rules.coverage_factor, opening=opening, steps=steps)
     return Rejudgement(place.basis, unit_type, decided)
 
 
@@ -246,9 +251,9 @@ def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: Un
         return NO_STEPS
     start = place.learned[0].at
     seen = [
-        Seen((one.at - start) / YEAR, one.temperature, known.calibration(one.id))
-        for one in place.learned
-        if one.temperature is not None
+        Seen((session.at - start) / YEAR, session.temperature, known.calibration(session.id))
+        for session in place.learned
+        if session.temperature is not None
     ]
     between = place.reference.temperature, place.session.temperature
     assert between[0] is not None
@@ -257,44 +262,48 @@ def _steps(known: KnownUnit, place: Place, reference: Calibration, unit_type: Un
     return temperature_steps(seen, reference, steps, tolerances_of(unit_type), laws)
 
 
-def _of_recording(known: KnownUnit, by: Judging, place: Place, unit_type: UnitType) -> Rejudgement:
+def _of_recording(known: KnownUnit, rules: Judging, place: Place, unit_type: UnitType) -> Rejudgement:
     """A recording in service moves the calibration that it is compared with, so it is compared anew."""
-    own, id = known.calibration(place.session.id), place.session.id
+    calibration, id = known.calibration(place.session.id), place.session.id
     if place.reference is None:
-        return Rejudgement(place.basis, unit_type, Judged(own, (), NOTHING_TO_COMPARE, is_reference=False))
+        return Rejudgement(place.basis, unit_type, Judged(calibration, (), NOTHING_TO_COMPARE, is_reference=False))
     sha256, filename = known.file(id)
     try:
-        source = read_upload(by.files.content(sha256), filename)
+        source = read_upload(rules.files.content(sha256), filename)
     except (*LOST, SessionError) as lost:
         return Rejudgement(
-            place.basis, unit_type, Judged(own, (), say("It cannot be compared: {lost}", lost=lost), is_reference=False)
+            place.basis,
+            unit_type,
+            Judged(calibration, (), say("It cannot be compared: {lost}", lost=lost), is_reference=False),
         )
     reference = known.calibration(place.reference.id)
     found = ReferenceComparison(reference, parity_check(source, reference))
     moved = parity_calibration(found.result, reference)
-    decided = judge_recording(moved, found, unit_type, by.coverage_factor)
+    decided = judge_recording(moved, found, unit_type, rules.coverage_factor)
     return Rejudgement(place.basis, unit_type, decided, made(moved))
 
 
-def fitting(by: Judging, places: Sequence[Place], foreseen: Foreseen) -> tuple[Place, ...]:
+def fitting(rules: Judging, places: Sequence[Place], foreseen: Foreseen) -> tuple[Place, ...]:
     """The places that were foreseen so."""
-    return tuple(p for p in places if _fits(by, p, foreseen.outcomes.get(p.session.id)))
+    return tuple(p for p in places if _fits(rules, p, foreseen.outcomes.get(p.session.id)))
 
 
-def _fits(by: Judging, place: Place, found: Rejudgement | None) -> bool:
-    return found is not None and (found.basis, found.unit_type) == (place.basis, by.unit_type(place.session.id))
+def _fits(rules: Judging, place: Place, found: Rejudgement | None) -> bool:
+    return found is not None and (found.basis, found.unit_type) == (place.basis, rules.unit_type(place.session.id))
 
 
 def put(known: KnownUnit, places: Sequence[Place], foreseen: Foreseen, diagnosed: Collection[str]) -> None:
     """Puts down what was worked out of sessions. Those that are diagnosed are still to be weighed."""
     decided = []
     for place in places:
-        own, outcome = place.session, foreseen.outcomes[place.session.id]
-        basis = (UNWEIGHED if own.id in diagnosed else "") + place.basis
-        evidence = verdict_evidence(own.at, outcome.judged)
-        decided.append(Decided(own.id, own.revision, outcome.judged, basis, evidence, is_first=own.id in known.made))
-        if own.programme == IN_SERVICE:
-            _move(known, own.id, outcome.moved)
+        session, outcome = place.session, foreseen.outcomes[place.session.id]
+        basis = (UNWEIGHED if session.id in diagnosed else "") + place.basis
+        evidence = verdict_evidence(session.at, outcome.judged)
+        decided.append(
+            Decided(session.id, session.revision, outcome.judged, basis, evidence, is_first=session.id in known.made)
+        )
+        if session.programme == IN_SERVICE:
+            _move(known, session.id, outcome.moved)
     Derivations(known.store).put_judged(decided)
 
 

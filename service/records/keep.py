@@ -43,8 +43,8 @@ def made(calibration: Calibration) -> MadeCalibration:
 
 def keep(store: Store, unit: int, new: Sequence[tuple[StoredSession, MadeCalibration]], at: datetime) -> None:
     """The calibrations and the parameters of the history; what is decided of them is derived."""
-    Calibrations(store).add([(record, one.packed) for record, one in new], at)
-    History(store).add(unit, [(record, one.values) for record, one in new])
+    Calibrations(store).add([(record, calibrated.packed) for record, calibrated in new], at)
+    History(store).add(unit, [(record, calibrated.values) for record, calibrated in new])
 
 
 MOST = 8_000_000

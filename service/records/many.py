@@ -96,8 +96,8 @@ def by_workers(
         raise ServiceError(WITHOUT.format(fault=fault)) from fault
     with storage.database.reading() as store:
         last = Audit(store).last()
-    own = room.real_cluster(scheduler) if scheduler else room.local_cluster(settings, workers)
-    running: AbstractContextManager[Run] = room.running(own, last, clock)
+    cluster = room.real_cluster(scheduler) if scheduler else room.local_cluster(settings, workers)
+    running: AbstractContextManager[Run] = room.running(cluster, last, clock)
     return running
 
 
@@ -115,7 +115,7 @@ OTHER = "This worker's database is another one; set its IMU_HEALTH_DATABASE_URL 
 @contextmanager
 def local_cluster(settings: Settings, workers: int) -> Iterator[Client]:
     """So many processes of this machine with these settings."""
-    own = {
+    environment = {
         "IMU_HEALTH_DATABASE_URL": settings.database,
         "IMU_HEALTH_DATA_FOLDER": str(settings.data_folder),
         "OPENBLAS_NUM_THREADS": "1",
@@ -128,7 +128,7 @@ def local_cluster(settings: Settings, workers: int) -> Iterator[Client]:
             security=True,
             scheduler_kwargs=QUIET,
             silence_logs=logging.CRITICAL,
-            env=own,
+            env=environment,
         ) as cluster,
         Client(cluster) as client,
     ):

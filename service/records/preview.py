@@ -50,7 +50,7 @@ class _State:
     @property
     def counted(self) -> tuple[StoredSession, ...]:
         """Sessions that count."""
-        return tuple(one for one in self.sessions if one.state is RecordState.ACCEPTED)
+        return tuple(session for session in self.sessions if session.state is RecordState.ACCEPTED)
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class _Trial:
     """A service that is recorded again and again, and never kept."""
 
     storage: Storage
-    way: Deriving
+    context: Deriving
     serial: str
     new: NewService
     foreseen: ForeseenVerdicts
@@ -67,29 +67,29 @@ class _Trial:
     def recorded(self) -> Iterator[Store]:
         """The store as it is with it, until the block ends."""
         with self.storage.database.trying() as store:
-            number, _ = Services(store).add(Units(store).hold(self.serial), self.new, self.way.at)
+            number, _ = Services(store).add(Units(store).hold(self.serial), self.new, self.context.at)
             Services(store).put_state(number, RecordState.ACCEPTED)
-            derive_again(store, self.way, self.serial, self.new.at, foreseen=self.foreseen)
-            sum_up(store, self.way, self.serial)
+            derive_again(store, self.context, self.serial, self.new.at, foreseen=self.foreseen)
+            sum_up(store, self.context, self.serial)
             yield store
 
 
-def preview_service(storage: Storage, way: Deriving, serial: str, new: NewService) -> ServicePreview:
+def preview_service(storage: Storage, context: Deriving, serial: str, new: NewService) -> ServicePreview:
     """What would change; RefusedError where it cannot be recorded."""
     with storage.database.reading() as store:
-        require_possible(store, serial, new, way.at)
-        before, foreseen = _state(store, serial), _judged_with(store, way, serial, new)
-    after = _after(_Trial(storage, way, serial, new, foreseen)) if before.counted else before
-    is_late = any(one.started_at >= new.at for one in before.counted)
+        require_possible(store, serial, new, context.at)
+        before, foreseen = _state(store, serial), _judged_with(store, context, serial, new)
+    after = _after(_Trial(storage, context, serial, new, foreseen)) if before.counted else before
+    is_late = any(session.started_at >= new.at for session in before.counted)
     return ServicePreview(serial, new.at, is_late, tuple(_changes(before, after)))
 
 
-def _judged_with(store: Store, way: Deriving, serial: str, new: NewService) -> ForeseenVerdicts:
+def _judged_with(store: Store, context: Deriving, serial: str, new: NewService) -> ForeseenVerdicts:
     known = known_unit(store, Units(store).key(serial))
     breaks = tuple(sorted({*known.records.breaks, new.at}))
     known = replace(known, records=replace(known.records, breaks=breaks))
     places = needs_judging(places_of(known), new.at)
-    return judged(known, judging(known, serial, places, way.files, way.coverage_factor, way.at), places)
+    return judged(known, judging(known, serial, places, context.files, context.coverage_factor, context.at), places)
 
 
 def _after(trial: _Trial) -> _State:
@@ -103,7 +103,7 @@ def _after(trial: _Trial) -> _State:
         sources = gathered(store, serial, known)
     outlook = worked_out(sources)
     with trial.recorded() as store:
-        put_outlook(store, sources.past, outlook, trial.way.at)
+        put_outlook(store, sources.past, outlook, trial.context.at)
         return _state(store, serial)
 
 
@@ -123,8 +123,8 @@ def _changes(before: _State, after: _State) -> Iterator[ForeseenChange]:
     for was, now in zip(before.sessions, after.sessions, strict=True):
         words = _verdict(was), _verdict(now)
         if words[0] != words[1]:
-            what = say("Session of {day}", day=day_of(was.started_at))
-            yield ForeseenChange(ForeseenKind.VERDICT, what, *words, was.id)
+            name = say("Session of {day}", day=day_of(was.started_at))
+            yield ForeseenChange(ForeseenKind.VERDICT, name, *words, was.id)
     if before.next != after.next:
         yield ForeseenChange(ForeseenKind.DUE, "Next calibration", before.next, after.next)
     for key in sorted(before.flags.keys() - after.flags.keys()):

@@ -88,33 +88,33 @@ def recalibrate(
     coverage_factor: float = 2.0,
     who: str = "engineer",
     until: int | None = None,
-    then: Callable[[Store, Recalibrated], None] = nothing,
+    record: Callable[[Store, Recalibrated], None] = nothing,
 ) -> Recalibrated:
     """Computes every session of a unit under its model, those that do not count too, and judges what rests on them.
 
     ``until``: the last revision that counts, so that what each of several moved can be distinguished; None for all.
-    ``then`` belongs to the transaction that puts it in force.
+    ``record`` belongs to the transaction that puts it in force.
     """
     sources = _sources(storage, serial, until)
     outcomes = [_recalibrated(storage, source) for source in sources]
     stored = [source.session for source in sources]
-    new = [one for one in outcomes if isinstance(one, _Recomputed)]
-    way, derived = Deriving(storage.files, coverage_factor, now, at_once=None), None
-    foreseen = _foreseen(storage, way, serial, new)
+    new = [outcome for outcome in outcomes if isinstance(outcome, _Recomputed)]
+    context, derived = Deriving(storage.files, coverage_factor, now, at_once=None), None
+    foreseen = _foreseen(storage, context, serial, new)
     with storage.database.writing() as store:
         if new:
             Units(store).hold(serial)
         before = {session.id: session for session in Sessions(store).of_unit(serial)}
-        put = [replace(one, session=before[one.session.id]) for one in new]
-        put = [one for one in put if one.session.revision < one.model.revision]
+        put = [replace(r, session=before[r.session.id]) for r in new]
+        put = [r for r in put if r.session.revision < r.model.revision]
         if put:
-            derived = _put_in_force(store, way, serial, put, foreseen)
+            derived = _put_in_force(store, context, serial, put, foreseen)
         after = {session.id: session for session in Sessions(store).of_unit(serial)}
-        _write_down(store, way, [(before[one.session.id], after[one.session.id]) for one in put], who)
+        _write_down(store, context, [(before[r.session.id], after[r.session.id]) for r in put], who)
         done = _report(serial, stored, outcomes, tuple(moved_verdicts(before, tuple(after.values()))))
-        then(store, done)
+        record(store, done)
     if derived is not None:
-        follow(storage, way, serial, derived)
+        follow(storage, context, serial, derived)
     return done
 
 
@@ -160,17 +160,17 @@ def _report(
     moved: tuple[MovedVerdict, ...],
 ) -> Recalibrated:
     pairs = zip(outcomes, stored, strict=True)
-    used = [one.model.revision if isinstance(one, _Recomputed) else own.revision for one, own in pairs]
-    made = [one for one in outcomes if isinstance(one, _Recomputed)]
+    used = [new.model.revision if isinstance(new, _Recomputed) else old.revision for new, old in pairs]
+    made = [outcome for outcome in outcomes if isinstance(outcome, _Recomputed)]
     return Recalibrated(
         unit=serial,
         sessions=len(stored),
         recomputed=len(made),
         unchanged=outcomes.count(None),
-        kept=tuple(one for one in outcomes if isinstance(one, LeftSession)),
+        kept=tuple(outcome for outcome in outcomes if isinstance(outcome, LeftSession)),
         revision=max(used, default=0),
         verdicts=moved,
-        furthest=furthest([one for each in made for one in each.moved]),
+        furthest=furthest([parameter for r in made for parameter in r.moved]),
     )
 
 
@@ -201,35 +201,39 @@ def _recalibrated(storage: Storage, source: _Source) -> _Recomputed | LeftSessio
         ).calibration
     except (*LOST, SessionError) as fault:
         return LeftSession(stored.id, str(fault))
-    own = made(found)
-    return _Recomputed(stored, model, own, tuple(moved_parameters(stored.id, source.values, own.values)))
+    result = made(found)
+    return _Recomputed(stored, model, result, tuple(moved_parameters(stored.id, source.values, result.values)))
 
 
-def _foreseen(storage: Storage, way: Deriving, serial: str, new: Sequence[_Recomputed]) -> Foreseen:
+def _foreseen(storage: Storage, context: Deriving, serial: str, new: Sequence[_Recomputed]) -> Foreseen:
     if not new:
         return NOTHING_FORESEEN
-    made = {one.session.id: (one.model.revision, one.made.calibration) for one in new}
+    made = {r.session.id: (r.model.revision, r.made.calibration) for r in new}
     with storage.database.reading() as store:
-        return foresee_revisions(store, way, serial, made, min(one.session.started_at for one in new))
+        return foresee_revisions(store, context, serial, made, min(r.session.started_at for r in new))
 
 
-def _put_in_force(store: Store, way: Deriving, serial: str, new: Sequence[_Recomputed], foreseen: Foreseen) -> Derived:
+def _put_in_force(
+    store: Store, context: Deriving, serial: str, new: Sequence[_Recomputed], foreseen: Foreseen
+) -> Derived:
     """Other calibrations beside the ones before, in force from now on, with what follows from them, also of sessions
     that are judged against one of them."""
     unit = Units(store).key(serial)
-    revisions = {one.session.id: one.model.revision for one in new}
+    revisions = {r.session.id: r.model.revision for r in new}
     Derivations(store).put_revisions(revisions)
-    keep(store, unit, [(replace(one.session, revision=one.model.revision), one.made) for one in new], way.at)
+    keep(store, unit, [(replace(r.session, revision=r.model.revision), r.made) for r in new], context.at)
     SessionNoises(store).carry(revisions)
-    made = {one.session.id: one.made.calibration for one in new}
-    known, since = known_unit(store, unit, made, foreseen.references), min(one.session.started_at for one in new)
-    return derive_again(store, way, serial, since, tuple(made), known=known, foreseen=foreseen)
+    made = {r.session.id: r.made.calibration for r in new}
+    known, since = known_unit(store, unit, made, foreseen.references), min(r.session.started_at for r in new)
+    return derive_again(store, context, serial, since, tuple(made), known=known, foreseen=foreseen)
 
 
-def _write_down(store: Store, way: Deriving, changed: Sequence[tuple[StoredSession, StoredSession]], who: str) -> None:
+def _write_down(
+    store: Store, context: Deriving, changed: Sequence[tuple[StoredSession, StoredSession]], who: str
+) -> None:
     for was, now in changed:
         details = {"revision": now.revision, "verdict": now.verdict.value, "before": was.verdict.value}
-        Audit(store).write(way.at, who, "recalibrate", now.id, details)
+        Audit(store).write(context.at, who, "recalibrate", now.id, details)
 
 
 def recompute_beside(reception: Reception, now: datetime) -> None:
@@ -254,4 +258,4 @@ def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: floa
 
     with storage.database.reading() as store:
         who = Models(store).get(task.revision).accepted_by
-    recalibrate(storage, task.unit, now, coverage_factor=coverage_factor, who=who, until=task.revision, then=settle)
+    recalibrate(storage, task.unit, now, coverage_factor=coverage_factor, who=who, until=task.revision, record=settle)

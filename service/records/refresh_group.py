@@ -120,8 +120,8 @@ def _answered(
     if not pooled:
         return replace(made, document=group_document(group, None, members))
     try:
-        own = [_named(records[m.session], m) for m in pooled]
-        found = diagnose_statistics(own, group.level.value, _sessions(files, pooled))
+        statistics = [_named(records[m.session], m) for m in pooled]
+        found = diagnose_statistics(statistics, group.level.value, _sessions(files, pooled))
     except SessionError as fault:
         log.error("group failed", level=group.level.value, name=group.name, exc_info=fault)
         return replace(made, summary=FAILED)

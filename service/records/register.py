@@ -57,7 +57,7 @@ class Entered:
     """Units of which everything was known already."""
 
 
-def enter(storage: Storage, entries: Sequence[NewEntry], by: Entering) -> Entered:
+def enter(storage: Storage, entries: Sequence[NewEntry], entering: Entering) -> Entered:
     """Enters units, or changes what the register says of them; RefusedError with every problem by its row, then
     nothing is stored."""
     with storage.database.writing() as store:
@@ -71,7 +71,7 @@ def enter(storage: Storage, entries: Sequence[NewEntry], by: Entering) -> Entere
         if problems:
             raise RefusedError("The register cannot be changed so. Nothing was stored.", problems)
         ordered = sorted(entries, key=lambda entry: entry.serial)
-        changed = sum(_enter(store, entry, known.get(entry.serial), by) for entry in ordered)
+        changed = sum(_enter(store, entry, known.get(entry.serial), entering) for entry in ordered)
         new = sum(entry.serial not in known for entry in entries)
     return Entered(new, changed - new, len(entries) - changed)
 
@@ -88,25 +88,27 @@ def _problems(entry: NewEntry, known: Registered | None, *, is_measured: bool) -
     return found
 
 
-def _enter(store: Store, entry: NewEntry, known: Registered | None, by: Entering) -> bool:
+def _enter(store: Store, entry: NewEntry, known: Registered | None, entering: Entering) -> bool:
     """Stores one entry; whether that changed anything."""
     if known is not None and known.registered_at is not None and not _differences(entry, known):
         return False
     if entry.unit_type and (known is None or entry.unit_type != known.unit_type):
-        UnitTypes(store).add_once(named_only(entry.unit_type), by.now)
+        UnitTypes(store).add_once(named_only(entry.unit_type), entering.now)
         Units(store).add_once(entry.serial, entry.unit_type, simulated=False)
         Units(store).begin(entry.serial, entry.unit_type, simulated=False)
     unit = Units(store).hold(entry.serial)
-    Register(store).put(unit, entry, by.now)
+    Register(store).put(unit, entry, entering.now)
     is_new = known is None or known.registered_at is None
     moved = {name for name in ("location", "custodian") if known and name in _differences(entry, known)}
     if is_new or moved:
         step = CustodyStep.ENTERED if is_new else CustodyStep.MOVED
-        move = Move(entry.location, entry.custodian, by.remark, step)
-        Register(store).add(unit, known, move, by.now, by.who, by.now)
+        move = Move(entry.location, entry.custodian, entering.remark, step)
+        Register(store).add(unit, known, move, entering.now, entering.who, entering.now)
     before = {} if known is None else {name: getattr(known, name) for name in _differences(entry, known)}
     stated = {name: value for name, value in vars(entry).items() if value is not None and name != "serial"}
-    Audit(store).write(by.now, by.who, ACTIONS[CustodyStep.ENTERED], entry.serial, {"before": before, "entry": stated})
+    Audit(store).write(
+        entering.now, entering.who, ACTIONS[CustodyStep.ENTERED], entry.serial, {"before": before, "entry": stated}
+    )
     return True
 
 

@@ -109,12 +109,12 @@ def read_all(
 
 def register_table(found: Sequence[Registered]) -> "pl.DataFrame":
     """One row a unit."""
-    return table_of([_row(one) for one in found], COLUMNS)
+    return table_of([_row(unit) for unit in found], COLUMNS)
 
 
-def _row(one: Registered) -> dict[str, Any]:
-    retired = "" if one.retired_at is None else f"{one.retired_at:%Y-%m-%d}"
-    return vars(one) | {"serial": one.unit, "retired_on": retired}
+def _row(unit: Registered) -> dict[str, Any]:
+    retired = "" if unit.retired_at is None else f"{unit.retired_at:%Y-%m-%d}"
+    return vars(unit) | {"serial": unit.unit, "retired_on": retired}
 
 
 IMPORTED: Json = {

@@ -44,7 +44,7 @@ router = APIRouter(include_in_schema=False)
 @router.get("/register", response_class=HTMLResponse)
 def show_register(request: Request, store: Reading) -> HTMLResponse:
     """The forms."""
-    types = tuple(one.name for one in UnitTypes(store).page(0, MOST_TYPES))
+    types = tuple(unit_type.name for unit_type in UnitTypes(store).page(0, MOST_TYPES))
     return render(request, "register.html", RegisterPage(types))
 
 
@@ -64,7 +64,7 @@ def enter_unit(
 def import_units(request: Request, sent: SentOf, storage: StorageOf, now: Now) -> HTMLResponse:
     """Enters the units of a table; the page again with what became of it."""
     with storage.database.reading() as store:
-        types = tuple(one.name for one in UnitTypes(store).page(0, MOST_TYPES))
+        types = tuple(unit_type.name for unit_type in UnitTypes(store).page(0, MOST_TYPES))
     try:
         page = RegisterPage(types, import_register(storage, sent, now))
     except RefusedError as refusal:

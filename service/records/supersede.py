@@ -26,41 +26,43 @@ REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
 """States of a session that another one can stand for."""
 
 
-def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: str) -> tuple[StoredSession, Derived]:
+def supersede_session(
+    storage: Storage, context: Deriving, replaced: Replaced, successor: str
+) -> tuple[StoredSession, Derived]:
     """Marks a stored session as superseded by another; ConflictError where either does not count."""
-    settled = settled_by(storage, replaced.session, by)
+    settled = settled_by(storage, replaced.session, successor)
     with storage.database.writing() as store:
-        derived = supersede(store, way, replaced, Sessions(store).get(by), settled)
-    for serial, own in derived.items():
-        follow(storage, way, serial, own)
+        derived = supersede(store, context, replaced, Sessions(store).get(successor), settled)
+    for serial, unit_derived in derived.items():
+        follow(storage, context, serial, unit_derived)
     with storage.database.reading() as store:
         session = Sessions(store).get(replaced.session)
         return session, derived[session.unit]
 
 
 def supersede(
-    store: Store, way: Deriving, replaced: Replaced, by: StoredSession, settled: str | None
+    store: Store, context: Deriving, replaced: Replaced, successor: StoredSession, settled: str | None
 ) -> dict[str, Derived]:
     """The same within a transaction; derives what is known of the units concerned.
 
     ``settled``: the doubt that the other session is in and that this answers, of `settled_by`.
     """
-    is_settled = _is_in_doubt_for(store, by, settled)
-    known = give_way(store, way.at, replaced, by)
-    touched = (known.id, by.id)
+    is_settled = _is_in_doubt_for(store, successor, settled)
+    known = give_way(store, context.at, replaced, successor)
+    touched = (known.id, successor.id)
     if is_settled:
-        change(store, by, RecordState.ACCEPTED, Step(replaced.who, way.at, replaced.why))
-    derived = {known.unit: derive_again(store, way, known.unit, known.started_at, touched)}
-    if is_settled and by.unit != known.unit:
-        derived[by.unit] = derive_again(store, way, by.unit, by.started_at, touched)
+        change(store, successor, RecordState.ACCEPTED, Step(replaced.who, context.at, replaced.why))
+    derived = {known.unit: derive_again(store, context, known.unit, known.started_at, touched)}
+    if is_settled and successor.unit != known.unit:
+        derived[successor.unit] = derive_again(store, context, successor.unit, successor.started_at, touched)
     return derived
 
 
-def settled_by(storage: Storage, replaced: str, by: str) -> str | None:
+def settled_by(storage: Storage, replaced: str, successor: str) -> str | None:
     """The one doubt that a questioned session is in, where it is that it holds the readings of the session which it
     supersedes now."""
     with storage.database.reading() as store:
-        session = Sessions(store).get(by)
+        session = Sessions(store).get(successor)
     if session.state is not RecordState.QUESTIONED:
         return None
     try:
@@ -69,7 +71,9 @@ def settled_by(storage: Storage, replaced: str, by: str) -> str | None:
         return None
     with storage.database.reading() as store:
         known = known_unit(store, Units(store).key(session.unit))
-        found = doubts(known, as_checked(source, session.started_at, session.unit), known.calibration(by), (by,))
+        found = doubts(
+            known, as_checked(source, session.started_at, session.unit), known.calibration(successor), (successor,)
+        )
     return found[0].text if [doubt.stands_for for doubt in found] == [replaced] else None
 
 
@@ -80,11 +84,11 @@ def _is_in_doubt_for(store: Store, session: StoredSession, why: str | None) -> b
     return States(store).of(RecordKind.SESSION, session.id)[-1].why == why
 
 
-def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) -> StoredSession:
+def give_way(store: Store, at: datetime, replaced: Replaced, successor: StoredSession) -> StoredSession:
     """Writes down that a session is superseded, and returns it as it was."""
     Units(store).hold(Sessions(store).get(replaced.session).unit)
     known = Sessions(store).get(replaced.session)
-    if known.id == by.id:
+    if known.id == successor.id:
         raise ConflictError(
             say("Session {id} cannot replace itself: the file contains what is already stored.", id=known.id)
         )
@@ -92,9 +96,11 @@ def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) 
         raise ConflictError(
             say("Session {id} is already {state}: nothing replaces it.", id=known.id, state=known.state)
         )
-    if by.state not in REPLACEABLE:
-        raise ConflictError(say("Session {id} is itself {state}: it replaces no other.", id=by.id, state=by.state))
-    change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=by.id)
+    if successor.state not in REPLACEABLE:
+        raise ConflictError(
+            say("Session {id} is itself {state}: it replaces no other.", id=successor.id, state=successor.state)
+        )
+    change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=successor.id)
     return known
 
 

@@ -65,9 +65,9 @@ def attach_file(storage: Storage, given: Attaching, who: str, now: datetime) -> 
         unit, session = _home(store, given)
         key = Units(store).hold(unit)
         known = Attachments(store).of_session(session) if session else Attachments(store).of_unit(unit)
-        for one in known:
-            if (one.sha256, one.session, one.withdrawal) == (digest, session, None):
-                return one
+        for attachment in known:
+            if (attachment.sha256, attachment.session, attachment.withdrawal) == (digest, session, None):
+                return attachment
         name, size = plain_filename(given.filename), len(given.content)
         id = Attachments(store).add(key, NewAttachment(session, digest, name, size, given.text, who, now))
         details = {"attachment": id, "session": session, "sha256": digest, "filename": name}

@@ -106,26 +106,26 @@ def _temperatures(store: Store, session: StoredSession, basis: Basis, since: dat
 
 
 @outside_writing
-def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighed:
+def weigh(session: CalibrationSession, found: Diagnosed, weighing: Weighing) -> Weighed:
     """The numerical part, with no store at hand."""
-    after = by.basis.verdict_of(found.calibration) if by.basis is not None and found.findings else None
+    after = weighing.basis.verdict_of(found.calibration) if weighing.basis is not None and found.findings else None
     others: tuple[Otherwise, ...] = ()
-    if by.basis is not None:
-        others = tuple(verdicts_under_alternatives(session, found.findings, by.basis))
+    if weighing.basis is not None:
+        others = tuple(verdicts_under_alternatives(session, found.findings, weighing.basis))
     if after is not None:
         first = found.findings[0]
         causes = tuple(finding.cause for finding in found.findings)
         others = (Otherwise(causes, first.sensors, after, named=True), *others)
     doubted = Doubted(
-        verdict=by.verdict,
+        verdict=weighing.verdict,
         findings=found.findings,
         structures=found.structures,
         noise=found.noise,
-        by=Yardstick(found.calibration, found.residuals_before, by.tolerances),
+        yardstick=Yardstick(found.calibration, found.residuals_before, weighing.tolerances),
         otherwise=others,
-        known=by.known,
-        temperatures=by.temperatures,
-        worth=worth_at(by.temperatures, by.steps.keys()),
+        known=weighing.known,
+        temperatures=weighing.temperatures,
+        worth=worth_at(weighing.temperatures, weighing.steps.keys()),
     )
     return Weighed(after, reservations_of(doubted))
 
@@ -133,8 +133,8 @@ def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighe
 def unlooked(storage: Storage, id: str) -> tuple[Reservation, ...]:
     """The reservations of a session whose programme shows no causes."""
     with storage.database.reading() as store:
-        by = weighing_of(store, id, Sessions(store).block(id))
-    return reservations_at(by.temperatures)
+        weighing = weighing_of(store, id, Sessions(store).block(id))
+    return reservations_at(weighing.temperatures)
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class WeighedAgain:
     """The reservations of a verdict."""
 
     id: str
-    of: Weighable
+    weighable: Weighable
     reservations: tuple[Reservation, ...] | None
     """None where there is nothing to weigh."""
 
@@ -167,15 +167,15 @@ def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
     or can no longer be read, that nobody could look. No transaction is open."""
     id = session.id
     with storage.database.reading() as store:
-        of, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)
+        weighed, stored, made = weighable(store, session), Sessions(store).get(id), Diagnoses(store).get(id)
     if made is not None and made.state is DiagnosisState.NOT_APPLICABLE:
-        return WeighedAgain(id, of, unlooked(storage, id))
+        return WeighedAgain(id, weighed, unlooked(storage, id))
     if made is None or made.found is None:
-        return WeighedAgain(id, of, None)
+        return WeighedAgain(id, weighed, None)
     try:
         source = read_upload(storage.files.content(stored.sha256), stored.filename)
     except (*LOST, SessionError):
-        return WeighedAgain(id, of, UNCHECKED)
+        return WeighedAgain(id, weighed, UNCHECKED)
     with storage.database.reading() as store:
-        by = weighing_of(store, id, source.block)
-    return WeighedAgain(id, of, weigh(source, made.found, by).reservations)
+        weighing = weighing_of(store, id, source.block)
+    return WeighedAgain(id, weighed, weigh(source, made.found, weighing).reservations)

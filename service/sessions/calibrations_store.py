@@ -64,9 +64,9 @@ class Calibrations(Queries):
 
     def put(self, session: str, revision: int, packed: PackedCalibration) -> None:
         """Stores another calibration in place of the one of a session and revision."""
-        own = (CalibrationRow.session_id == session, CalibrationRow.revision == revision)
+        conditions = (CalibrationRow.session_id == session, CalibrationRow.revision == revision)
         values = {"method": packed.method, "document": packed.document}
-        self._session.execute(update(CalibrationRow).where(*own).values(**values))
+        self._session.execute(update(CalibrationRow).where(*conditions).values(**values))
 
     def json(self, session: str, revision: int | None = None) -> bytes:
         """imu-calibration/1 of a session, as it was written: the one in force, or the one of a revision."""
@@ -82,9 +82,9 @@ class Calibrations(Queries):
     def with_session(self, id: str) -> tuple[StoredSession, DiagnosisSummary | None, str, Calibration]:
         """A session, its diagnosis in one line where it is made, why the last try to make it failed, and its
         calibration in force; in one query."""
-        own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
+        in_force = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
         line = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.gain_in_words, WorkRow.failed)
-        query = session_rows().add_columns(*line, CalibrationRow.document).join(CalibrationRow, own)
+        query = session_rows().add_columns(*line, CalibrationRow.document).join(CalibrationRow, in_force)
         whole = query.outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id))
         row = self._session.execute(whole.where(SessionRow.id == id)).one_or_none()
         if row is None:
@@ -107,15 +107,15 @@ class Calibrations(Queries):
     ) -> tuple[str | None, dict[str, Calibration], dict[str, Steps]]:
         """The reference that a query names, and of it and of some sessions the calibrations in force and what was
         taken off for temperature; in one query."""
-        of, against, row = lists("calibrations", "laws"), reference.scalar_subquery(), DecisionRow
+        listed, against, row = lists("calibrations", "laws"), reference.scalar_subquery(), DecisionRow
         calibrated = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
         decided = (row.session_id == SessionRow.id) & (row.revision == SessionRow.revision)
         rows = self._session.execute(
             select(against, SessionRow.id, CalibrationRow.document, row)
-            .select_from(of)
+            .select_from(listed)
             .join(SessionRow, SessionRow.id.in_(tuple(sessions)) | (SessionRow.id == against))
-            .outerjoin(CalibrationRow, (of.c.list == "calibrations") & calibrated)
-            .outerjoin(row, (of.c.list == "laws") & decided & row.temperature_correction.is_not(None))
+            .outerjoin(CalibrationRow, (listed.c.list == "calibrations") & calibrated)
+            .outerjoin(row, (listed.c.list == "laws") & decided & row.temperature_correction.is_not(None))
         ).all()
         calibrations = {id: calibration_of(document) for _, id, document, _ in rows if document is not None}
         corrected = [(id, decision_record(decision)) for _, id, _, decision in rows if decision is not None]
@@ -171,10 +171,10 @@ class SessionNoises(Queries):
         values = {"document": document, "estimator_version": version, "made_at": at}
         if not self.insert_once(SessionNoiseRow, session_id=record.id, **values):
             return
-        own = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
+        key = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
         rows = [
             {
-                **own, "sensor": sensor.name, "sensor_index": index, "kind": sensor.kind, "parameter": term.name,
+                **key, "sensor": sensor.name, "sensor_index": index, "kind": sensor.kind, "parameter": term.name,
                 "value": term.value, "u": term.sigma, "axis_x": None, "axis_y": None, "axis_z": None,
             }
             for index, sensor in enumerate(found.sensors)
@@ -185,13 +185,13 @@ class SessionNoises(Queries):
     def carry(self, revisions: Mapping[str, int]) -> None:
         """Writes the terms of sessions under another model revision too: noise is the same under all."""
         row = ParameterRow
-        own = (row.session_id.in_(tuple(revisions)), row.parameter.in_(TERMS))
-        known = self._session.scalars(select(row).where(*own).order_by(row.revision))
-        newest = {(one.session_id, one.sensor, one.parameter): one for one in known}
+        conditions = (row.session_id.in_(tuple(revisions)), row.parameter.in_(TERMS))
+        known = self._session.scalars(select(row).where(*conditions).order_by(row.revision))
+        newest = {(term.session_id, term.sensor, term.parameter): term for term in known}
         columns = [column.name for column in row.__table__.columns]
         rows = [
-            {**{name: getattr(one, name) for name in columns}, "revision": revisions[one.session_id]}
-            for one in newest.values()
-            if one.revision != revisions[one.session_id]
+            {**{name: getattr(term, name) for name in columns}, "revision": revisions[term.session_id]}
+            for term in newest.values()
+            if term.revision != revisions[term.session_id]
         ]
         self.insert_many(row, rows)

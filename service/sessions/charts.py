@@ -211,12 +211,12 @@ def noise_of(residuals: Residuals, calibration: Calibration) -> Noise:
 
     The median over a sensor's rows, because readings that take no part are given a sigma beyond all bounds.
     """
-    stated, own = _stated(residuals), _stated(calibration.residuals)
+    stated, of_calibration = _stated(residuals), _stated(calibration.residuals)
     factor = calibration.fit.covariance_factor
     if calibration.residuals.enlarged_by is None or not isfinite(factor):
         return Noise(stated, np.ones(stated.shape[1]))
-    known = np.isfinite(stated) & np.isfinite(own) & (stated > 0)
-    ratio = np.divide(own, stated, out=np.ones_like(stated), where=known)
+    known = np.isfinite(stated) & np.isfinite(of_calibration) & (stated > 0)
+    ratio = np.divide(of_calibration, stated, out=np.ones_like(stated), where=known)
     return Noise(stated, np.maximum(1.0, np.median(ratio, axis=0) * sqrt(max(factor, 1.0))))
 
 

@@ -42,17 +42,17 @@ def curve_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
 
 def _sets(calibration: Calibration, curves: ThermalCurves) -> Iterator[ChartSet]:
     kinds = {sensor.name: sensor.kind for sensor in calibration.sensors}
-    for kind in dict.fromkeys(kinds[own.name] for own in curves.sensors):
-        own = [one for one in curves.sensors if kinds[one.name] == kind]
-        yield _set(curves, kind, "bias", {one.name: one.bias for one in own})
-        scales = {one.name: one.scale for one in own if one.scale is not None}
+    for kind in dict.fromkeys(kinds[sensor.name] for sensor in curves.sensors):
+        of_kind = [sensor for sensor in curves.sensors if kinds[sensor.name] == kind]
+        yield _set(curves, kind, "bias", {sensor.name: sensor.bias for sensor in of_kind})
+        scales = {sensor.name: sensor.scale for sensor in of_kind if sensor.scale is not None}
         if scales:
             yield _set(curves, kind, "scale", scales)
 
 
-def _set(curves: ThermalCurves, kind: str, parameter: str, own: dict[str, Curve]) -> ChartSet:
+def _set(curves: ThermalCurves, kind: str, parameter: str, by_sensor: dict[str, Curve]) -> ChartSet:
     T = np.linspace(curves.lowest, curves.highest, POINTS)
-    found = {name: change(curves, curve, parameter, T) for name, curve in own.items()}
+    found = {name: change(curves, curve, parameter, T) for name, curve in by_sensor.items()}
     low = min(float((moved - u).min()) for moved, u in found.values())
     high = max(float((moved + u).max()) for moved, u in found.values())
     measure = deviation_measure(kind, parameter, max(-low, high))
@@ -67,7 +67,7 @@ def _set(curves: ThermalCurves, kind: str, parameter: str, own: dict[str, Curve]
         name=f"curves-{kind}-{parameter}",
         heading=words[parameter],
         spec=filled(_spec(), {LEFT: left, RIGHT: right, LOW: bottom, HIGH: top, **texts}),
-        panels=tuple(_panel(name, T, *found[name], measure, own[name].order) for name in own),
+        panels=tuple(_panel(name, T, *found[name], measure, by_sensor[name].order) for name in by_sensor),
     )
 
 

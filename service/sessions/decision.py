@@ -71,8 +71,8 @@ def nominal_factor_of(decisions: tuple[Decision, ...]) -> float:
 
 def steps_in(decisions: tuple[Decision, ...]) -> Steps:
     """What was taken off for temperature, by sensor and parameter."""
-    each = ((one.sensor, one.parameter, one.temperature_correction) for one in decisions)
-    return {(sensor, parameter): taken for sensor, parameter, taken in each if taken is not None}
+    rows = ((decision.sensor, decision.parameter, decision.temperature_correction) for decision in decisions)
+    return {(sensor, parameter): taken for sensor, parameter, taken in rows if taken is not None}
 
 
 def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:

@@ -49,7 +49,7 @@ class FileCorrection:
 class Doubt:
     """One thing that cannot be as the file says."""
 
-    what: str
+    problem: str
     """Beyond what physics allows, with the numbers."""
     slip: str
     """What has probably happened."""
@@ -68,7 +68,7 @@ class Doubt:
         )
         if self.stands_for is not None:
             remedy = " Together they would count twice: choose the one that counts."
-        return say("{what}: {slip}.{remedy}", what=self.what, slip=self.slip, remedy=remedy)
+        return say("{what}: {slip}.{remedy}", what=self.problem, slip=self.slip, remedy=remedy)
 
 
 @dataclass(frozen=True)
@@ -88,9 +88,7 @@ def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
     found = tuple(doubts)
     known = tuple(doubt.correction for doubt in found if doubt.correction is not None)
     stands_for = next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None)
-    return Remedies(
-        joined(", ", (one.text for one in known)), stands_for, next((one.unit for one in known if one.unit), "")
-    )
+    return Remedies(joined(", ", (d.text for d in known)), stands_for, next((d.unit for d in known if d.unit), ""))
 
 
 class DoubtKind(StrEnum):

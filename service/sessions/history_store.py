@@ -10,11 +10,13 @@ from datetime import datetime
 from math import hypot
 from typing import Any, NamedTuple
 
-from sqlalchemy import ColumnElement, delete, func, select, true
+from sqlalchemy import ColumnElement, and_, delete, func, select, true
+from sqlalchemy.orm import aliased
 
 from estimator.allan.results import TERMS, interval_of
 from service.sessions.decision import Verdict
 from service.sessions.records import HistoryPoint, ParameterValue, StoredSession
+from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
 from service.sessions.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 from service.storage.queries import Queries
@@ -133,36 +135,36 @@ class _LatestPoint:
     @property
     def value(self) -> float | None:
         """For the axis the angle from the reference, without the turn of the whole block unless it is to stay."""
-        own = self.row
-        if own.parameter != "axis" or own.verdict is None:
-            return own.value
-        return own.judged_value if self.raw or own.deviation is None else own.deviation
+        row = self.row
+        if row.parameter != "axis" or row.verdict is None:
+            return row.value
+        return row.judged_value if self.raw or row.deviation is None else row.deviation
 
     @property
     def u(self) -> float | None:
         """One sigma of the value."""
-        own = self.row
-        if own.parameter != "axis" or own.uncertainty is None:
-            return own.u
-        return hypot(own.uncertainty, self._together)
+        row = self.row
+        if row.parameter != "axis" or row.uncertainty is None:
+            return row.u
+        return hypot(row.uncertainty, self._together)
 
     @property
     def deviation(self) -> float | None:
         """From the reference."""
-        own = self.row
-        if own.common is None or not self.raw:
-            return own.deviation
-        if own.parameter == "axis":
-            return own.judged_value
-        return None if not own.reference or own.judged_value is None else own.judged_value / own.reference - 1
+        row = self.row
+        if row.common is None or not self.raw:
+            return row.deviation
+        if row.parameter == "axis":
+            return row.judged_value
+        return None if not row.reference or row.judged_value is None else row.judged_value / row.reference - 1
 
     @property
     def expanded(self) -> float | None:
         """U of the deviation."""
-        own = self.row
-        if own.expanded is None or own.coverage_factor is None:
+        row = self.row
+        if row.expanded is None or row.coverage_factor is None:
             return None
-        return hypot(own.expanded, own.coverage_factor * self._together)
+        return hypot(row.expanded, row.coverage_factor * self._together)
 
     @property
     def _together(self) -> float:
@@ -199,8 +201,11 @@ class HistoryQuery:
     """Whether offset and limit count from the newest point back."""
     raw: bool = False
     """Whether what the whole block did is left in."""
-    noise: bool = False
-    """Whether the terms of noise are wanted beside what is judged; one that is asked for by its name always is."""
+    noise: bool | None = False
+    """Whether the terms of noise are wanted, not what is judged; None for both. One that is asked for by its name
+    always is."""
+    kind: str | None = None
+    """Of the sensors."""
 
 
 class History(Queries):
@@ -212,8 +217,8 @@ class History(Queries):
 
     def drop(self, record: StoredSession) -> None:
         """Takes out what a session gave under its model revision: a recording moves another calibration now."""
-        own = (ParameterRow.session_id == record.id, ParameterRow.revision == record.revision)
-        self._session.execute(delete(ParameterRow).where(*own, IS_JUDGED))
+        conditions = (ParameterRow.session_id == record.id, ParameterRow.revision == record.revision)
+        self._session.execute(delete(ParameterRow).where(*conditions, IS_JUDGED))
 
     def points(self, unit: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
         """The wanted part of a unit's history, oldest first, in one query."""
@@ -224,10 +229,12 @@ class History(Queries):
             .where(ParameterRow.unit_id == unit, SessionRow.unit_id == unit, IS_ACCEPTED)
             .where(ParameterRow.revision == _revision(wanted.revision))
         )
-        if wanted.parameter is None and not wanted.noise:
-            query = query.where(IS_JUDGED)
         if wanted.parameter is not None:
             query = query.where(ParameterRow.parameter == wanted.parameter)
+        elif wanted.noise is not None:
+            query = query.where(ParameterRow.parameter.in_(TERMS) if wanted.noise else IS_JUDGED)
+        if wanted.kind is not None:
+            query = query.where(ParameterRow.kind == wanted.kind)
         if wanted.sensor is not None:
             query = query.where(ParameterRow.sensor == wanted.sensor)
         if wanted.since is not None:
@@ -242,14 +249,41 @@ class History(Queries):
         ]
         return tuple(reversed(found)) if wanted.newest else tuple(found)
 
+    def latest(self, unit: int, *, raw: bool = False) -> tuple[HistoryPoint, ...]:
+        """The newest point of every parameter of every sensor, and of every term of noise, in one query."""
+        place = (ParameterRow.sensor, ParameterRow.kind, ParameterRow.parameter)
+        known = select(*place).where(ParameterRow.unit_id == unit).distinct().subquery()
+        own, session = aliased(ParameterRow), aliased(SessionRow)
+        newest = (
+            select(own.session_id)
+            .join(session, (session.id == own.session_id) & (session.revision == own.revision))
+            .where(own.unit_id == unit, session.state == RecordState.ACCEPTED)
+            .where(own.sensor == known.c.sensor, own.kind == known.c.kind, own.parameter == known.c.parameter)
+            .order_by(own.at.desc(), own.session_id.desc())
+            .limit(1)
+            .correlate(known)
+            .scalar_subquery()
+        )
+        there = and_(*(column == known.c[column.key] for column in place), ParameterRow.session_id == newest)
+        query = (
+            select(*POINT)
+            .select_from(known)
+            .join(ParameterRow, there)
+            .join(
+                SessionRow, (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
+            )
+            .outerjoin(DecisionRow, DECIDED)
+        )
+        return tuple(point_record(StoredPoint._make(row), raw=raw) for row in self._session.execute(query))
+
     def in_force(self, unit: int) -> dict[str, tuple[ParameterValue, ...]]:
         """The parameters of a unit's sessions under their revisions in force, by session."""
         names = ("sensor", "sensor_index", "kind", "parameter", "value", "u", "axis_x", "axis_y", "axis_z")
         columns = (getattr(ParameterRow, name) for name in names)
-        own = (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
+        in_force = (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
         query = (
             select(ParameterRow.session_id, *columns)
-            .join(SessionRow, own)
+            .join(SessionRow, in_force)
             .where(ParameterRow.unit_id == unit, SessionRow.unit_id == unit, IS_JUDGED)
         )
         found: dict[str, list[ParameterValue]] = {}
@@ -270,8 +304,8 @@ class History(Queries):
             .limit(most)
             .subquery()
         )
-        own = (ParameterRow.session_id == newest.c.id) & (ParameterRow.revision == newest.c.revision)
-        rows = self._session.scalars(select(ParameterRow).join(newest, own).where(IS_JUDGED))
+        in_force = (ParameterRow.session_id == newest.c.id) & (ParameterRow.revision == newest.c.revision)
+        rows = self._session.scalars(select(ParameterRow).join(newest, in_force).where(IS_JUDGED))
         return tuple(_parameter_value(row) for row in rows)
 
     def references_by_unit(
@@ -289,8 +323,8 @@ class History(Queries):
             .limit(most)
             .subquery()
         )
-        own = (ParameterRow.session_id == wanted.c.id) & (ParameterRow.revision == wanted.c.revision)
-        rows = self._session.execute(select(wanted.c.serial, ParameterRow).join(wanted, own).where(IS_JUDGED))
+        in_force = (ParameterRow.session_id == wanted.c.id) & (ParameterRow.revision == wanted.c.revision)
+        rows = self._session.execute(select(wanted.c.serial, ParameterRow).join(wanted, in_force).where(IS_JUDGED))
         found: dict[str, dict[tuple[str, str], ParameterValue]] = {}
         for serial, row in rows:
             found.setdefault(serial, {}).setdefault((row.sensor, row.parameter), _parameter_value(row))
@@ -298,11 +332,11 @@ class History(Queries):
 
 
 def _rows(unit: int, record: StoredSession, values: Iterable[ParameterValue]) -> Iterator[dict[str, Any]]:
-    own = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
+    key = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
     for value in values:
         x, y, z = value.axis or (None, None, None)
         seen = {name: getattr(value, name) for name in ("sensor", "sensor_index", "kind", "parameter", "value", "u")}
-        yield {**own, **seen, "axis_x": x, "axis_y": y, "axis_z": z}
+        yield {**key, **seen, "axis_x": x, "axis_y": y, "axis_z": z}
 
 
 def _parameter_value(row: Any) -> ParameterValue:

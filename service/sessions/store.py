@@ -61,7 +61,7 @@ class Sessions(Queries):
         """The session made of these bytes, or else of this content, whatever the format of its file."""
         rows = self._session.execute(_SAME, {"sha256": sha256, "digest": digest})
         found = [session_record(*row) for row in rows]
-        return min(found, key=lambda one: one.sha256 != sha256, default=None)
+        return min(found, key=lambda session: session.sha256 != sha256, default=None)
 
     def get(self, id: str) -> StoredSession:
         """One session."""
@@ -81,8 +81,8 @@ class Sessions(Queries):
     def any_stands(self, unit: str) -> bool:
         """Whether a unit has a session that counts or waits for somebody to say whether it does."""
         states = (RecordState.ACCEPTED, RecordState.QUESTIONED)
-        own = select(SessionRow.id).join(UnitRow, UnitRow.id == SessionRow.unit_id).where(UnitRow.serial == unit)
-        return self._session.scalar(own.where(SessionRow.state.in_(states)).limit(1)) is not None
+        query = select(SessionRow.id).join(UnitRow, UnitRow.id == SessionRow.unit_id).where(UnitRow.serial == unit)
+        return self._session.scalar(query.where(SessionRow.state.in_(states)).limit(1)) is not None
 
     def wanted(self, query: SessionQuery) -> tuple[StoredSession, ...]:
         """The wanted sessions in the wanted order; one more query where the list goes on from a session."""
@@ -108,8 +108,8 @@ class Sessions(Queries):
         """Stores a session that is still to be judged; its hash is unique."""
         values = asdict(record)
         del values["unit"], values["stand"], values["reservations"]
-        own = {"unit_id": unit, "stand_id": stand, "block": block, **asdict(digests), "basis": NOT_JUDGED}
-        self.insert_many(SessionRow, ({**values, **own},))
+        more = {"unit_id": unit, "stand_id": stand, "block": block, **asdict(digests), "basis": NOT_JUDGED}
+        self.insert_many(SessionRow, ({**values, **more},))
 
     def mark(self, id: str, **said: bool | str | None) -> None:
         """Writes what is said of a session."""
@@ -209,15 +209,15 @@ class Sessions(Queries):
 
     def judged(self, id: str) -> tuple[tuple[Decision, ...], tuple[CommonMotion, ...]]:
         """Both, in one query."""
-        of, revision = lists("decisions", "motions"), SessionRow.revision
+        listed, revision = lists("decisions", "motions"), SessionRow.revision
         decided = (DecisionRow.session_id == SessionRow.id) & (DecisionRow.revision == revision)
         moved = (CommonMotionRow.session_id == SessionRow.id) & (CommonMotionRow.revision == revision)
         query = (
             select(DecisionRow, CommonMotionRow)
-            .select_from(of)
+            .select_from(listed)
             .join(SessionRow, SessionRow.id == id)
-            .outerjoin(DecisionRow, (of.c.list == "decisions") & decided)
-            .outerjoin(CommonMotionRow, (of.c.list == "motions") & moved)
+            .outerjoin(DecisionRow, (listed.c.list == "decisions") & decided)
+            .outerjoin(CommonMotionRow, (listed.c.list == "motions") & moved)
             .order_by(DecisionRow.position, CommonMotionRow.kind, CommonMotionRow.quantity)
         )
         rows = self._session.execute(query).all()
@@ -238,9 +238,9 @@ def reference_query(
     """The id of the session that others of the block and programmes, in the epoch of a time, are judged against."""
     since, until = epoch_bounds(unit, at)
     row = _Reference
-    own = (row.unit_id == unit, row.block == block, row.programme.in_(programmes), row.is_reference)
+    conditions = (row.unit_id == unit, row.block == block, row.programme.in_(programmes), row.is_reference)
     query = select(row.id).where(
-        *own,
+        *conditions,
         row.state == RecordState.ACCEPTED,
         or_(since.is_(None), row.started_at >= since),
         or_(until.is_(None), row.started_at < until),
@@ -292,10 +292,10 @@ def session_record(
 
 def decision_record(row: DecisionRow) -> Decision:
     """A stored decision."""
-    own = {f.name: _plain(getattr(row, f.name)) for f in fields(Decision)}
+    values = {f.name: _plain(getattr(row, f.name)) for f in fields(Decision)}
     taken = row.temperature_correction
-    own["temperature_correction"] = None if taken is None else TemperatureCorrection(**taken)
-    return Decision(**own | {"verdict": Verdict(row.verdict)})
+    values["temperature_correction"] = None if taken is None else TemperatureCorrection(**taken)
+    return Decision(**values | {"verdict": Verdict(row.verdict)})
 
 
 def motion_record(row: CommonMotionRow) -> CommonMotion:

@@ -22,7 +22,7 @@ def stand_health(store: Store) -> tuple[StandCondition, ...]:
     every = Stands(store).motions()
     whole = [motion for motion in every if motion.is_whole]
     quantities = dict.fromkeys((motion.kind, motion.quantity) for motion in whole)
-    found = [one for of in quantities for one in _found(tuple(m for m in whole if (m.kind, m.quantity) == of))]
+    found = [f for quantity in quantities for f in _found(tuple(m for m in whole if (m.kind, m.quantity) == quantity))]
     return tuple(_condition(stand, every, found) for stand in sorted({motion.stand for motion in every}))
 
 
@@ -65,12 +65,12 @@ class _Found:
 
 
 @lru_cache(maxsize=8)
-def _found(own: tuple[MotionOnStand, ...]) -> tuple[_Found, ...]:
+def _found(measured: tuple[MotionOnStand, ...]) -> tuple[_Found, ...]:
     """What the motions of one quantity say of every stand; by years from the first of them.
 
     Pages ask for it again and again between two uploads: what was worked out of the same motions is kept.
     """
-    kind, quantity, start = own[0].kind, own[0].quantity, own[0].at
+    kind, quantity, start = measured[0].kind, measured[0].quantity, measured[0].at
     motions = [
         StandMotion(
             stand=motion.stand,
@@ -79,24 +79,24 @@ def _found(own: tuple[MotionOnStand, ...]) -> tuple[_Found, ...]:
             value=np.array(motion.value),
             covariance=np.array(motion.covariance),
         )
-        for motion in own
+        for motion in measured
     ]
     return tuple(_Found(kind, quantity, start, state) for state in stand_states(motions))
 
 
 def _condition(stand: str, motions: Sequence[MotionOnStand], found: Sequence[_Found]) -> StandCondition:
-    own = [one for one in found if one.state.stand == stand]
-    evidence = tuple(one.worst for one in own if one.worst is not None)
-    shifts = tuple(sorted((shift for one in own for shift in one.shifts), key=lambda shift: shift.since))
-    seating = tuple(one.seating for one in own)
-    here = [motion for motion in motions if motion.stand == stand]
+    of_stand = [f for f in found if f.state.stand == stand]
+    evidence = tuple(f.worst for f in of_stand if f.worst is not None)
+    shifts = tuple(sorted((shift for f in of_stand for shift in f.shifts), key=lambda shift: shift.since))
+    seating = tuple(f.seating for f in of_stand)
+    measured = [motion for motion in motions if motion.stand == stand]
     return StandCondition(
         stand=stand,
-        sessions=len({(m.unit, m.at) for m in here if m.is_whole}),
+        sessions=len({(m.unit, m.at) for m in measured if m.is_whole}),
         has_shifted=any(shift.until is None for shift in shifts),
         reason=reason_of(evidence, shifts, seating),
         evidence=evidence,
         shifts=shifts,
         seating=seating,
-        unreadable=tuple(dict.fromkeys(motion.session for motion in here if not motion.is_whole)),
+        unreadable=tuple(dict.fromkeys(motion.session for motion in measured if not motion.is_whole)),
     )

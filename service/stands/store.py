@@ -65,16 +65,16 @@ class Stands(Queries):
     def conditions(self) -> tuple[StandCondition, ...]:
         """Every stand's own health as it was last made, by name."""
         query = select(StandConditionRow.document).join(StandRow, StandRow.id == StandConditionRow.stand_id)
-        return tuple(STORED.read(StandCondition, one) for one in self._session.scalars(query.order_by(StandRow.name)))
+        return tuple(STORED.read(StandCondition, doc) for doc in self._session.scalars(query.order_by(StandRow.name)))
 
     def put_conditions(self, found: Sequence[StandCondition], at: datetime) -> None:
         """Rewrites what is known of all stands."""
         keys = {name: key for key, name in self._session.execute(select(StandRow.id, StandRow.name))}
-        known = [keys[one.stand] for one in found]
+        known = [keys[condition.stand] for condition in found]
         self._session.execute(delete(StandConditionRow).where(StandConditionRow.stand_id.not_in(known)))
-        for one in sorted(found, key=lambda one: keys[one.stand]):
-            own = {"shifts": len(one.shifts), "document": STORED.written(one), "made_at": at}
-            self._session.merge(StandConditionRow(stand_id=keys[one.stand], **own))
+        for condition in sorted(found, key=lambda condition: keys[condition.stand]):
+            values = {"shifts": len(condition.shifts), "document": STORED.written(condition), "made_at": at}
+            self._session.merge(StandConditionRow(stand_id=keys[condition.stand], **values))
         self._session.flush()
 
     def motions(self) -> tuple[MotionOnStand, ...]:
@@ -155,10 +155,10 @@ class StandCertificates(Queries):
         )
         found: dict[str, list[StandCertificate]] = {}
         for name, row in self._session.execute(query):
-            own = found.setdefault(name, [])
+            certificates = found.setdefault(name, [])
             if row is not None:
-                own.append(certificate_record(name, row))
-        return {name: _by_issue(own) for name, own in found.items()}
+                certificates.append(certificate_record(name, row))
+        return {name: _by_issue(certificates) for name, certificates in found.items()}
 
     def of_stand(self, stand: str) -> tuple[StandCertificate, ...]:
         """The certificates of one stand as they were last recorded, oldest issue first."""

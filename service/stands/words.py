@@ -56,19 +56,19 @@ def size_of_shift(shift: StandEvidence) -> str:
 
 def kind_of_shift(kind: str, quantity: str) -> str:
     """``Turn of every block``: what a stand does, by the sensors that show it."""
-    what = "Turn of every block" if quantity == AXES else "Change of every scale factor"
-    return what if kind == ACCELEROMETER else say("{quantity}, by gyros", quantity=what)
+    change = "Turn of every block" if quantity == AXES else "Change of every scale factor"
+    return change if kind == ACCELEROMETER else say("{quantity}, by gyros", quantity=change)
 
 
-def scatter_of(own: StandSeating) -> str:
+def scatter_of(seating: StandSeating) -> str:
     """``±0.4 arcsec per axis``, ± U."""
-    parameter, of = ("axis", "per axis") if own.quantity == AXES else ("scale", "of all scale factors")
-    return say("±{size} {of}", size=in_words(own.kind, parameter, COVERAGE * own.tau), of=of)
+    parameter, per = ("axis", "per axis") if seating.quantity == AXES else ("scale", "of all scale factors")
+    return say("±{size} {of}", size=in_words(seating.kind, parameter, COVERAGE * seating.tau), of=per)
 
 
 def _seating(seating: Sequence[StandSeating]) -> Sequence[str]:
     """How blocks are seated, ± U."""
-    return [say("Mounting repeatability: {own}.", own=scatter_of(own)) for own in seating if own.quantity == AXES][:1]
+    return [say("Mounting repeatability: {own}.", own=scatter_of(s)) for s in seating if s.quantity == AXES][:1]
 
 
 NONE = "No certificate recorded: sessions on this stand state no traceability."

@@ -105,10 +105,10 @@ class Listing(Generic[Wanted]):
         return PageQuery(wanted, read, narrowing if place is None else (*narrowing, _beyond(read, place)))
 
     def _narrowing(self, wanted: Wanted) -> Iterator[ColumnElement[bool]]:
-        for one in fields(wanted):
-            value = getattr(wanted, one.name)
-            if one.name in self.conditions and value != one.default:
-                yield self.conditions[one.name](value)
+        for field in fields(wanted):
+            value = getattr(wanted, field.name)
+            if field.name in self.conditions and value != field.default:
+                yield self.conditions[field.name](value)
 
     def _place(
         self, session: Session, rows: Select[*tuple[Any, ...]], keys: tuple[Key, ...], named: Any
@@ -132,8 +132,8 @@ def _beyond(keys: Sequence[Key], place: Sequence[Any]) -> ColumnElement[bool]:
     an index answers."""
     if len({key.is_falling for key in keys}) == 1 and not any(key.known or key.nulls_first is not None for key in keys):
         row = tuple_(*(key.column for key in keys))
-        here = tuple_(*(literal(value, key.column.type) for key, value in zip(keys, place, strict=True)))
-        return row < here if keys[0].is_falling else row > here
+        position = tuple_(*(literal(value, key.column.type) for key, value in zip(keys, place, strict=True)))
+        return row < position if keys[0].is_falling else row > position
     found: list[ColumnElement[bool]] = []
     alike: list[ColumnElement[bool]] = []
     for key, value in zip(keys, place, strict=True):

@@ -200,7 +200,7 @@ _THROUGH_TIME = (
 
 def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
     """The type with the tolerances in force at a time; with its first ones before that."""
-    return ([of for since, of in known if since <= at] or [known[0][1]])[-1]
+    return ([unit_type for since, unit_type in known if since <= at] or [known[0][1]])[-1]
 
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:

@@ -125,19 +125,19 @@ class SaidOf(Queries):
         return self._said(unit, NoteRow.session_id == id, AttachmentRow.session_id == id)
 
     def _said(self, serial: str, of_note: ColumnElement[bool], of_file: ColumnElement[bool]) -> UnitEvents:
-        of, own = lists("notes", "files", "services", "changes"), ServiceRow.unit_id == UnitRow.id
-        services = select(cast(ServiceRow.id, String)).where(own).correlate(UnitRow)
+        listed, of_unit = lists("notes", "files", "services", "changes"), ServiceRow.unit_id == UnitRow.id
+        services = select(cast(ServiceRow.id, String)).where(of_unit).correlate(UnitRow)
         changed = (RecordStateRow.kind == RecordKind.SERVICE) & RecordStateRow.record.in_(services)
         query = (
             select(NoteRow, WithdrawalRow, AttachmentRow, AttachmentWithdrawalRow, ServiceRow, RecordStateRow)
-            .select_from(of)
+            .select_from(listed)
             .join(UnitRow, UnitRow.serial == serial)
-            .outerjoin(NoteRow, (of.c.list == "notes") & of_note)
+            .outerjoin(NoteRow, (listed.c.list == "notes") & of_note)
             .outerjoin(WithdrawalRow, WithdrawalRow.note_id == NoteRow.id)
-            .outerjoin(AttachmentRow, (of.c.list == "files") & of_file)
+            .outerjoin(AttachmentRow, (listed.c.list == "files") & of_file)
             .outerjoin(AttachmentWithdrawalRow, AttachmentWithdrawalRow.attachment_id == AttachmentRow.id)
-            .outerjoin(ServiceRow, (of.c.list == "services") & own)
-            .outerjoin(RecordStateRow, (of.c.list == "changes") & changed)
+            .outerjoin(ServiceRow, (listed.c.list == "services") & of_unit)
+            .outerjoin(RecordStateRow, (listed.c.list == "changes") & changed)
             .order_by(NoteRow.at, NoteRow.id, AttachmentRow.id, ServiceRow.at, ServiceRow.id, RecordStateRow.id)
         )
         rows = self._session.execute(query).all()

@@ -124,7 +124,7 @@ def list_uploads(
     shown = arrivals[:limit]
     return UploadPage(
         under_way=[job_upload_schema(job, None, None) for job in jobs],
-        uploads=[upload_schema(one) for one in shown],
+        uploads=[upload_schema(arrival) for arrival in shown],
         next_after=shown[-1].name if len(arrivals) > limit else None,
     )
 
@@ -178,7 +178,7 @@ class Later:
 
 def _later(request: Request, desk: JobDeskOf, person: PersonOf) -> Later:
     preferences = ",".join(request.headers.getlist(PREFER)).lower().split(",")
-    is_preferred = any(one.split(";")[0].strip() == ASYNC for one in preferences)
+    is_preferred = any(preference.split(";")[0].strip() == ASYNC for preference in preferences)
     return Later(is_preferred, in_force().later, desk, person)
 
 

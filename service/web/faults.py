@@ -53,8 +53,8 @@ def fault_in_words(fault: Mapping[str, Any]) -> str:
 
 def _with_parts(kind: str, parts: Mapping[str, Any]) -> str:
     if kind in COUNTED:
-        one, many, counted = COUNTED[kind]
-        return say_count(one, many, parts[counted], **parts)
+        singular, plural, counted = COUNTED[kind]
+        return say_count(singular, plural, parts[counted], **parts)
     if "expected" in parts:
         parts = {**parts, "expected": joined(" or ", str(parts["expected"]).rsplit(" or ", 1))}
     return say(SENTENCES.get(kind, ""), **parts)

@@ -122,5 +122,5 @@ class Shown(Generic[Entry]):
         """One entry more than fit on a page says that there are others in the direction of reading."""
         size, others = view.PAGE_SIZE, len(found) > view.PAGE_SIZE
         entries = tuple(found[-size:] if view.before else found[:size])
-        first, last = (str(name(one)) for one in (entries[0], entries[-1])) if entries else ("", "")
+        first, last = (str(name(entry)) for entry in (entries[0], entries[-1])) if entries else ("", "")
         return cls(entries, view.earlier(first, others=others), view.later(last, others=others))

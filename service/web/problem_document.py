@@ -43,7 +43,7 @@ class ProblemDocument(BaseModel):
 
 def faults(problems: Iterable[Problem]) -> list[Fault]:
     """Problems as an answer lists them."""
-    return [Fault(**vars(one)) for one in problems]
+    return [Fault(**vars(problem)) for problem in problems]
 
 
 def errors(*statuses: int) -> dict[int | str, Json]:

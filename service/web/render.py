@@ -125,7 +125,7 @@ def render(request: Request, template: str, page: Any, status: int = 200) -> HTM
         path=request.scope["path"],
         person=person,
         language=language,
-        languages=[(one, _address(request.scope, one)) for one in Language],
+        languages=[(known, _address(request.scope, known)) for known in Language],
     )
     return HTMLResponse(text, status, headers={"Cache-Control": "no-cache"})
 

@@ -64,34 +64,34 @@ class Helper:
         theirs.close()
         self._pipe = ours
 
-    def make(self, kind: Kind, of: str, now: datetime, keep_going: KeepGoing) -> Failure | None:
+    def make(self, kind: Kind, subject: str, now: datetime, keep_going: KeepGoing) -> Failure | None:
         """Makes and stores a piece of work, as long as ``keep_going`` is true."""
         if not keep_going():
-            raise StoppingError(f"The {kind.kind} of {of} was not begun.")
+            raise StoppingError(f"The {kind.kind} of {subject} was not begun.")
         self.start()
         assert self._pipe is not None
         answered = False
         try:
-            self._pipe.send((kind.kind, of, now))
+            self._pipe.send((kind.kind, subject, now))
             while not self._pipe.poll(POLL_SECONDS):
                 if not keep_going():
-                    raise StoppingError(f"The {kind.kind} of {of} was interrupted.")
+                    raise StoppingError(f"The {kind.kind} of {subject} was interrupted.")
             answer: Failure | None = self._pipe.recv()
             answered = True
         except (EOFError, OSError):
-            return self._ended(kind.kind, of)
+            return self._ended(kind.kind, subject)
         finally:
             if not answered:  # its answer would be taken for that of the next job
                 self.end()
         return answer
 
-    def _ended(self, kind: WorkKind, of: str) -> Failure:
+    def _ended(self, kind: WorkKind, subject: str) -> Failure:
         """Why it did not answer."""
         assert self._process is not None
         self._process.join()
         if self._process.exitcode == -signal.SIGALRM:
             return Failure(LATE, too_long(limits.in_force().work), is_foreseen=False)
-        return Failure(DIED, f"The process died at the {kind} of {of}.", is_foreseen=False)
+        return Failure(DIED, f"The process died at the {kind} of {subject}.", is_foreseen=False)
 
     def end(self) -> None:
         """Ends it at once: an open transaction is rolled back."""
@@ -113,15 +113,15 @@ def work(pipe: Connection, settings: Settings, most: Limits) -> None:
     storage = open_storage(settings)
     with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
-            kind, of, now = pipe.recv()
+            kind, subject, now = pipe.recv()
             signal.setitimer(signal.ITIMER_REAL, most.work)  # ends the process, whatever it is at
-            answer = _made(storage, KINDS[kind], of, now, settings.coverage_factor)
+            answer = _made(storage, KINDS[kind], subject, now, settings.coverage_factor)
             signal.setitimer(signal.ITIMER_REAL, 0)
             pipe.send(answer)
 
 
-def _made(storage: Storage, kind: Kind, of: str, now: datetime, coverage_factor: float) -> Failure | None:
+def _made(storage: Storage, kind: Kind, subject: str, now: datetime, coverage_factor: float) -> Failure | None:
     assert kind.make is not None
-    with ending_here(kind.kind.value, of) as outcome:
-        kind.make(storage, of, now, coverage_factor)
+    with ending_here(kind.kind.value, subject) as outcome:
+        kind.make(storage, subject, now, coverage_factor)
     return outcome.failure

@@ -117,7 +117,7 @@ def _recalibrate_next(storage: Storage, job: Job, now: datetime, coverage_factor
         failure = JobFailure(done.unit, left_in_words(done.left)) if done.left else None
         Jobs(store).advance(job, unit[0], RecalibrationPiece(done.recomputed, len(done.verdicts), failure), now)
 
-    recalibrate(storage, unit[1], now, coverage_factor=coverage_factor, who=job.who, then=count)
+    recalibrate(storage, unit[1], now, coverage_factor=coverage_factor, who=job.who, record=count)
 
 
 def _make_group(storage: Storage, place: str, now: datetime, _: float) -> None:

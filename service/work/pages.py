@@ -57,8 +57,8 @@ class JobLine:
 class FailedLine:
     """Failed background work."""
 
-    what: str
-    of: str
+    work: str
+    subject: str
     why: str
 
 
@@ -108,7 +108,7 @@ def jobs_page(
     lines = tuple(map(job_line, jobs))
     filters = ({"subject": subject} if subject else {}) | ({"mine": "yes"} if mine else {})
     earlier = f"/jobs?{urlencode(filters | {'before': jobs[-1].id})}" if len(jobs) == PAGE_SIZE else ""
-    failed_lines = tuple(FailedLine(NAMES[one.kind], one.of, one.why) for one in failed)
+    failed_lines = tuple(FailedLine(NAMES[f.kind], f.of, f.why) for f in failed)
     return JobsPage(lines, subject, mine, bool(person.login), earlier, failed_lines)
 
 

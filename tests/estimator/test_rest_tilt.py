@@ -83,7 +83,7 @@ def test_three_sensors_that_always_lie_alike_cannot_be_are_separable():
     waves = Waves(z, np.full(POSES, STILL), least, least)
     found = errors_of_means(waves, response)
     assert found.tilt is None
-    np.testing.assert_array_equal(found.own, np.sqrt(rest_noise(waves, STEADY).variance))
+    np.testing.assert_array_equal(found.alone, np.sqrt(rest_noise(waves, STEADY).variance))
 
 
 def test_waves_are_weighed_by_what_no_tilt_explains():
@@ -133,5 +133,5 @@ def test_readings_that_never_change_have_no_error_and_no_tilt():
     still, up = np.zeros((12, BLOCKS - 1, 4)), unit(np.random.default_rng(0).standard_normal((12, 3)))
     response = np.random.default_rng(1).standard_normal((4, 3)) @ tangents(up)
     found = errors_of_means(Waves(still, np.full(12, 160), np.zeros((12, 4)), np.zeros((12, 4))), response)
-    assert not found.own.any()
+    assert not found.alone.any()
     assert found.tilt is None

@@ -131,7 +131,7 @@ def test_a_stands_log_keeps_run_and_beta_of_each_position():
 def test_standard_errors_of_white_noise_are_sigma_over_root_n():
     log = np.random.default_rng(0).normal(size=(50 * 500, 1))
     places = Intervals(np.arange(0, 25000, 500), np.arange(500, 25500, 500))
-    np.testing.assert_allclose(mean_errors(log, places).own, 1 / np.sqrt(500), rtol=0.15)
+    np.testing.assert_allclose(mean_errors(log, places).alone, 1 / np.sqrt(500), rtol=0.15)
 
 
 def test_standard_errors_respect_correlated_noise():
@@ -139,7 +139,7 @@ def test_standard_errors_respect_correlated_noise():
     log = lfilter([1.0], [1.0, -0.9], white, axis=0)
     places = Intervals(np.arange(0, 100000, 1000), np.arange(1000, 101000, 1000))
     scatter = places.means(log).std()
-    assert mean_errors(log, places).own[0, 0] == pytest.approx(scatter, rel=0.25)
+    assert mean_errors(log, places).alone[0, 0] == pytest.approx(scatter, rel=0.25)
     assert log.std() / np.sqrt(1000) < 0.3 * scatter
 
 
@@ -175,7 +175,7 @@ def test_means_of_a_zero_that_wanders_within_the_rest_are_covered(seconds, time)
     inside = []
     for seed in range(20):
         log, places = wandering(20, seconds, time, 0.3, np.random.default_rng(seed))
-        inside.append(np.mean(np.abs(places.means(log)) < 1.96 * mean_errors(log, places).own))
+        inside.append(np.mean(np.abs(places.means(log)) < 1.96 * mean_errors(log, places).alone))
     assert 0.92 <= np.mean(inside) <= 0.985
 
 
@@ -183,7 +183,7 @@ def test_white_noise_is_not_taken_for_a_wandering_zero():
     ratios = []
     for seed in range(20):
         log, places = wandering(20, 5.0, 1.0, 0.0, np.random.default_rng(seed))
-        ratios.append(mean_errors(log, places).own.mean() * np.sqrt(500))
+        ratios.append(mean_errors(log, places).alone.mean() * np.sqrt(500))
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.04)
 
 
@@ -191,14 +191,14 @@ def test_a_mean_is_never_better_than_its_independent_samples():
     """Rests whose block means happen to agree."""
     samples = np.tile([1.0, -1.0], 800)[:, None]
     places = Intervals(np.arange(0, 1600, 160), np.arange(160, 1760, 160))
-    assert (mean_errors(samples, places).own >= 0.999 / np.sqrt(160)).all()
+    assert (mean_errors(samples, places).alone >= 0.999 / np.sqrt(160)).all()
 
 
 def test_a_restless_interval_keeps_its_own_error():
     log = np.random.default_rng(4).standard_normal((50 * 500, 2))
     log[5000:5500] *= 20
     places = Intervals(np.arange(0, 25000, 500), np.arange(500, 25500, 500))
-    found = mean_errors(log, places).own[:, 0] * np.sqrt(500)
+    found = mean_errors(log, places).alone[:, 0] * np.sqrt(500)
     assert found[10] == pytest.approx(20.0, rel=0.4)
     assert np.delete(found, 10) == pytest.approx(np.ones(49), rel=0.1)
 

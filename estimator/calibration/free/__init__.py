@@ -20,7 +20,7 @@ from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
 from estimator.calibration.free.model import ModelRows, jacobian, predicted
-from estimator.calibration.free.optional import solve
+from estimator.calibration.free.optional import agreed, solve
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
 from estimator.calibration.free.schedule import Mask, check, classified
 from estimator.calibration.free.start import start
@@ -32,6 +32,7 @@ from estimator.session import ACCELEROMETER, ARBITRARY_ORIENTATIONS, Array, Cali
 
 __all__ = [
     "accelerometer_rows",
+    "agreed",
     "calibrate_free",
     "check",
     "gyro_biases",

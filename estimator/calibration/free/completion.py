@@ -48,8 +48,8 @@ def shares(rows: ModelRows, unknowns: Unknowns) -> Array:
     linear = linearise(rows, unknowns)
     R, m = rows.y.shape
     full = np.zeros((R, m, 5, m, 5))
-    each = np.arange(m)
-    full[:, each, :, each] = np.einsum("rmi,rmj->mrij", linear.local, linear.local)
+    sensors = np.arange(m)
+    full[:, sensors, :, sensors] = np.einsum("rmi,rmj->mrij", linear.local, linear.local)
     return full.reshape(R, 5 * m, 5 * m) - linear.coupling @ linear.inverse @ np.swapaxes(linear.coupling, 1, 2)
 
 

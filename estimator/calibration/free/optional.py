@@ -53,13 +53,28 @@ is a parabola, and beyond twice that it is not one."""
 
 def solve(rows: ModelRows, stated: bool, quadratic: bool | None) -> Solution:
     """The search, with or without the quadratic term (None: if it deserves it), with or without stated noise."""
+    plain, *extended = candidates(rows, stated, quadratic)
+    return extended[0] if extended and is_supported(extended[0], plain, stated) else plain
+
+
+def candidates(rows: ModelRows, stated: bool, quadratic: bool | None) -> list[Solution]:
+    """The search without the quadratic term, and, where that is to be decided and can be afforded, with it."""
     run: Run = search if stated else search_with_noise
     first, *others = starts(rows)
     plain = lowest(run, run(rows, first, bool(quadratic)), others)
     if quadratic is not None or not affordable(plain, stated):
-        return plain
-    extended = lowest(run, run(plain.rows if stated else rows, plain.unknowns, True), [])
-    return extended if is_supported(extended, plain, stated) else plain
+        return [plain]
+    return [plain, lowest(run, run(plain.rows if stated else rows, plain.unknowns, True), [])]
+
+
+def agreed(rows: ModelRows, judged: Callable[[Solution], bool]) -> bool:
+    """What is judged of `solve` under stated noise; where it is the same with the quadratic term as without, nobody
+    needs to know which deserves it."""
+    plain, *extended = candidates(rows, True, None)
+    of_plain = judged(plain)
+    if not extended or judged(extended[0]) == of_plain:
+        return of_plain
+    return is_supported(extended[0], plain, True) != of_plain
 
 
 def affordable(plain: Solution, stated: bool) -> bool:

@@ -3,7 +3,9 @@
 The damping acts on the parameters alone: given them, the orientations are well determined by every row.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 
@@ -36,6 +38,11 @@ NO_FREEDOM = 0.5
 numbers; half of one is left where loosely labelled ones spend it on the labels."""
 
 
+Modes = tuple[Array, Array, Array, Array]
+"""Basis (5 m, F) of what may move, eigenvalues (F,), rising, and eigenvectors (F, F) of the information within it, and
+the right-hand side along these (F,)."""
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """Where the search ended."""
@@ -46,13 +53,19 @@ class Solution:
     quadratic: bool
     """Whether the quadratic term was estimated."""
     chi2: float
-    knowledge: Information
+    learned: Callable[[], Information]
+    """`knowledge`, worked out when it is first asked for: of most searches only χ² is."""
     iterations: int
     converged: bool
     freedom: float = np.inf
     """Degrees of freedom that the noise is known to; infinite where it was stated and explains the residuals."""
     borrows: Mask | None = None
     """(m,) where each sensor's noise was estimated: whether it is taken as like the others'."""
+
+    @property
+    def knowledge(self) -> Information:
+        """What the readings tell of the parameters."""
+        return self.learned()
 
     @property
     def knows_noise(self) -> bool:
@@ -79,31 +92,36 @@ def search(rows: ModelRows, unknowns: Unknowns, quadratic: bool) -> Solution:
     unknowns = held_frame(rows, unknowns)
     damping, chi2 = FIRST_DAMPING, cost(rows, unknowns)
     linear, iterations, converged = linearise(rows, unknowns), 0, False
-    basis = movable(rows, unknowns, quadratic)
+    modes: Modes | None = None
     while not converged and iterations < MAX_ITERATIONS:
         iterations += 1
-        step, turns, fall = proposal(linear, basis, damping)
+        modes = modes or modes_of(linear, movable(rows, unknowns, quadratic))
+        step, turns, fall = proposal(linear, modes, damping)
         trial = held_frame(rows, unknowns.stepped(step, turns))
         trial_cost = cost(rows, trial)
         small = max(np.abs(step).max(), np.abs(turns).max()) < STILL
         converged = bool(small or fall < CONVERGED * max(1.0, chi2 * CONVERGED))
         if trial_cost < chi2:
             unknowns, chi2, damping = trial, trial_cost, max(damping / 10, LEAST_DAMPING)
-            linear = linearise(rows, unknowns)
-            basis = movable(rows, unknowns, quadratic)
+            linear, modes = linearise(rows, unknowns), None
         else:
             damping *= 10
-    knowledge = information(rows, unknowns, quadratic, linear)
-    return Solution(rows, unknowns, quadratic, chi2, knowledge, iterations, converged)
+    learned = cache(partial(information, rows, unknowns, quadratic, linear))
+    return Solution(rows, unknowns, quadratic, chi2, learned, iterations, converged)
 
 
-def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:
+def modes_of(linear: Linear, basis: Array) -> Modes:
+    """``basis`` (5 m, F), dimensionless as in `movable`, and what ``linear`` tells within it."""
+    values, vectors = eigh(basis.T @ linear.schur @ basis)
+    return basis, values, vectors, vectors.T @ (basis.T @ linear.reduced)
+
+
+def proposal(linear: Linear, modes: Modes, damping: float) -> tuple[Array, Array, float]:
     """Damped step of the parameters (5 m,), turns of the orientations (R, 2), rad, and the fall of χ² they promise.
 
-    ``basis`` (5 m, F), dimensionless as in `movable`. Directions that the set does not determine stay where they are.
+    Directions that the set does not determine stay where they are.
     """
-    values, vectors = eigh(basis.T @ linear.schur @ basis)
-    right = vectors.T @ (basis.T @ linear.reduced)
+    basis, values, vectors, right = modes
     inside = np.where(values > unseen_below(values), right, 0.0) / (
         np.maximum(values, 0.0) + damping * linear.full.max()
     )

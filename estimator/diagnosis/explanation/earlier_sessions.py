@@ -110,10 +110,10 @@ def predicted(residuals: WhitenedResiduals, effect: Effect) -> Score:
     volume = float(np.linalg.slogdet(inner)[1])
     R, m = residuals.baseline.residual.shape
     errors = rest[: R * m].reshape(R, m) / residuals.whiten.weight
-    each = root_mean_square(errors, residuals.baseline)
+    rms = root_mean_square(errors, residuals.baseline)
     return Score(
-        rms=each[residuals.baseline.session.block],
+        rms=rms[residuals.baseline.session.block],
         chi2_per_dof=square / residuals.freedom,
         log_score=-0.5 * (square + volume) / residuals.freedom - 0.5 * LN_2PI,
-        rms_by_kind=each,
+        rms_by_kind=rms,
     )

@@ -39,8 +39,8 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     cause = noise_cause(state)
     excess = [] if cause is None else [excess_finding(state, cause, e) for e in state.excess]
     shared = [shared_finding(state, members, fitted) for members in courses(named)]
-    own = merged([(m.detection.best.cause, m.finding) for m in named if not any(m in c for c in courses(named))])
-    whole = (told_from_power_on(f, state.baseline.session) for f in (*shared, *own, *excess))
+    of_sensors = merged([(m.detection.best.cause, m.finding) for m in named if not any(m in c for c in courses(named))])
+    whole = (told_from_power_on(f, state.baseline.session) for f in (*shared, *of_sensors, *excess))
     return tuple(sorted(whole, key=lambda f: -f.strength))
 
 
@@ -144,11 +144,11 @@ def pattern_description(state: SearchState, detection: Detection) -> str:
 
 def common_course(course: AppliedCourse) -> Structure:
     """A course of the applied vector that no cause describes."""
-    what = joined(" and ", course.components) or "the vector"
+    quantity = joined(" and ", course.components) or "the vector"
     return Structure(
         say(
             "an error of stand, fixture or reference that no known cause explains ({quantity}, along {order})",
-            quantity=what,
+            quantity=quantity,
             order=course.order,
         ),
         (),

@@ -78,9 +78,9 @@ def separations(state: SearchState, detection: Detection, others: Sequence[Score
     answers = []
     for rival in others:
         now = separation(signature, rival.trace, attributed)
-        measurement, then = proposal(state.baseline, detection.best, amplitude, rival)
+        measurement, apart = proposal(state.baseline, detection.best, amplitude, rival)
         sensors = tuple(state.names[i] for i in rival.sensors)
-        answers.append(Separation(rival.cause.identifier, sensors, now, measurement, then))
+        answers.append(Separation(rival.cause.identifier, sensors, now, measurement, apart))
     return tuple(answers)
 
 

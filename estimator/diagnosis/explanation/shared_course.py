@@ -50,11 +50,11 @@ def shared_finding(state: SearchState, members: Sequence[CourseMember], fitted: 
     whole = shared_course(cause, whole, who, len(more) if group == SOME else 0)
     shape, sigma = shape_of(members, fitted)
     course, measured, band = drawn(state, [*named, *more], fitted)
-    each = dict(zip(members[0].finding.nonlinear, shape, strict=False))
+    values = dict(zip(members[0].finding.nonlinear, shape, strict=False))
     shared = Shared(
         group=group,
-        shape=each,
-        shape_sigma=dict(zip(each, sigma, strict=False)),
+        shape=values,
+        shape_sigma=dict(zip(values, sigma, strict=False)),
         more=tuple(m.finding.sensors[0] for m in more),
         more_amplitude=tuple(m.finding.amplitude[0] for m in more),
         more_sigma=tuple(m.finding.sigma[0] for m in more),
@@ -65,7 +65,7 @@ def shared_finding(state: SearchState, members: Sequence[CourseMember], fitted: 
         shape_in_doubt=members[0].detection.shape_in_doubt,
     )
     strength = float(np.sqrt(sum(m.finding.strength**2 for m in members)))
-    return replace(whole, shared=shared, strength=strength, nonlinear_each=(each,) * len(named))
+    return replace(whole, shared=shared, strength=strength, nonlinear_each=(values,) * len(named))
 
 
 def some(names: Sequence[str], count: int) -> str:
@@ -81,9 +81,9 @@ def group_of(state: SearchState, sensors: Sequence[int]) -> str:
     kinds = state.baseline.setting.kinds
     if len(sensors) == len(kinds):
         return ALL
-    own = {kinds[i] for i in sensors}
-    kind = next(iter(own))
-    return kind if len(own) == 1 and kinds.count(kind) == len(sensors) else SOME
+    members = {kinds[i] for i in sensors}
+    kind = next(iter(members))
+    return kind if len(members) == 1 and kinds.count(kind) == len(sensors) else SOME
 
 
 def shape_of(members: Sequence[CourseMember], fitted: Amplitudes) -> tuple[tuple[float, ...], tuple[float, ...]]:

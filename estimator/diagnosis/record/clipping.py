@@ -116,8 +116,8 @@ def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
         return []
     ends = [(UPPER, np.argmax), (LOWER, np.argmin)]
     alone = who_may_misfit(session)
-    each = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in alone]
-    by_channel = [clips_among(session, suspects, cause) for suspects in each]
+    channels = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in alone]
+    by_channel = [clips_among(session, suspects, cause) for suspects in channels]
     return max(by_channel, key=lambda clips: sum(clip.strength**2 for clip in clips), default=[])
 
 
@@ -145,8 +145,8 @@ def expectations(session: CalibrationSession, suspects: Sequence[Suspect]) -> li
     if session.programme != TWO_AXIS_STAND:
         return in_orientations(session, [(s.sensor, s.rows) for s in suspects]) if suspects else []
     results: list[Expected | None] = []
-    for i, both in groupby(suspects, key=lambda s: s.sensor):
-        sides = list(both)
+    for i, of_sensor in groupby(suspects, key=lambda s: s.sensor):
+        sides = list(of_sensor)
         together = on_stand(session, (i, np.concatenate([s.rows for s in sides])))
         ends = np.cumsum([0, *(len(s.rows) for s in sides)])
         results += [None if together is None else together.of(slice(a, b)) for a, b in pairwise(ends)]

@@ -72,14 +72,14 @@ def exchange_gains(baseline: Baseline, pairs: Sequence[tuple[int, int]]) -> Arra
     R, m = baseline.residual.shape
     weight = 1 / np.sqrt(baseline.variance)
     measured = baseline.residual + baseline.setting.a
-    gains, each = np.zeros(len(pairs)), np.arange(len(pairs))
+    gains, numbers = np.zeros(len(pairs)), np.arange(len(pairs))
     j, k = np.array(pairs).T
     for i in range(m):
         design = baseline.design[:, i, :] * weight[:, i, None]
         basis = orthonormal(design, FLAT)
         jump = measured[k, i] - measured[j, i]
         change = np.zeros((len(pairs), R))
-        change[each, j], change[each, k] = jump * weight[j, i], -jump * weight[k, i]
+        change[numbers, j], change[numbers, k] = jump * weight[j, i], -jump * weight[k, i]
         change -= (change @ basis) @ basis.T
         gains -= 2 * change @ (baseline.residual[:, i] * weight[:, i]) + (change**2).sum(axis=1)
     return gains

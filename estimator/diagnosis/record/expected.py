@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.applied_vector import gravity, stand_geometry
-from estimator.calibration.free import accelerometer_rows, solve
+from estimator.calibration.free import accelerometer_rows, agreed, solve
 from estimator.calibration.free.excess import UNLIKELY
 from estimator.calibration.free.model import linearise
 from estimator.calibration.free.model import predicted as readings_of
@@ -125,8 +125,7 @@ def fits(session: CalibrationSession, felt: Array) -> bool:
     prepared, stated = accelerometer_rows(session, felt, gravity(session.site))
     if not stated or np.linalg.matrix_rank(prepared.nominal_axes, tol=SEEN) < 3:
         return True
-    solution = solve(prepared, stated, None)
-    return bool(p_value(solution.chi2, solution.dof) >= UNLIKELY)
+    return agreed(prepared, lambda solution: bool(p_value(solution.chi2, solution.dof) >= UNLIKELY))
 
 
 def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list[Expected | None]:

@@ -83,8 +83,8 @@ def usable(cause: RecordCorrection, session: CalibrationSession) -> bool:
     """Whether a correction makes sense for the session's programme and runs."""
     if session.programme != TWO_AXIS_STAND:
         return not cause.needs & {"stand", "both runs"}
-    both = session.flipped is not None and bool(session.flipped.any()) and not bool(session.flipped.all())
-    return both or "both runs" not in cause.needs
+    has_both_runs = session.flipped is not None and bool(session.flipped.any()) and not bool(session.flipped.all())
+    return has_both_runs or "both runs" not in cause.needs
 
 
 def expected_axes(history: Sequence[Baseline], session: CalibrationSession) -> Array:

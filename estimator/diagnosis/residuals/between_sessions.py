@@ -28,14 +28,14 @@ NO_VARIANCE = 1e-13
 correlation matrix of some hundred parameters."""
 
 
-def deviation(now: SensorParameters, then: SensorParameters, norm: Array) -> Array:
-    """(m, 5) dimensionless, leading axes free: parameters ``then`` from those of ``now``; ``norm`` (m,) of the applied
-    vector, m/s²."""
-    step = np.empty((*then.scale.shape, 5))
-    step[..., 0] = np.log(then.scale / now.scale)
-    step[..., 1] = (then.bias - now.bias) / norm
-    step[..., 2] = (then.quadratic - now.quadratic) * norm
-    step[..., 3:] = (np.swapaxes(now.axis_tangents, -1, -2) @ (then.axis - now.axis)[..., None])[..., 0]
+def deviation(now: SensorParameters, earlier: SensorParameters, norm: Array) -> Array:
+    """(m, 5) dimensionless, leading axes free: ``earlier`` parameters from those of ``now``; ``norm`` (m,) of the
+    applied vector, m/s²."""
+    step = np.empty((*earlier.scale.shape, 5))
+    step[..., 0] = np.log(earlier.scale / now.scale)
+    step[..., 1] = (earlier.bias - now.bias) / norm
+    step[..., 2] = (earlier.quadratic - now.quadratic) * norm
+    step[..., 3:] = (np.swapaxes(now.axis_tangents, -1, -2) @ (earlier.axis - now.axis)[..., None])[..., 0]
     return step
 
 
@@ -49,9 +49,9 @@ def carried(now: SensorParameters, frames: Array) -> Array:
 
 def carried_each(now: SensorParameters, frames: Array) -> Array:
     """(m, 5, 5) dimensionless, leading axes free: the same of every sensor, whose parameters stay its own."""
-    each = np.broadcast_to(np.eye(5), (*frames.shape[:-2], 5, 5)).copy()
-    each[..., 3:, 3:] = np.swapaxes(now.axis_tangents, -1, -2) @ frames
-    return each
+    blocks = np.broadcast_to(np.eye(5), (*frames.shape[:-2], 5, 5)).copy()
+    blocks[..., 3:, 3:] = np.swapaxes(now.axis_tangents, -1, -2) @ frames
+    return blocks
 
 
 def inverse_root(matrix: Array) -> Array:

@@ -107,8 +107,8 @@ def by_sensor(error: Array, baseline: Baseline) -> dict[str, dict[str, float]]:
     """Root mean square of errors (R, m), m/s² (rad/s), of every sensor by name, by kind."""
     rms = np.sqrt(np.mean(error**2, axis=0))
     found: dict[str, dict[str, float]] = {}
-    for sensor, own in zip(baseline.session.sensors, rms, strict=True):
-        found.setdefault(sensor.kind, {})[sensor.name] = float(own)
+    for sensor, sensor_rms in zip(baseline.session.sensors, rms, strict=True):
+        found.setdefault(sensor.kind, {})[sensor.name] = float(sensor_rms)
     return found
 
 

@@ -89,7 +89,7 @@ def turns_between(nows: Sequence[Baseline], earlier: Sequence[Baseline]) -> Arra
     """(H, 3, 3) rotations, dimensionless, that take the axes of earlier sessions onto those of as many ``nows`` of the
     same sensors; each iterates until it has settled itself."""
     p, q = together([b.parameters for b in nows]), together([b.parameters for b in earlier])
-    current, origin = (np.stack([of_each(b.covariance) for b in each]) for each in (nows, earlier))
+    current, origin = (np.stack([of_each(b.covariance) for b in baselines]) for baselines in (nows, earlier))
     norm, frames = np.stack([b.setting.norm for b in nows]), q.axis_tangents
     response = turn_response(p).reshape(*p.scale.shape, 5, 3)
     turn = common_turn(q.axis, p.axis, NEAR)

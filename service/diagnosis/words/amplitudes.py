@@ -110,15 +110,15 @@ class Amounts:
 
 def amplitudes_of(finding: Sized) -> Iterator[str]:
     """Every amplitude ± U; named by sensor where several share the cause."""
-    each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
+    width = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
     stated = zip(finding.amplitude, finding.sigma, finding.units, strict=False)
     for k, (value, known, si_unit) in enumerate(stated):
         sigma = nan if known is None else known
         if not _is_stated(value) and not _is_stated(sigma):
             continue
         expanded = COVERAGE * sigma
-        who = say("{sensors}: ", sensors=finding.sensors[k // each]) if len(finding.sensors) > 1 else ""
-        which = say("{cause} ", cause=part_of(finding.cause, k % each)) if each > 1 else ""
+        who = say("{sensors}: ", sensors=finding.sensors[k // width]) if len(finding.sensors) > 1 else ""
+        which = say("{cause} ", cause=part_of(finding.cause, k % width)) if width > 1 else ""
         yield joined("", (who, which, _size(finding.cause, si_unit, value, expanded)))
 
 
@@ -161,10 +161,10 @@ def _alone(finding: Finding) -> str:
     """What it is of each sensor."""
     if finding.shared is not None:
         return _shared_shape(finding.cause, finding.shared)
-    each = finding.nonlinear_each
-    if len(each) < 2 or all(one == each[0] for one in each):
+    values = finding.nonlinear_each
+    if len(values) < 2 or all(shape == values[0] for shape in values):
         return _shape(finding.cause, finding.nonlinear)
-    shapes = (_shape(finding.cause, one) for one in each)
+    shapes = (_shape(finding.cause, shape) for shape in values)
     return joined(
         "; ",
         (
@@ -182,10 +182,10 @@ def _shared_shape(cause: str, shared: Shared) -> str:
         spread, measure = COVERAGE * shared.shape_sigma.get(name, nan), amplitude_measure(cause, name, value)
         text.append(measured(value, spread, measure) if isfinite(spread) else _place(cause, name, value))
     words = known.shape_words if known else ""
-    one = joined(" ", filter(None, (words, joined(" and ", text)))) if text else ""
-    if not (one and shared.shape_in_doubt):
-        return one
-    return say("{shape}; whether each sensor has its own cannot be told from this session", shape=one)
+    shape = joined(" ", filter(None, (words, joined(" and ", text)))) if text else ""
+    if not (shape and shared.shape_in_doubt):
+        return shape
+    return say("{shape}; whether each sensor has its own cannot be told from this session", shape=shape)
 
 
 def more_of(finding: Finding) -> tuple[str, ...]:

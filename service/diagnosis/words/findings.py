@@ -157,7 +157,7 @@ def finding_view(
     first = find(finding.cause)
     of_noise, held = isinstance(first, ExcessNoise), first is not None and first.always_modelled
     together = finding.over_sessions
-    known = [] if held or together else [one for name in names if (one := find(name)) and one.can_be_modelled]
+    known = [] if held or together else [c for name in names if (c := find(name)) and c.can_be_modelled]
     return FindingView(
         cause=finding.cause,
         name=cause_name(finding.cause),
@@ -177,7 +177,7 @@ def finding_view(
         ranking=tuple(ranking_of(finding)),
         parity=_parity(finding.parity),
         since=_since(finding.new) if together is None else since_together(together),
-        acceptable=tuple((one.identifier, one.name) for one in known),
+        acceptable=tuple((c.identifier, c.name) for c in known),
         held=held,
         together=together is not None,
         sensors=finding.sensors,
@@ -296,8 +296,8 @@ def in_words(structures: Sequence[Structure]) -> str:
     """What is there, in whom and where, in one line."""
     first = leading(structures)
     named = first.sensors and not first.of_record
-    what = unexplained_in(first.sensors) if named else headline_of(structures)
-    return say("{structures}: {first}.", structures=what, first=where_of(first))
+    headline = unexplained_in(first.sensors) if named else headline_of(structures)
+    return say("{structures}: {first}.", structures=headline, first=where_of(first))
 
 
 def unexplained_in(sensors: Sequence[str]) -> str:
@@ -310,10 +310,10 @@ def summed_up(structures: Sequence[Structure]) -> str:
     if leading(structures).of_record:
         return in_words(structures)
     sensors = sorted({sensor for structure in structures for sensor in structure.sensors})
-    own = unexplained_in(sensors)
+    unexplained = unexplained_in(sensors)
     if all(structure.sensors for structure in structures):
-        return say("{unexplained}.", unexplained=own)
-    beside = say(" In addition: {unexplained}.", unexplained=uncapitalised(own)) if sensors else ""
+        return say("{unexplained}.", unexplained=unexplained)
+    beside = say(" In addition: {unexplained}.", unexplained=uncapitalised(unexplained)) if sensors else ""
     return say("{common}.{beside}", common=COMMON, beside=beside)
 
 
@@ -338,7 +338,7 @@ def course_in_words(course: Course) -> str:
     """``runs off in α along β, each run for itself``."""
     if not course.components:
         return course.order
-    what = joined(" and ", course.components)
+    quantity = joined(" and ", course.components)
     if course.order.startswith("no order"):
-        return say("deviates in {what}, independently in every row", what=what)
-    return say("deviates in {what}, smoothly along {order}", what=what, order=course.order)
+        return say("deviates in {what}, independently in every row", what=quantity)
+    return say("deviates in {what}, smoothly along {order}", what=quantity, order=course.order)

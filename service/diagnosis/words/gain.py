@@ -53,9 +53,9 @@ def gain_in_words(gain: Gain, sensors: Sequence[str] = ()) -> str:
 
 def errors_in_words(before: Errors, after: Errors, sensors: Sequence[str] = ()) -> str:
     """``of A2 halves: 14 → 7 µg; of A5 falls from 9 to 8 µg``: the worst first, the rest counted; empty without any."""
-    known = [one for one in _errors(before, after) if not sensors or one.sensor in sensors]
-    worst = sorted(known, key=lambda one: -one.before / one.typical)
-    parts = [_of_sensor(one) for one in worst[:NAMED]]
+    known = [held_out for held_out in _errors(before, after) if not sensors or held_out.sensor in sensors]
+    worst = sorted(known, key=lambda held_out: -held_out.before / held_out.typical)
+    parts = [_of_sensor(held_out) for held_out in worst[:NAMED]]
     if len(worst) > NAMED:
         parts.append(say("and {number} more", number=len(worst) - NAMED))
     return joined("; ", parts) if parts else ""
@@ -63,27 +63,27 @@ def errors_in_words(before: Errors, after: Errors, sensors: Sequence[str] = ()) 
 
 def concerned(findings: Iterable[Finding]) -> tuple[str, ...]:
     """The sensors that some findings name; none where one of them acts on all."""
-    each = [finding.sensors for finding in findings]
-    return tuple(dict.fromkeys(sensor for sensors in each for sensor in sensors)) if all(each) else ()
+    by_finding = [finding.sensors for finding in findings]
+    return tuple(dict.fromkeys(sensor for sensors in by_finding for sensor in sensors)) if all(by_finding) else ()
 
 
 def _errors(before: Errors, after: Errors) -> Iterator[HeldOut]:
     """Of every sensor of which both errors are known, and that the extended model predicts otherwise."""
-    for kind, own in before.items():
-        typical = median(own.values())
-        for sensor, error in own.items():
+    for kind, by_sensor in before.items():
+        typical = median(by_sensor.values())
+        for sensor, error in by_sensor.items():
             since = after.get(kind, {}).get(sensor, 0.0)
             if error > 0 and since > 0 and error != since and isfinite(error) and isfinite(since):
                 yield HeldOut(sensor, kind, error, since, typical)
 
 
-def _of_sensor(one: HeldOut) -> str:
-    share = one.after / one.before
+def _of_sensor(held_out: HeldOut) -> str:
+    share = held_out.after / held_out.before
     otherwise = FALLS if share < 1 else RISES
     words = next((said for low, high, said in SHARES if low <= share <= high), otherwise)
-    measure = deviation_measure(one.kind, "bias", max(one.before, one.after))
-    before, after = one.before * measure.factor, one.after * measure.factor
+    measure = deviation_measure(held_out.kind, "bias", max(held_out.before, held_out.after))
+    before, after = held_out.before * measure.factor, held_out.after * measure.factor
     digits = max(decimals(before) or 0, -floor(log10(after)))
     return say(
-        words, sensor=one.sensor, before=number(before, digits), after=number(after, digits) + THIN + measure.label
+        words, sensor=held_out.sensor, before=number(before, digits), after=number(after, digits) + THIN + measure.label
     )

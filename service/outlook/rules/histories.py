@@ -109,7 +109,7 @@ class Left:
     """What is left of a change without what a diagnosis explains of it."""
 
     change: list[float]
-    own: list[float]
+    sigma: list[float]
     """Its standard uncertainty that the session brings."""
     dof: float | None
     part: list[float]
@@ -134,8 +134,8 @@ class Histories:
 
     def explained_in(self, session: str) -> tuple[tuple[TrackKey, float], ...]:
         """What a diagnosis explains of a session's changes, the lengths SI or relative, where it is worth telling."""
-        each = ((key, track, self.left.get((session, key.sensor, key.parameter))) for key, track in self._tracks())
-        sizes = ((key, track, hypot(*left.part)) for key, track, left in each if left is not None)
+        found = ((key, track, self.left.get((session, key.sensor, key.parameter))) for key, track in self._tracks())
+        sizes = ((key, track, hypot(*left.part)) for key, track, left in found if left is not None)
         return tuple((key, size) for key, track, size in sizes if size >= WORTH_TELLING * track.tolerance)
 
     def _tracks(self) -> Iterable[tuple[TrackKey, Track]]:
@@ -196,9 +196,9 @@ def _track(
         (reference, fewest),
         *((row, row.dof) for row in rows),
     )
-    explained = (left.get((of.session, key.sensor, key.parameter)) for of, _ in sessions)
+    explained = (left.get((row.session, key.sensor, key.parameter)) for row, _ in sessions)
     changes = zip(sessions, _as_measured(rows, reference) or judged, explained, strict=True)
-    points = sorted((_point(of, change, dof, part) for (of, dof), change, part in changes), key=_date)
+    points = sorted((_point(row, change, dof, part) for (row, dof), change, part in changes), key=_date)
     start = points[0][0]
     track = Track(
         time=np.array([(at - start) / YEAR for at, *_ in points]),
@@ -211,12 +211,12 @@ def _track(
     return track, tuple(at for at, *_ in points)
 
 
-def _point(of: ChangeRow | ReferenceRow, measured: Measured, dof: float | None, left: Left | None) -> Point:
+def _point(row: ChangeRow | ReferenceRow, measured: Measured, dof: float | None, left: Left | None) -> Point:
     """One session's change, without what a diagnosis explains of it."""
-    change, own = measured
+    change, sigma = measured
     if left is None:
-        return of.at, change, own, dof, of.temperature
-    return of.at, np.subtract(change, left.part).tolist(), left.own, left.dof, of.temperature
+        return row.at, change, sigma, dof, row.temperature
+    return row.at, np.subtract(change, left.part).tolist(), left.sigma, left.dof, row.temperature
 
 
 def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Measured, ...] | None:
@@ -234,9 +234,9 @@ def _as_measured(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Me
     if any(None in point for point in points):
         return None
     values = np.array(points, dtype=float)
-    one = values[:, 1] if rows[-1].parameter == "scale" else np.ones(len(rows))
-    change, u = (values[:, 0] - values[:, 1]) / one, values[:, 2] / np.abs(one)
-    return (([0.0], [first / abs(one[-1])]), *(([float(d)], [float(s)]) for d, s in zip(change, u, strict=True)))
+    unit = values[:, 1] if rows[-1].parameter == "scale" else np.ones(len(rows))
+    change, u = (values[:, 0] - values[:, 1]) / unit, values[:, 2] / np.abs(unit)
+    return (([0.0], [first / abs(unit[-1])]), *(([float(d)], [float(s)]) for d, s in zip(change, u, strict=True)))
 
 
 def _date(point: Point) -> datetime:

@@ -32,7 +32,7 @@ def populations(rates: Sequence[Rate]) -> tuple[Population, ...]:
     for rate in rates:
         groups.setdefault((rate.kind, rate.parameter), []).append(rate)
     found = (_population(*place, group) for place, group in sorted(groups.items()))
-    return tuple(one for one in found if one.rates or one.lots)
+    return tuple(population for population in found if population.rates or population.lots)
 
 
 def _population(kind: str, parameter: str, group: Group) -> Population:
@@ -50,8 +50,8 @@ def _population(kind: str, parameter: str, group: Group) -> Population:
         spread=wide,
         rates=len(placed),
         lots=len(lots),
-        fast=_first(one for one, _ in placed if abs(one.value) > WORTH),
-        evident=_first(one for one, chance in placed if chance < SIGNIFICANT),
+        fast=_first(rate for rate, _ in placed if abs(rate.value) > WORTH),
+        evident=_first(rate for rate, chance in placed if chance < SIGNIFICANT),
         far_lots=tuple(lots[:KEPT]),
     )
 
@@ -62,7 +62,7 @@ def _placed(rate: Rate, z: float) -> tuple[Placed, float]:
 
 
 def _first(found: Iterator[Placed]) -> tuple[Placed, ...]:
-    return tuple(one for one, _ in zip(found, range(KEPT), strict=False))
+    return tuple(rate for rate, _ in zip(found, range(KEPT), strict=False))
 
 
 def _lots(group: Group) -> list[tuple[str, float]]:
@@ -96,14 +96,14 @@ def standouts(far: FarOut) -> tuple[Standout, ...]:
 
 
 def _units(far: FarOut) -> list[Standout]:
-    placed = [(one, population) for population in far.populations for one in population.fast]
+    placed = [(rate, population) for population in far.populations for rate in population.fast]
     placed.sort(key=lambda pair: -abs(pair[0].z))
-    out = outliers([one.z for one, _ in placed], among=far.rates)
+    out = outliers([rate.z for rate, _ in placed], among=far.rates)
     return [_unit(*pair) for pair, is_out in zip(placed, out, strict=True) if is_out]
 
 
-def _unit(one: Placed, population: Population) -> Standout:
-    return Standout(one.serial, drift_stands_out(one.sensor, population.parameter, one.value))
+def _unit(rate: Placed, population: Population) -> Standout:
+    return Standout(rate.serial, drift_stands_out(rate.sensor, population.parameter, rate.value))
 
 
 def _far_lots(far: FarOut) -> list[Standout]:

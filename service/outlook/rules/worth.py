@@ -11,12 +11,12 @@ GOES_ON = ("drift", "aging", "walk")
 A_YEAR = 1.0
 
 
-def is_worth_a_flag(trend: ParameterTrend, change: FoundChange, outlook: UnitOutlook, of: UnitType) -> bool:
+def is_worth_a_flag(trend: ParameterTrend, change: FoundChange, outlook: UnitOutlook, unit_type: UnitType) -> bool:
     """Whether a change takes the share of the tolerance that its type says, or goes on and may pass the tolerance
     before the unit comes back."""
-    latest, back = outlook.risk[0].at, comes_back(outlook, of)
+    latest, back = outlook.risk[0].at, comes_back(outlook, unit_type)
     years = max(A_YEAR, (back - latest) / YEAR)
-    if taken_by(change, years) >= of.flag_share * trend.tolerance:
+    if taken_by(change, years) >= unit_type.flag_share * trend.tolerance:
         return True
     return change.kind in GOES_ON and trend.reach_90 is not None and trend.reach_90 <= back
 
@@ -27,6 +27,6 @@ def taken_by(change: FoundChange, years: float) -> float:
     return abs(change.size) * (years if change.kind == "drift" else 1.0)
 
 
-def comes_back(outlook: UnitOutlook, of: UnitType) -> datetime:
+def comes_back(outlook: UnitOutlook, unit_type: UnitType) -> datetime:
     """When the next calibration is due; where the unit waits for no date, the longest interval from the latest."""
-    return outlook.due or outlook.risk[0].at + timedelta(days=of.maximum_interval_days)
+    return outlook.due or outlook.risk[0].at + timedelta(days=unit_type.maximum_interval_days)

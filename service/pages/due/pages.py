@@ -57,10 +57,10 @@ def show_due(request: Request, store: ReadingFleet, now: Now, view: Annotated[Du
     shown = Shown.of(view, units, lambda unit: unit.serial)
     tiles = tuple(
         DueTile(
-            period_in_words(one.when), one.units, STYLES.get(one.when, "reference"), view.when == one.when,
-            view.first(when="" if view.when == one.when else one.when),
+            period_in_words(period.when), period.units, STYLES.get(period.when, "reference"), view.when == period.when,
+            view.first(when="" if view.when == period.when else period.when),
         )
-        for one in due_counts(dates, now)
+        for period in due_counts(dates, now)
     )  # fmt: skip
     asked = {"when": view.when, "location": view.location, "custodian": view.custodian}
     exports = {form: address_of("/api/v1/fleet/due", asked | {"format": form}) for form in ("xlsx", "csv")}

@@ -24,7 +24,7 @@ from service.web.list_view import Shown
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
 NO_CHOICES = FleetChoices()
-NONE_SAVED = Saved(ListPage.FLEET, (), "", own=False, may_share=False)
+NONE_SAVED = Saved(ListPage.FLEET, (), "", is_signed_in=False, may_share=False)
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
 
@@ -149,7 +149,7 @@ def fleet_page(
     shown = Shown.of(view, units, lambda unit: unit.serial)
     return FleetPage(
         view=view,
-        tiles=tuple(_tile(one, view) for one in condition.counts),
+        tiles=tuple(_tile(counted, view) for counted in condition.counts),
         rows=tuple(fleet_row(unit, uses[unit.serial]) for unit in shown.entries),
         total=condition.units,
         shown=shown,
@@ -172,10 +172,10 @@ def fleet_page(
     )
 
 
-def _tile(one: ConditionCount, view: FleetView) -> Tile:
-    chosen = view.condition == one.condition.key
-    url = view.first(condition="" if chosen else one.condition.key)
-    return Tile(one.condition, one.count, one.reserved, chosen, url)
+def _tile(counted: ConditionCount, view: FleetView) -> Tile:
+    chosen = view.condition == counted.condition.key
+    url = view.first(condition="" if chosen else counted.condition.key)
+    return Tile(counted.condition, counted.count, counted.reserved, chosen, url)
 
 
 def flags_in_words(count: int) -> str:

@@ -22,4 +22,4 @@ class ReviewQueue(BaseModel):
 def read_review(store: Reading, person: PersonOf, now: Now, language: LanguageOf) -> ReviewQueue:
     """What the caller can do something about: own flags; for crews overdue units; for engineers questioned sessions,
     certificates to sign, flags without an assignee and failed work."""
-    return ReviewQueue(waiting=tuple(said_in(one, language) for one in waiting_for(store, person, now)))
+    return ReviewQueue(waiting=tuple(said_in(to_do, language) for to_do in waiting_for(store, person, now)))

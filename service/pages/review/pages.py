@@ -25,5 +25,5 @@ router = APIRouter(include_in_schema=False)
 def show_review(request: Request, store: Reading, person: PersonOf, now: Now) -> HTMLResponse:
     """What waits for whoever looks, by role."""
     waiting = waiting_for(store, person, now)
-    sections = ((kind, heading, [one for one in waiting if one.kind is kind]) for kind, heading in HEADINGS.items())
+    sections = ((kind, heading, [w for w in waiting if w.kind is kind]) for kind, heading in HEADINGS.items())
     return render(request, "review.html", tuple(section for section in sections if section[-1]))

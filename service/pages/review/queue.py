@@ -86,9 +86,10 @@ def _overdue(store: Store, now: datetime) -> Iterator[ToDo]:
 
 
 def _questioned(store: Store) -> Iterator[ToDo]:
-    for one in Sessions(store).wanted(SessionQuery(state=RecordState.QUESTIONED, limit=MOST)):
-        text = say("The session of {day} does not count: accept, correct or withdraw it.", day=day_of(one.started_at))
-        yield ToDo(WaitingKind.SESSION, one.unit, text, one.uploaded_at, f"/sessions/{one.id}")
+    for session in Sessions(store).wanted(SessionQuery(state=RecordState.QUESTIONED, limit=MOST)):
+        day = day_of(session.started_at)
+        text = say("The session of {day} does not count: accept, correct or withdraw it.", day=day)
+        yield ToDo(WaitingKind.SESSION, session.unit, text, session.uploaded_at, f"/sessions/{session.id}")
 
 
 def _certificates(store: Store) -> Iterator[ToDo]:
@@ -99,6 +100,6 @@ def _certificates(store: Store) -> Iterator[ToDo]:
 
 
 def _failed(store: Store, now: datetime) -> Iterator[ToDo]:
-    for one in Failures(store).listed(now, MOST):
-        text = say("{what} failed: {why}", what=NAMES[one.kind], why=one.why)
-        yield ToDo(WaitingKind.WORK, one.of, text, None, "/jobs#failed")
+    for failed in Failures(store).listed(now, MOST):
+        text = say("{what} failed: {why}", what=NAMES[failed.kind], why=failed.why)
+        yield ToDo(WaitingKind.WORK, failed.of, text, None, "/jobs#failed")

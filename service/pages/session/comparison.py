@@ -104,16 +104,16 @@ def _repeatabilities(before: Calibration, after: Calibration) -> dict[tuple[str,
 
 
 def _spread(
-    before: Calibration, after: Calibration, then: SensorCalibration, now: SensorCalibration, parameter: str
+    before: Calibration, after: Calibration, old: SensorCalibration, now: SensorCalibration, parameter: str
 ) -> float | None:
     if parameter == "axis":
-        return _axis_spread(_axis_repeatability(before, then), _axis_repeatability(after, now))
-    one: Estimate | None = getattr(then, parameter)
-    other: Estimate | None = getattr(now, parameter)
-    if one is None or other is None or one.repeatability is None or other.repeatability is None:
+        return _axis_spread(_axis_repeatability(before, old), _axis_repeatability(after, now))
+    first: Estimate | None = getattr(old, parameter)
+    second: Estimate | None = getattr(now, parameter)
+    if first is None or second is None or first.repeatability is None or second.repeatability is None:
         return None
-    size = abs(one.value or 0.0) if parameter == "scale" else 1.0
-    return float(np.hypot(one.repeatability, other.repeatability)) / size if size else None
+    size = abs(first.value or 0.0) if parameter == "scale" else 1.0
+    return float(np.hypot(first.repeatability, second.repeatability)) / size if size else None
 
 
 def _axis_spread(before: Array | None, after: Array | None) -> float | None:
@@ -160,7 +160,7 @@ def in_common(first: StoredSession, second: StoredSession, services: Sequence[Se
     if first.revision != second.revision:
         said.append(say(OTHER_MODEL, first=first.revision, second=second.revision))
     if first.programme != second.programme:
-        named = (one.programme.replace("-", " ") for one in (first, second))
+        named = (session.programme.replace("-", " ") for session in (first, second))
         said.append(say(OTHER_METHOD, **dict(zip(("first", "second"), named, strict=True))))
     return tuple(said)
 
@@ -239,20 +239,20 @@ def _parameters(before: Calibration, after: Calibration) -> tuple[str, ...]:
 
 
 def _row(
-    then: SensorCalibration | None,
+    old: SensorCalibration | None,
     now: SensorCalibration,
     parameter: str,
     decision: Decision | None,
-    way: tuple[ComparisonView, float],
+    view_and_coverage: tuple[ComparisonView, float],
 ) -> ParameterChangeRow:
-    found, k = way
+    found, k = view_and_coverage
     units = reading_units(found.after)
     spread = found.on_one_stand.get((now.name, parameter))
     known = decision if decision is not None and decision.deviation is not None else None
     return ParameterChangeRow(
         sensor=now.name,
         parameter=PARAMETER_NAMES[parameter],
-        before="–" if then is None else value_in_words(then, parameter, k, units.get(now.name, "")),
+        before="–" if old is None else value_in_words(old, parameter, k, units.get(now.name, "")),
         after=value_in_words(now, parameter, k, units.get(now.name, "")),
         change=NOT_COMPARED if known is None else deviation_in_words(known),
         on_one_stand="" if known is None or spread is None else _on_one_stand(known, spread),

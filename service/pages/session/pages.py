@@ -185,7 +185,7 @@ def session_page(
         said=said,
         follow=follow,
         retired=retired,
-        causes=tuple(cause_on(one.cause, one.sensors) for one in model),
+        causes=tuple(cause_on(revision.cause, revision.sensors) for revision in model),
         earlier=tuple(revision for revision in computed if revision != report.session.revision),
     )
 
@@ -208,24 +208,24 @@ def _sensor(
     sensor: SensorCalibration,
     parameters: tuple[str, ...],
     judged: Mapping[tuple[str, str], Decision],
-    way: tuple[float, str],
+    coverage_and_unit: tuple[float, str],
 ) -> SensorRow:
-    """``way``: coverage factor and reading unit."""
+    """``coverage_and_unit``: coverage factor and reading unit."""
     return SensorRow(
         name=sensor.name,
         kind=sensor.kind,
-        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), way) for p in parameters),
+        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), coverage_and_unit) for p in parameters),
         known=tuple(combination_in_words(k, sensor.kind) for k in sensor.known),
     )
 
 
 def _cell(
-    sensor: SensorCalibration, parameter: str, decision: Decision | None, way: tuple[float, str]
+    sensor: SensorCalibration, parameter: str, decision: Decision | None, coverage_and_unit: tuple[float, str]
 ) -> ParameterCell:
     return ParameterCell(
         parameter=parameter,
         observable=sensor.observable.get(parameter, False),
-        value=value_in_words(sensor, parameter, *way),
+        value=value_in_words(sensor, parameter, *coverage_and_unit),
         deviation=deviation_in_words(decision),
         tolerance=tolerance_in_words(decision),
         probability=_probability(decision),

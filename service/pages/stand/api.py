@@ -98,7 +98,7 @@ def list_resting_certificates(
     found = Certificates(store).resting_on(name, since, until)
     form = wanted_form(request, format, FORMS)
     if form == "csv":
-        return as_table(table_of([vars(one) for one in found], RESTING), form, "resting-certificates")
+        return as_table(table_of([vars(certificate) for certificate in found], RESTING), form, "resting-certificates")
     document = RestingCertificateList(certificates=found).model_dump_json()
     return Response(document, media_type="application/json", headers=BY_HEADER)
 

@@ -243,30 +243,30 @@ def _certificate(found: StandCertificate) -> tuple[str, str, str, str]:
 def _shifts(condition: StandCondition) -> tuple[ShiftRow, ...]:
     """Shifts, newest first; then the most evident of every quantity that has none."""
     shifted = {(shift.kind, shift.quantity) for shift in condition.shifts}
-    steady = [one for one in condition.evidence if (one.kind, one.quantity) not in shifted]
-    return (*(_shift(one) for one in reversed(condition.shifts)), *(_steady(one) for one in steady))
+    steady = [evidence for evidence in condition.evidence if (evidence.kind, evidence.quantity) not in shifted]
+    return (*(_shift(evidence) for evidence in reversed(condition.shifts)), *(_steady(evidence) for evidence in steady))
 
 
-def _shift(one: StandEvidence) -> ShiftRow:
-    lasts = one.until is None
+def _shift(evidence: StandEvidence) -> ShiftRow:
+    lasts = evidence.until is None
     when = (
-        say("since {date}", date=day_of(one.since))
-        if one.until is None
-        else say("{start} to before {end}", start=day_of(one.since), end=day_of(one.until))
+        say("since {date}", date=day_of(evidence.since))
+        if evidence.until is None
+        else say("{start} to before {end}", start=day_of(evidence.since), end=day_of(evidence.until))
     )
     word, tone = ("shifted", "conditional-fail") if lasts else ("shift has ended", "conditional-pass")
-    return _shift_row(one, when, word, tone)
+    return _shift_row(evidence, when, word, tone)
 
 
-def _steady(one: StandEvidence) -> ShiftRow:
+def _steady(found: StandEvidence) -> ShiftRow:
     return _shift_row(
-        one, say("most evident since {since}", since=day_of(one.since)), "stable: no significant change", "pass"
+        found, say("most evident since {since}", since=day_of(found.since)), "stable: no significant change", "pass"
     )
 
 
-def _shift_row(one: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
-    units = say("{number} of {units}", number=one.agreeing, units=one.units)
-    return ShiftRow(kind_of_shift(one.kind, one.quantity), size_of_shift(one), when, units, word, tone)
+def _shift_row(evidence: StandEvidence, when: str, word: str, tone: str) -> ShiftRow:
+    units = say("{number} of {units}", number=evidence.agreeing, units=evidence.units)
+    return ShiftRow(kind_of_shift(evidence.kind, evidence.quantity), size_of_shift(evidence), when, units, word, tone)
 
 
 def _seating(condition: StandCondition) -> tuple[tuple[str, str], ...]:

@@ -65,7 +65,7 @@ def learned(storage: Storage, name: str) -> tuple[TypeLaw, ...]:
         known = UnitTypes(store).get(name)
         units = Fleet(store).units(FleetQuery(unit_type=name, order=Order.SERIAL, limit=MOST_LISTED, retired=None))
         real = [unit for unit in units if not unit.simulated] or units
-        histories = tuple(islice((own for unit in real for own in _history(store, unit.serial)), MOST_UNITS))
+        histories = tuple(islice((history for unit in real for history in _history(store, unit.serial)), MOST_UNITS))
     return type_laws(histories, tolerances_of(known))
 
 
@@ -73,12 +73,12 @@ def _history(store: Store, serial: str) -> Iterator[UnitHistory]:
     """Of a unit's latest epoch, where its sessions were at different temperatures; else none."""
     places = [p for p in places_of(known_unit(store, Units(store).key(serial))) if p.session.programme != IN_SERVICE]
     reference = next((p.reference for p in reversed(places) if p.reference is not None), None)
-    own = [p.session for p in places if reference is not None and p.reference is reference]
-    warm = [(one, one.temperature) for one in own if one.temperature is not None][-MOST_LEARNED:]
+    sessions = [p.session for p in places if reference is not None and p.reference is reference]
+    warm = [(session, session.temperature) for session in sessions if session.temperature is not None][-MOST_LEARNED:]
     if reference is None or len(warm) < ENOUGH_TO_BEND or np.std([celsius for _, celsius in warm]) < WARMED:
         return
-    made, start = Calibrations(store).in_force({reference.id, *(one.id for one, _ in warm)}), warm[0][0].at
-    seen = [Seen((one.at - start) / YEAR, celsius, made[one.id]) for one, celsius in warm]
+    made, start = Calibrations(store).in_force({reference.id, *(session.id for session, _ in warm)}), warm[0][0].at
+    seen = [Seen((session.at - start) / YEAR, celsius, made[session.id]) for session, celsius in warm]
     yield UnitHistory(made[reference.id], seen)
 
 

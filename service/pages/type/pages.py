@@ -203,7 +203,7 @@ def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage
     return TypePage(
         row=_row(report.line),
         interval=counted(round(known.maximum_interval_days), "day"),
-        revisions=tuple(_revision(one, known, report) for one in reversed(report.revisions)),
+        revisions=tuple(_revision(revision, known, report) for revision in reversed(report.revisions)),
         sensors=tuple(
             _sensor(name, kinds[name], axis, scale)
             for name, axis, scale in zip(known.sensors, known.nominal_axes, known.nominal_scales, strict=True)
@@ -223,7 +223,7 @@ def type_page(report: TypeReport, group: GroupSection | None = None) -> TypePage
 def _row(line: TypeLine) -> TypeRow:
     known = line.unit_type
     named = [
-        say("{quantity} {amount}", quantity=what, amount=text) for what, text in _limits(known) if text != NOT_JUDGED
+        say("{quantity} {amount}", quantity=name, amount=text) for name, text in _limits(known) if text != NOT_JUDGED
     ]
     return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
 
@@ -244,20 +244,20 @@ def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
     )
 
 
-def _revision(one: ToleranceRevision, known: UnitType, report: TypeReport) -> RevisionRow:
-    who = report.setters.get(one.since, DEFAULTS if one.revision == 1 else "not recorded")
-    held = replace(known, tolerances=one.tolerances, gyro_tolerances=one.gyro_tolerances)
-    units = max((law.units for law in one.temperature_laws), default=0)
-    return RevisionRow(one.revision, one.since, who, _limits(held), counted(units, "unit") if units else "none")
+def _revision(limits: ToleranceRevision, known: UnitType, report: TypeReport) -> RevisionRow:
+    who = report.setters.get(limits.since, DEFAULTS if limits.revision == 1 else "not recorded")
+    held = replace(known, tolerances=limits.tolerances, gyro_tolerances=limits.gyro_tolerances)
+    units = max((law.units for law in limits.temperature_laws), default=0)
+    return RevisionRow(limits.revision, limits.since, who, _limits(held), counted(units, "unit") if units else "none")
 
 
 def _limits(known: UnitType) -> tuple[tuple[str, str], ...]:
     """What units are judged by; of a mixed block for each kind of sensor."""
     allowed = tolerances_of(known)
     kinds = (known.block,) if known.gyro_tolerances is None else (ACCELEROMETER, GYROSCOPE)
-    of = {kind: f"{KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}
+    kind_words = {kind: f"{KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}
     return tuple(
-        (joined(", ", filter(None, (heading(name), of[kind]))), _limit(kind, name, allowed.get((kind, name))))
+        (joined(", ", filter(None, (heading(name), kind_words[kind]))), _limit(kind, name, allowed.get((kind, name))))
         for kind in kinds
         for name in PARAMETERS
     )

@@ -252,8 +252,8 @@ def preview_page(
         name=known.name,
         headline=headline_of(found),
         rows=tuple(
-            VerdictChangeRow(one.unit, condition_of(one.before), condition_of(one.after), one.reason)
-            for one in found.changes
+            VerdictChangeRow(change.unit, condition_of(change.before), condition_of(change.after), change.reason)
+            for change in found.changes
         ),
         notes=tuple(notes_of(found)),
         interval=days(other) if other.maximum_interval_days != known.maximum_interval_days else "",
@@ -338,18 +338,16 @@ def preview_tolerances(store: Store, name: str, wanted: WantedTolerances, covera
     units = sum(UnitTypes(store).uses(name)[name].verdicts.values())
     serials = tuple(unit.serial for unit in Fleet(store).units(FleetQuery(unit_type=name, limit=MOST_UNITS)))
     latest = FleetRows(store).latest_sessions(serials)
-    against = {one.session: _reference(store, one) for one in latest.values()}
+    against = {session.session: _reference(store, session) for session in latest.values()}
     known_of = {session: reference for session, reference in against.items() if reference is not None}
     calibrations = Calibrations(store).in_force({*known_of, *known_of.values()})
-    alone = {one.session for one in latest.values() if _is_uncompared(one, known_of, calibrations)}
+    alone = {session.session for session in latest.values() if _is_uncompared(session, known_of, calibrations)}
     compared = {session: reference for session, reference in known_of.items() if session not in alone}
     judged = [latest[serial] for serial in serials if serial in latest and latest[serial].session in compared]
     steps = Sessions(store).temperature_steps(compared)
     found = (
-        _change(
-            one, tuple(calibrations[id] for id in (one.session, compared[one.session])), other, coverage_factor, steps
-        )
-        for one in judged
+        _change(s, tuple(calibrations[id] for id in (s.session, compared[s.session])), other, coverage_factor, steps)
+        for s in judged
     )
     return TolerancePreview(
         units=units,
@@ -357,25 +355,25 @@ def preview_tolerances(store: Store, name: str, wanted: WantedTolerances, covera
         references=len(against) - len(compared) - len(alone),
         recordings=len(alone),
         beyond=units - len(latest),
-        changes=tuple(sorted(filter(None, found), key=lambda one: -one.after.severity)),
+        changes=tuple(sorted(filter(None, found), key=lambda change: -change.after.severity)),
     )
 
 
-def _reference(store: Store, one: LatestSession) -> str | None:
+def _reference(store: Store, last: LatestSession) -> str | None:
     """The session that it is judged against; None of a reference, and where there is none."""
-    if one.is_reference:
+    if last.is_reference:
         return None
-    return reference_of(store, one.key, one.block, one.programme, one.started_at).session
+    return reference_of(store, last.key, last.block, last.programme, last.started_at).session
 
 
-def _is_uncompared(one: LatestSession, against: Mapping[str, str], calibrations: Mapping[str, Calibration]) -> bool:
+def _is_uncompared(last: LatestSession, against: Mapping[str, str], calibrations: Mapping[str, Calibration]) -> bool:
     """Whether it is a recording in service without a calibration to compare it with, or whose file could not be read
     when it was to be compared."""
-    return one.programme == IN_SERVICE and (one.session not in against or calibrations[one.session].parity is None)
+    return last.programme == IN_SERVICE and (last.session not in against or calibrations[last.session].parity is None)
 
 
 def _change(
-    one: LatestSession,
+    last: LatestSession,
     pair: tuple[Calibration, ...],
     other: UnitType,
     coverage_factor: float,
@@ -384,12 +382,12 @@ def _change(
     """A session and its reference are the pair."""
     calibration, reference = pair
     if calibration.parity is None:
-        found = judge(calibration, reference, other, coverage_factor, steps=steps.get(one.session, NO_STEPS))
+        found = judge(calibration, reference, other, coverage_factor, steps=steps.get(last.session, NO_STEPS))
     else:
         seen = ReferenceComparison(reference, ParityResult.from_dict(calibration.parity))
         found = judge_recording(calibration, seen, other, coverage_factor)
-    if found.verdict is one.verdict:
+    if found.verdict is last.verdict:
         return None
     worst = found.worst
     place = ("", "") if worst is None else (worst.sensor, worst.parameter)
-    return VerdictChange(one.unit, one.session, one.verdict, found.verdict, *place, found.reason)
+    return VerdictChange(last.unit, last.session, last.verdict, found.verdict, *place, found.reason)

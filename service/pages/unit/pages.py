@@ -1,10 +1,9 @@
-"""The page of one unit: its verdict now, and how every parameter of every sensor got there."""
+"""The page of one unit: its verdict now, and what it rests on."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import groupby, islice
+from itertools import groupby
 
-from estimator.allan.results import TERMS
 from estimator.message import say
 from service.flags.pages import FlagCard, flag_cards
 from service.flags.records import Flag
@@ -15,13 +14,14 @@ from service.judging.temperature_words import covered_in_words
 from service.judging.usable_words import next_in_words
 from service.judging.use import Use, in_words
 from service.kit.failure import unit_failed
-from service.kit.measures import NOISE, day_of, heading, in_measure
-from service.outlook.charts import ParameterCourse, TrackPoint, history_charts, tolerance_text, tracks_of
-from service.outlook.records import ParameterTrend, UnitOutlook
+from service.kit.measures import NOISE, day_of, in_measure
+from service.outlook.charts import ParameterCourse, TrackPoint, history_charts
+from service.outlook.records import UnitOutlook
 from service.outlook.words import NextCalibration, next_calibration
 from service.pages.unit.events import KINDS, STEPS, StageTable, UnitEvent, events_of, stage_table
+from service.pages.unit.parameters import ParameterHead, parameter_heads
 from service.pages.unit.remarks import Remarks
-from service.pages.unit.report import LATEST, UnitReport
+from service.pages.unit.report import UnitReport
 from service.papers.found_and_left import FoundAndLeft
 from service.sessions.charts import ChartSet
 from service.sessions.lines import SessionLine, session_lines
@@ -82,12 +82,6 @@ def noise_part(points: Sequence[HistoryPoint], services: Sequence[Service], note
     return NoisePart(grown(points), tuple(sections), tuple(undecided))
 
 
-def without_noise(points: Sequence[HistoryPoint]) -> tuple[tuple[HistoryPoint, ...], tuple[HistoryPoint, ...]]:
-    """What is judged, and the terms of noise."""
-    judged = tuple(point for point in points if point.parameter not in TERMS)
-    return judged, tuple(point for point in points if point.parameter in TERMS)
-
-
 def _noise_section(
     points: Sequence[HistoryPoint], heading: str, services: Sequence[Service], notes: Sequence[Note]
 ) -> NoiseSection:
@@ -132,48 +126,6 @@ def _row(points: Sequence[HistoryPoint], sensors: Sequence[str]) -> NoiseRow:
     return NoiseRow(points[0].session, day_of(at), at.isoformat(), tuple(cells.get(sensor, "–") for sensor in sensors))
 
 
-PARAMETER_MEANINGS = {
-    "scale": "Change of the scale factor since the reference of its epoch.",
-    "bias": "Change of the bias since the reference of its epoch.",
-    "quadratic": "Change of the quadratic term since the reference of its epoch.",
-    "axis": "Angle between the input axis and its direction in the reference of its epoch.",
-    "misalignment": "Change of the input axis's misalignment to the turn axis since the reference of its epoch.",
-}
-"""What the charts of a parameter show."""
-TOGETHER = {"axis": "turn", "scale": "change"}
-"""What a whole block does to a parameter."""
-
-
-@dataclass(frozen=True)
-class TableRow:
-    """One session's values of one parameter, a cell a sensor; None where a sensor was not in the session."""
-
-    session: str
-    day: str
-    iso: str
-    cells: tuple[TrackPoint | None, ...]
-
-
-@dataclass(frozen=True)
-class ParameterSection:
-    """One parameter of all sensors of a kind: charts, and the same as a table."""
-
-    anchor: str
-    heading: str
-    meaning: str
-    together: str
-    """What of the whole block is taken off, in a word; empty where nothing ever is."""
-    unit: str
-    tolerance: str
-    worst: Condition
-    charts: ChartSet
-    sensors: tuple[str, ...]
-    rows: tuple[TableRow, ...]
-    """Of the newest sessions."""
-    is_cut: bool
-    """Whether sessions before these are drawn."""
-
-
 @dataclass(frozen=True)
 class UnitView:
     """Everything a unit's page shows."""
@@ -189,15 +141,13 @@ class UnitView:
     """Why the verdict is what it is; empty where the answer says it already."""
     failed: str
     """That what follows from its latest records could not be worked out, and why; empty else."""
-    sections: tuple[ParameterSection, ...]
-    """Worst first."""
+    parameters: tuple[ParameterHead, ...]
+    """Worst first; what each holds is fetched when it is opened."""
     sessions: tuple[SessionLine, ...]
     reference: str
     """What the next session is judged against, in words; empty when it becomes the reference itself."""
     covered: str
     """The temperatures that its calibrations cover."""
-    drawn: int
-    """How many sessions, the newest ones, the charts show."""
     flags: tuple[FlagCard, ...]
     """Open ones first."""
     events: tuple[UnitEvent, ...]
@@ -228,10 +178,11 @@ class UnitView:
 
 def unit_page(
     report: UnitReport,
-    history: Sequence[HistoryPoint],
+    latest: Sequence[HistoryPoint],
     usable: Usable,
     *,
     raw: bool = False,
+    noise: Sequence[HistoryPoint] = (),
     flags: Sequence[Flag] = (),
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
@@ -242,12 +193,8 @@ def unit_page(
     history_of_custody: Sequence[Custody] = (),
     temperatures: CoveredTemperatures | None = None,
 ) -> UnitView:
-    """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
-    trends = () if outlook is None or raw else outlook.trends
-    valid = tuple(note for note in notes if note.withdrawal is None)
-    history, terms = without_noise(history)
-    groups = tracks_of(history, report.services)
-    kinds = {point.kind for point in history}
+    """The page of a unit with the latest of every parameter, flags and notes, as found and as left, and when it must
+    come back."""
     condition = condition_of(report.summary.verdict, is_reference=report.summary.is_reference)
     return UnitView(
         report=report,
@@ -257,14 +204,10 @@ def unit_page(
         reason=_reason(report.summary.reason or condition.meaning, usable),
         failed=unit_failed(report.summary.failed) if report.summary.failed else "",
         condition=condition,
-        sections=_worst_first(
-            (_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
-            report.summary.worst_parameter,
-        ),
+        parameters=parameter_heads(latest, report.summary.worst_parameter),
         sessions=session_lines(report.sessions),
         reference=_reference(report),
         covered=covered_in_words(temperatures),
-        drawn=len({point.session for point in history}),
         flags=flag_cards(flags),
         events=events_of((*report.services, *report.withdrawn_services), notes, report.withdrawals),
         stages=stage_table(pair),
@@ -272,7 +215,7 @@ def unit_page(
         headline=next_in_words(usable),
         next=None if outlook is None else next_calibration(outlook, usable.as_of),
         raw=raw,
-        noise=noise_part(terms, report.services, valid),
+        noise=noise_part(noise, report.services, [note for note in notes if note.withdrawal is None]),
         group=group,
         remarks=said,
         custody=tuple(history_of_custody),
@@ -293,47 +236,3 @@ def _reference(report: UnitReport) -> str:
     return dates.get(
         report.reference_session, say("session {reference_session}", reference_session=report.reference_session[:8])
     )
-
-
-def _worst_first(sections: Iterable[ParameterSection], worst: str | None) -> tuple[ParameterSection, ...]:
-    """By condition; among equals the parameter nearest to its tolerance leads."""
-    return tuple(sorted(sections, key=lambda one: (one.worst.rank, not one.anchor.startswith(f"{worst}-"))))
-
-
-def _section(
-    tracks: Sequence[ParameterCourse],
-    services: Sequence[Service],
-    notes: Sequence[Note],
-    trends: Sequence[ParameterTrend],
-    several: bool,
-) -> ParameterSection:
-    parameter = tracks[0].parameter
-    kind = tracks[0].name.rpartition("-")[2]
-    latest = [track.points[-1].condition for track in tracks]
-    rows = tuple(islice(_rows(tracks), LATEST + 1))
-    judged = [condition for condition in latest if condition is not NOT_JUDGED]
-    return ParameterSection(
-        anchor=tracks[0].name,
-        heading=say("{heading}, {kind}", heading=heading(parameter), kind=f"{kind}s")
-        if several
-        else heading(parameter),
-        meaning=PARAMETER_MEANINGS[parameter],
-        together=TOGETHER.get(parameter, ""),
-        unit=tracks[0].unit.label,
-        tolerance=tolerance_text(tracks[0]),
-        worst=min(judged, key=lambda c: c.rank, default=NOT_JUDGED),
-        charts=history_charts(
-            sorted(tracks, key=lambda track: track.points[-1].condition.rank), services, notes, trends
-        ),
-        sensors=tuple(track.sensor for track in tracks),
-        rows=rows[:LATEST],
-        is_cut=len(rows) > LATEST,
-    )
-
-
-def _rows(tracks: Sequence[ParameterCourse]) -> Iterator[TableRow]:
-    """Sessions newest first, sensors across."""
-    found = [{p.session: p for p in track.points} for track in tracks]
-    sessions = {p.session: p.at for track in tracks for p in track.points}
-    for session, at in sorted(sessions.items(), key=lambda item: item[1], reverse=True):
-        yield TableRow(session, day_of(at), at.isoformat(), tuple(points.get(session) for points in found))

@@ -43,7 +43,7 @@ class Remarks:
 
 def remarks(unit: str, session: str, notes: Sequence[Note], files: Sequence[Attachment], most_bytes: int) -> Remarks:
     """Oldest first, as they were said."""
-    lines = tuple(AttachmentLine(one, size_in_words(one.size)) for one in files)
+    lines = tuple(AttachmentLine(file, size_in_words(file.size)) for file in files)
     return Remarks(unit, session, tuple(notes), lines, size_in_words(most_bytes))
 
 

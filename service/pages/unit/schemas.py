@@ -130,7 +130,7 @@ class HistoryAsked(BaseModel):
     @property
     def query(self) -> HistoryQuery:
         """The same for the store."""
-        return copied(HistoryQuery, self, offset=self.window.offset, newest=False, noise=True)
+        return copied(HistoryQuery, self, offset=self.window.offset, newest=False, noise=None, kind=None)
 
 
 class HistoryPage(Paged):

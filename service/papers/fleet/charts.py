@@ -14,7 +14,20 @@ from service.sessions.words.conditions import CONDITIONS, Condition, condition_o
 
 HEIGHT = 120
 """Pixels: the whole fleet in one low strip above its table."""
-TITLE = say("tolerance used by the worst parameter, U included, %; the last bar holds all from {limit} on", limit=LAST)
+TITLE = say(
+    "tolerance used, U included, %; two bars beyond 100: within U of the tolerance; last bar: from {limit} on",
+    limit=LAST,
+)
+LIMIT = 100 // STEP
+"""The first bar beyond the tolerance."""
+BARS = {
+    Verdict.PASS: (0, LIMIT - 1),
+    Verdict.CONDITIONAL_PASS: (LIMIT, LIMIT),
+    Verdict.CONDITIONAL_FAIL: (LIMIT + 1, LIMIT + 1),
+    Verdict.FAIL: (LIMIT + 2, LAST // STEP),
+}
+"""First and last bar of a verdict: what is within U of its tolerance has one, so that a better verdict is never to the
+right of a worse one, however large U is."""
 TICKS = list(range(0, LAST + 1, 2 * STEP))
 """Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
 
@@ -24,7 +37,7 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
     counts: dict[tuple[int, Condition], int] = {}
     for tally in tallies:
         if is_drawn(tally):
-            key = (tally.bar * STEP, condition_of(tally.verdict))
+            key = (bar_by_verdict(tally) * STEP, condition_of(tally.verdict))
             counts[key] = counts.get(key, 0) + tally.units
     rows = _stacked(counts)
     text = say("{counts} by tolerance used", counts=counted(sum(counts.values()), "unit"))
@@ -34,6 +47,12 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
 def is_drawn(tally: Tally) -> bool:
     """Whether its units were judged against their tolerance: of what is undecided no share of it is claimed."""
     return tally.bar != NOT_JUDGED and tally.verdict is not Verdict.UNDECIDABLE
+
+
+def bar_by_verdict(tally: Tally) -> int:
+    """Its bar, as far as its verdict allows."""
+    first, last = BARS.get(tally.verdict, (tally.bar, tally.bar))
+    return min(max(tally.bar, first), last)
 
 
 def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[Json]:

@@ -198,7 +198,7 @@ def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.E
 def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetPaper:
     """What the paper says."""
     judged = any(is_drawn(tally) for tally in report.tallies)
-    overdue = [one for one in Outlooks(store).due(MOST_NOTICES) if one.at < report.at]
+    overdue = [due for due in Outlooks(store).due(MOST_NOTICES) if due.at < report.at]
     chart = fleet_chart(report.tallies)
     ranked = Fleet(store).units(FleetQuery(limit=MOST_RANKED))
     unfit = Fleet(store).units(FleetQuery(unfit=True, limit=MOST_SECTIONS))
@@ -209,7 +209,7 @@ def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetP
         simulated=report.condition.simulated,
         counts=report.condition.counts,
         chart=picture(chart, chart.panels[0], WIDTH, language) if judged else "",
-        overdue=tuple(PaperNotice(one.unit, _since(one, report)) for one in overdue),
+        overdue=tuple(PaperNotice(due.unit, _since(due, report)) for due in overdue),
         more_overdue=report.overdue - len(overdue),
         standing_out=_standing_out(store),
         ranked=tuple(line_of(unit, uses[unit.serial]) for unit in ranked),
@@ -219,26 +219,26 @@ def fleet_paper(store: Store, report: FleetReport, language: Language) -> FleetP
     )
 
 
-def _since(one: DueDate, report: FleetReport) -> str:
+def _since(notice: DueDate, report: FleetReport) -> str:
     """``since 3 Mar 2026 (263 days)``."""
-    due = one.at
+    due = notice.at
     return say("since {date} ({days})", date=day_of(due), days=counted((report.at - due).days, "day"))
 
 
 def _standing_out(store: Store) -> tuple[PaperNotice, ...]:
     """The furthest out of their types, of those whose drift chance does not explain."""
     populations = Populations(store).most_evident(MOST_NOTICES)
-    found = [(one, population) for population in populations for one in population.evident if abs(one.z) > STANDS_OUT]
+    found = [(p, population) for population in populations for p in population.evident if abs(p.z) > STANDS_OUT]
     furthest = sorted(found, key=lambda pair: (-abs(pair[0].z), pair[0].serial, pair[0].sensor, pair[1].parameter))
-    return tuple(PaperNotice(one.serial, _drift(one, population)) for one, population in furthest[:MOST_NOTICES])
+    return tuple(PaperNotice(rate.serial, _drift(rate, population)) for rate, population in furthest[:MOST_NOTICES])
 
 
-def _drift(one: Placed, population: Population) -> str:
+def _drift(placed: Placed, population: Population) -> str:
     """``A6 bias drifts +62 ± 4 µg a year``."""
-    rate, sigma = one.value * one.tolerance, one.sigma * one.tolerance
+    rate, sigma = placed.value * placed.tolerance, placed.sigma * placed.tolerance
     unit = deviation_measure(population.kind, population.parameter, abs(rate))
     write = measured if population.parameter == "axis" else signed
-    parts = {"sensor": one.sensor, "parameter": population.parameter, "rate": write(rate, COVERAGE * sigma, unit)}
+    parts = {"sensor": placed.sensor, "parameter": population.parameter, "rate": write(rate, COVERAGE * sigma, unit)}
     return say("{sensor} {parameter} drifts {rate} a year", **parts)
 
 

@@ -17,25 +17,25 @@ from service.storage import Storage
 def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
     """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
     vector that a driver makes holds it too."""
-    one = corrected(storage, id)
-    if one.found.left_out:
-        why = "; ".join(f"{name}: {reason}" for name, reason in one.found.left_out)
+    source = corrected(storage, id)
+    if source.found.left_out:
+        why = "; ".join(f"{name}: {reason}" for name, reason in source.found.left_out)
         raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
     with storage.database.reading() as store:
-        noise, use = SessionNoises(store).get(id), usable_unit(store, one.stored.unit, now)
-    curves = one.calibration.thermal
+        noise, use = SessionNoises(store).get(id), usable_unit(store, source.stored.unit, now)
+    curves = source.calibration.thermal
     return ExportInput(
-        unit=one.stored.unit,
-        session=one.stored.id,
-        measured_at=one.stored.started_at,
-        state=one.stored.state,
+        unit=source.stored.unit,
+        session=source.stored.id,
+        measured_at=source.stored.started_at,
+        state=source.stored.state,
         verdict=verdict_in_words(
-            condition_of(one.stored.verdict, is_reference=one.stored.is_reference), one.stored.reservations
+            condition_of(source.stored.verdict, is_reference=source.stored.is_reference), source.stored.reservations
         ),
         use=use,
-        simulated=one.stored.simulated,
+        simulated=source.stored.simulated,
         software=f"imu-health {VERSION}",
-        vectors={block.kind: nominal_vector(one.session, block) for block in one.found.blocks},
+        vectors={block.kind: nominal_vector(source.session, block) for block in source.found.blocks},
         noise=noise,
         temperature=None if curves is None else curves.reference_temperature,
     )

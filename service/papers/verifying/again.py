@@ -108,7 +108,7 @@ def _opening(found: Calibrated, printed: Printed) -> str:
     """What is said of a reference: how it came to be one, the file does not tell."""
     said = printed.declared("Verdict")
     ways = [first_in_words(found.calibration, opening) for opening in Opening]
-    return next((way for way in ways if said.endswith(way)), ways[0])
+    return next((opening for opening in ways if said.endswith(opening)), ways[0])
 
 
 def _said(session: StoredSession, printed: Printed) -> str:

@@ -46,8 +46,8 @@ def _differences(printed: Element, computed: Element, above: tuple[str, ...], sl
         return
     if not _agree(_text(printed), _text(computed), slack.get(computed, ())):
         yield at, _text(printed), _text(computed)
-    for one, again in zip(stated, other, strict=True):
-        yield from _differences(one, again, place, slack)
+    for element, again in zip(stated, other, strict=True):
+        yield from _differences(element, again, place, slack)
 
 
 def _agree(printed: str, computed: str, slack: tuple[float, ...]) -> bool:

@@ -90,15 +90,15 @@ def _by_sensor(outlook: UnitOutlook) -> dict[str, list[Found]]:
     for trend in outlook.trends:
         for change in trend.changes:
             found.setdefault(trend.sensor, []).append((trend, change))
-    return {sensor: sorted(own, key=lambda pair: pair[1].p_value) for sensor, own in found.items()}
+    return {sensor: sorted(changes, key=lambda pair: pair[1].p_value) for sensor, changes in found.items()}
 
 
 def _unknown(found: dict[str, list[Found]], settled: dict[Key, Moment]) -> dict[str, list[Found]]:
     """Without jumps that a person knew of when the sensor's flag was resolved: they are over."""
     known = {sensor: at for (matter, sensor), (at, _) in settled.items() if matter == Matter.JUMP}
     return {
-        sensor: [pair for pair in own if pair[1].kind in GOES_ON or not _is_before(pair[1], known.get(sensor))]
-        for sensor, own in found.items()
+        sensor: [pair for pair in changes if pair[1].kind in GOES_ON or not _is_before(pair[1], known.get(sensor))]
+        for sensor, changes in found.items()
     }
 
 
@@ -110,10 +110,10 @@ def _type(store: Store, outlook: UnitOutlook) -> UnitType:
     return UnitTypes(store).of_unit(outlook.serial)
 
 
-def _concerns(found: dict[str, list[Found]], outlook: UnitOutlook, of: UnitType) -> Iterator[Concern]:
+def _concerns(found: dict[str, list[Found]], outlook: UnitOutlook, unit_type: UnitType) -> Iterator[Concern]:
     """One a sensor: a change that goes on is worse than one that is over."""
-    for sensor, own in found.items():
-        worth = [pair for pair in own if is_worth_a_flag(*pair, outlook, of)]
+    for sensor, changes in found.items():
+        worth = [pair for pair in changes if is_worth_a_flag(*pair, outlook, unit_type)]
         if worth:
             goes_on = any(change.kind in GOES_ON for _, change in worth)
             matter = Matter.DRIFT if goes_on else Matter.JUMP

@@ -59,13 +59,13 @@ def verdict_evidence(measured_at: datetime, judged: Judged) -> FlagEvidence:
     new reference."""
     day = day_of(measured_at)
     concerns, clear = [], []
-    for sensor, own in _by_sensor(judged).items():
-        failed = tuple(d for d in own if d.verdict in FAILS)
+    for sensor, decisions in _by_sensor(judged).items():
+        failed = tuple(d for d in decisions if d.verdict in FAILS)
         if failed:
             concerns.append(_verdict_concern(sensor, failed))
         elif judged.is_reference:
             clear.append((Matter.TOLERANCE.value, sensor, say(NEW_REFERENCE, day=day, sensor=sensor)))
-        elif own and all(d.verdict in PASSES for d in own):
+        elif decisions and all(d.verdict in PASSES for d in decisions):
             clear.append((Matter.TOLERANCE.value, sensor, say(WITHIN, day=day, sensor=sensor)))
     return FlagEvidence(tuple(concerns), tuple(clear))
 
@@ -137,14 +137,14 @@ def _of_finding(
     """
     if finding.over_sessions is not None:
         return
-    name, what = finding.cause, what_is_wrong(finding, findings)
+    name, statement = finding.cause, what_is_wrong(finding, findings)
     possible = [cause(identifier) for identifier in (name, *finding.alternatives) if identifier != UNKNOWN_CAUSE]
-    if all(one.is_of_sensor for one in possible):
+    if all(c.is_of_sensor for c in possible):
         new = [sensor for sensor in finding.sensors if (name, sensor) not in known]
         for place in new if finding.shared is None else [""] * bool(new):
-            yield Concern(Matter.CAUSE, place, 1, what)
-    elif all(one.scope == "stand" for one in possible) and session.stand is not None and (name, "") not in known:
-        yield Concern(Matter.STAND, session.stand, 1, what)
+            yield Concern(Matter.CAUSE, place, 1, statement)
+    elif all(c.scope == "stand" for c in possible) and session.stand is not None and (name, "") not in known:
+        yield Concern(Matter.STAND, session.stand, 1, statement)
 
 
 MATTERS = (Matter.TOLERANCE, Matter.CAUSE, Matter.UNEXPLAINED)
@@ -180,9 +180,9 @@ def settle_sessions(store: Store, occasion: Occasion) -> None:
     opened = {f.key: f for f in Flags(store).open_of(occasion.unit) if f.matter in (*MATTERS, Matter.STAND)}
     lives = _lives(sessions, tuple(opened.values()))
     settled = Derivations(store).settled(occasion.unit, SERVICE) if lives.opened else {}
-    wanted = {key: one for key, one in lives.opened.items() if key not in settled or settled[key] < one.at}
-    for key, one in wanted.items():
-        _bring(store, occasion, opened.get(key), one)
+    wanted = {key: life for key, life in lives.opened.items() if key not in settled or settled[key] < life.at}
+    for key, life in wanted.items():
+        _bring(store, occasion, opened.get(key), life)
     for key, flag in opened.items():
         if key not in wanted:
             why = OF_STAND if flag.matter is Matter.STAND else lives.closed.get(key, NOT_SHOWN)
@@ -195,8 +195,8 @@ def settle_sessions(store: Store, occasion: Occasion) -> None:
 
 def _faulty_stands(sessions: Iterable[SessionEvidence]) -> Iterator[str]:
     """Stands that a unit's sessions find at fault."""
-    for one in sessions:
-        for concern in () if one.diagnosis is None else one.diagnosis.concerns:
+    for session in sessions:
+        for concern in () if session.diagnosis is None else session.diagnosis.concerns:
             if concern.matter is Matter.STAND:
                 yield concern.place
 
@@ -204,11 +204,11 @@ def _faulty_stands(sessions: Iterable[SessionEvidence]) -> Iterator[str]:
 def _lives(sessions: Iterable[SessionEvidence], opened: Iterable[Flag]) -> Lives:
     """What is open and what no longer is, after a unit's sessions one after another."""
     lives = Lives({}, {})
-    for one in sessions:
-        kept = tuple(_concern(flag) for flag in opened if flag.session == one.at[1]) if one.is_old else ()
-        for evidence in (one.verdict, one.diagnosis, FlagEvidence(kept, ())):
+    for session in sessions:
+        kept = tuple(_concern(flag) for flag in opened if flag.session == session.at[1]) if session.is_old else ()
+        for evidence in (session.verdict, session.diagnosis, FlagEvidence(kept, ())):
             if evidence is not None:
-                lives = _after(lives, evidence, one.at)
+                lives = _after(lives, evidence, session.at)
     return lives
 
 
@@ -220,8 +220,8 @@ def _after(lives: Lives, evidence: FlagEvidence, at: Moment) -> Lives:
     gone = {key: why for key in lives.opened if (why := clear.get(key) or clear.get((key[0], ANY)))}
     closed = {key: why for key, why in gone.items() if key[0] != Matter.TOLERANCE}
     left = {
-        key: replace(one, proposal=one.proposal or gone.get(key, ""))
-        for key, one in lives.opened.items()
+        key: replace(life, proposal=life.proposal or gone.get(key, ""))
+        for key, life in lives.opened.items()
         if key not in closed
     }
     return Lives(left | shown, {key: why for key, why in (lives.closed | closed).items() if key not in shown})
@@ -234,18 +234,18 @@ def _concern(flag: Flag) -> Concern:
 
 def _bring(store: Store, occasion: Occasion, known: Flag | None, wanted: Opened) -> None:
     """Raises a flag, shows it again or proposes to resolve it."""
-    own = replace(occasion, session=wanted.session)
+    of_session = replace(occasion, session=wanted.session)
     if known is None:
-        number = Flags(store).add(own.unit, wanted.concern, own.session, own.at)
-        tell(store, own, NoticeKind.RAISED, wanted.concern.summary, number)
+        number = Flags(store).add(of_session.unit, wanted.concern, of_session.session, of_session.at)
+        tell(store, of_session, NoticeKind.RAISED, wanted.concern.summary, number)
         proposal = ""
     else:
         number, proposal = known.id, known.proposal
         was = (known.summary, known.severity, known.session)
         taken_back = bool(proposal) and not wanted.proposal
         if was != (wanted.concern.summary, wanted.concern.severity, wanted.session) or taken_back:
-            see_again(store, own, known, wanted.concern)
+            see_again(store, of_session, known, wanted.concern)
             proposal = ""
     if wanted.proposal and wanted.proposal != proposal:
-        Flags(store).put(number, own.at, proposal=wanted.proposal)
+        Flags(store).put(number, of_session.at, proposal=wanted.proposal)
         tell(store, occasion, NoticeKind.CLEAR, wanted.proposal, number)

@@ -73,10 +73,10 @@ def flag_lasting(
     scope = SCOPES[group.level.value]
     accepted = in_force(Models(store).of_subject(scope, group.name))
     known = {flag.place: flag for flag in Flags(store).of_group(Matter.LASTING, lasting_place(scope, group.name))}
-    own = [one for one in found if (one.level, one.subject) == (group.level.value, group.name)]
-    covered = {lasting_place(scope, group.name, one) for one in own if _is_covered(store, group, one)}
+    of_group = [f for f in found if (f.level, f.subject) == (group.level.value, group.name)]
+    covered = {lasting_place(scope, group.name, f) for f in of_group if _is_covered(store, group, f)}
     shown: set[str] = set()
-    for finding in own:
+    for finding in of_group:
         place = lasting_place(scope, group.name, finding)
         if place not in covered:
             shown.add(place)

@@ -62,17 +62,17 @@ def _fault(sessions: Iterable[SessionEvidence], stand: str) -> tuple[_Fault | No
     """What is open, and else why nothing is."""
     by_block: dict[str, _Fault] = {}
     why = NOT_SHOWN
-    for one in sessions:
-        if one.diagnosis is None:
+    for session in sessions:
+        if session.diagnosis is None:
             continue
-        shown = next((c for c in one.diagnosis.concerns if c.key == (Matter.STAND, stand)), None)
+        shown = next((c for c in session.diagnosis.concerns if c.key == (Matter.STAND, stand)), None)
         if shown is not None:
-            known = by_block.get(one.block)
-            units = (*(() if known is None else known.units), one.unit)
-            by_block[one.block] = _Fault(shown, one.at, tuple(dict.fromkeys(units)))
+            known = by_block.get(session.block)
+            units = (*(() if known is None else known.units), session.unit)
+            by_block[session.block] = _Fault(shown, session.at, tuple(dict.fromkeys(units)))
         else:
-            gone = next((w for m, p, w in one.diagnosis.clear if (m, p) == (Matter.STAND, stand)), None)
-            why = gone if gone and by_block.pop(one.block, None) else why
+            gone = next((w for m, p, w in session.diagnosis.clear if (m, p) == (Matter.STAND, stand)), None)
+            why = gone if gone and by_block.pop(session.block, None) else why
     return max(by_block.values(), key=lambda fault: fault.at, default=None), why
 
 
@@ -107,27 +107,27 @@ def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly)
     with storage.database.reading() as store:
         conditions = stand_health(store)
         opened = Flags(store).open_about(Matter.SHIFTED)
-    shifted = {one.stand for one in conditions if one.has_shifted}
+    shifted = {condition.stand for condition in conditions if condition.has_shifted}
     for flag in opened:
         if flag.scope is not Scope.STAND or flag.place not in shifted:
             with alone("stands", flag.place):
                 _close(storage, flag, now)
-    for one in conditions:
-        with alone("stands", one.stand):
-            if one.has_shifted:
-                _flag_shift(storage, one, now)
-            _require_whole(one)
+    for condition in conditions:
+        with alone("stands", condition.stand):
+            if condition.has_shifted:
+                _flag_shift(storage, condition, now)
+            _require_whole(condition)
 
 
-def _flag_shift(storage: Storage, one: StandCondition, now: datetime) -> None:
+def _flag_shift(storage: Storage, condition: StandCondition, now: datetime) -> None:
     """An open flag says what is known now, also where the shift is dated anew. It is of the unit that comes first."""
-    since = min(shift.since for shift in one.shifts if shift.until is None)
+    since = min(shift.since for shift in condition.shifts if shift.until is None)
     with storage.database.writing() as store:
-        Stands(store).hold(one.stand)
-        units = Stands(store).last_measured(one.stand, since)
-        concern = _of_stand(Concern(Matter.SHIFTED, one.stand, 1, one.reason), one.stand, units)
-        opened = _open(store, Matter.SHIFTED, one.stand)
-        if opened or (units and not _is_known(store, one.stand, since)):
+        Stands(store).hold(condition.stand)
+        units = Stands(store).last_measured(condition.stand, since)
+        concern = _of_stand(Concern(Matter.SHIFTED, condition.stand, 1, condition.reason), condition.stand, units)
+        opened = _open(store, Matter.SHIFTED, condition.stand)
+        if opened or (units and not _is_known(store, condition.stand, since)):
             first = opened[0].unit if opened else units[0]
             _bring(store, Occasion(Units(store).key(first), None, now), opened, concern)
 
@@ -148,9 +148,9 @@ def _close(storage: Storage, flag: Flag, now: datetime) -> None:
             resolve_as_done(store, Occasion(unit, None, now), flag, why)
 
 
-def _require_whole(one: StandCondition) -> None:
+def _require_whole(condition: StandCondition) -> None:
     """Raises for sessions whose common motion cannot be used; without them the stand is still judged."""
-    if one.unreadable:
+    if condition.unreadable:
         raise ServiceError(
-            say("What is stored of these sessions cannot be used: {reason}.", reason=", ".join(one.unreadable))
+            say("What is stored of these sessions cannot be used: {reason}.", reason=", ".join(condition.unreadable))
         )

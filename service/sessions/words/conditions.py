@@ -140,7 +140,7 @@ def but_alone(reservations: Reservations) -> str:
     rest = say("; and {number} more", number=more) if more > 0 else ""
     return say(
         "but {reservations}{rest}: {advice}",
-        reservations=joined("; and ", (one.text for one in named)),
+        reservations=joined("; and ", (reservation.text for reservation in named)),
         rest=rest,
         advice=joined(" and ", advice_of(named)),
     )
@@ -148,7 +148,7 @@ def but_alone(reservations: Reservations) -> str:
 
 def advice_of(reservations: Sequence[Reservation]) -> tuple[str, ...]:
     """What to do, once, and not what other advice says already; a wrong file is corrected before anything else."""
-    if any(one.kind is Doubt.RECORD for one in reservations):
-        reservations = [one for one in reservations if one.kind is Doubt.RECORD]
-    advice = tuple(dict.fromkeys(one.advice for one in reservations))
-    return tuple(one for one in advice if not any(one in other for other in advice if other != one))
+    if any(reservation.kind is Doubt.RECORD for reservation in reservations):
+        reservations = [reservation for reservation in reservations if reservation.kind is Doubt.RECORD]
+    advice = tuple(dict.fromkeys(reservation.advice for reservation in reservations))
+    return tuple(sentence for sentence in advice if not any(sentence in other for other in advice if other != sentence))

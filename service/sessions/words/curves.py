@@ -65,22 +65,22 @@ def curves_in_words(calibration: Calibration) -> CurvesInWords | None:
 
 def change(curves: ThermalCurves, curve: Curve, parameter: str, temperature: Array) -> tuple[Array, Array]:
     """Change from the reference temperature and U of the value, (n,) each, relative for a scale factor, else SI."""
-    one = float(curve.coefficients[0]) if parameter == "scale" else 1.0
+    nominal = float(curve.coefficients[0]) if parameter == "scale" else 1.0
     moved = curves.value(curve, temperature) - curve.coefficients[0]
-    return moved / one, curves.expanded(curve, temperature, COVERAGE) / abs(one)
+    return moved / nominal, curves.expanded(curve, temperature, COVERAGE) / abs(nominal)
 
 
 def _rows(calibration: Calibration, curves: ThermalCurves) -> Iterator[CurveRow]:
     kinds = {sensor.name: sensor.kind for sensor in calibration.sensors}
     ends = np.array([curves.lowest, curves.highest])
-    for own in curves.sensors:
-        for parameter, curve in (("bias", own.bias), ("scale", own.scale)):
+    for sensor in curves.sensors:
+        for parameter, curve in (("bias", sensor.bias), ("scale", sensor.scale)):
             if curve is None:
                 continue
             moved, spread = change(curves, curve, parameter, ends)
-            measure = deviation_measure(kinds[own.name], parameter, float(np.abs(moved).max()))
+            measure = deviation_measure(kinds[sensor.name], parameter, float(np.abs(moved).max()))
             cold, hot = (measured(float(m), float(u), measure) for m, u in zip(moved, spread, strict=True))
-            yield CurveRow(own.name, NAMES[parameter], curve.order, cold, hot)
+            yield CurveRow(sensor.name, NAMES[parameter], curve.order, cold, hot)
 
 
 def _findings(calibration: Calibration, curves: ThermalCurves) -> Iterator[str]:
@@ -90,8 +90,8 @@ def _findings(calibration: Calibration, curves: ThermalCurves) -> Iterator[str]:
         groups.setdefault((found.kind, found.parameter), []).append(found)
     for (kind, parameter), group in groups.items():
         largest = max(group, key=lambda found: abs(found.amplitude))
-        one = calibration.sensor(largest.sensor).scale.value if parameter == "scale" else 1.0
-        size, spread = abs(largest.amplitude / (one or 1.0)), COVERAGE * largest.sigma
+        nominal = calibration.sensor(largest.sensor).scale.value if parameter == "scale" else 1.0
+        size, spread = abs(largest.amplitude / (nominal or 1.0)), COVERAGE * largest.sigma
         measure = deviation_measure(calibration.sensor(largest.sensor).kind, parameter, size)
         words = measured(size, spread if isfinite(spread) and spread > 0 else None, measure)
         sensors = joined(", ", dict.fromkeys(found.sensor for found in group))

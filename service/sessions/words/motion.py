@@ -28,8 +28,8 @@ def motions_in_words(
 ) -> tuple[MotionLine, ...]:
     """One sentence for each quantity that there is something to say of."""
     several = len({motion.kind for motion in motions}) > 1
-    of = {motion.kind: say(" of the {kind}s", kind=motion.kind) if several else "" for motion in motions}
-    lines = [_line(motion, coverage, of[motion.kind], since) for motion in motions]
+    kind_words = {motion.kind: say(" of the {kind}s", kind=motion.kind) if several else "" for motion in motions}
+    lines = [_line(motion, coverage, kind_words[motion.kind], since) for motion in motions]
     return tuple(line for line in lines if line is not None)
 
 
@@ -38,21 +38,21 @@ def is_significant(motion: CommonMotion) -> bool:
     return motion.state == SEPARATED and motion.p_value is not None and motion.p_value < SIGNIFICANT
 
 
-def _line(motion: CommonMotion, coverage: float, whose: str, since: str) -> MotionLine | None:
+def _line(motion: CommonMotion, coverage: float, of_kind: str, since: str) -> MotionLine | None:
     if motion.state != SEPARATED:
-        return MotionLine("none", _undivided(motion, whose))
+        return MotionLine("none", _undivided(motion, of_kind))
     if is_significant(motion):
-        return MotionLine("undecidable", joined("", (_together(motion, coverage, whose, since), _alone(motion))))
+        return MotionLine("undecidable", joined("", (_together(motion, coverage, of_kind, since), _alone(motion))))
     return None
 
 
-def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> str:
+def _together(motion: CommonMotion, coverage: float, of_kind: str, since: str) -> str:
     if motion.quantity == AXES:
         size = measured(motion.size, coverage * motion.sigma, _turn_measure(motion))
         return say(
             "The whole block{whose} turned by {size} about {motion} {date}: it was mounted differently, or the "
             "stand has turned. {judged}",
-            whose=whose,
+            whose=of_kind,
             size=size,
             motion=_about(motion),
             date=since,
@@ -60,7 +60,7 @@ def _together(motion: CommonMotion, coverage: float, whose: str, since: str) -> 
         )
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
-    parts = {"whose": whose, "size": size, "date": since, "cause": cause, "judged": JUDGED}
+    parts = {"whose": of_kind, "size": size, "date": since, "cause": cause, "judged": JUDGED}
     return say("All scale factors{whose} changed together by {size} {date}; cause: {cause}. {judged}", **parts)
 
 
@@ -84,22 +84,22 @@ def _alone(motion: CommonMotion) -> str:
     """Who did not move with the others."""
     if not motion.left_out:
         return ""
-    what = "input axis" if motion.quantity == AXES else "scale factor"
+    parameter = "input axis" if motion.quantity == AXES else "scale factor"
     *others, last = motion.left_out
     if not others:
-        return say(" In addition, the {what} of {last} changed.", what=what, last=last)
+        return say(" In addition, the {what} of {last} changed.", what=parameter, last=last)
     several = "input axes" if motion.quantity == AXES else "scale factors"
     parts = {"several": several, "others": joined(", ", others), "last": last}
     return say(" In addition, the {several} of {others} and {last} changed.", **parts)
 
 
-def _undivided(motion: CommonMotion, whose: str) -> str:
+def _undivided(motion: CommonMotion, of_kind: str) -> str:
     turn = (
-        say("a turn of the whole block{kinds}", kinds=whose)
+        say("a turn of the whole block{kinds}", kinds=of_kind)
         if motion.quantity == AXES
-        else say("a change of all scale factors{kinds}", kinds=whose)
+        else say("a change of all scale factors{kinds}", kinds=of_kind)
     )
-    one = "a change of one sensor"
+    scaling = "a change of one sensor"
     judged = "every sensor is judged by its whole change"
     if motion.state == UNCLEAR:
         return say(
@@ -107,5 +107,5 @@ def _undivided(motion: CommonMotion, whose: str) -> str:
             turn=turn,
             judged=judged,
         )
-    parts = {"sensors": few(len(motion.sensors), "sensor"), "turn": turn, "scaling": one, "judged": judged}
+    parts = {"sensors": few(len(motion.sensors), "sensor"), "turn": turn, "scaling": scaling, "judged": judged}
     return say("{sensors} to separate {turn} from {scaling}: {judged}.", **parts)

@@ -63,18 +63,18 @@ def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
     if not decided:
         return ()
     newest = decided[-1].session
-    courses = [list(own) for _, own in groupby(sorted(decided, key=_place), key=_place)]
-    lasting = [own for own in courses if len(own) > 1 and own[-1].session == newest]
-    return tuple(s for own in _by_term(lasting) for s in _sentences(own, growth(_sizes(own), LEVEL / len(lasting))))
+    courses = [list(course) for _, course in groupby(sorted(decided, key=_place), key=_place)]
+    lasting = [course for course in courses if len(course) > 1 and course[-1].session == newest]
+    return tuple(s for term in _by_term(lasting) for s in _sentences(term, growth(_sizes(term), LEVEL / len(lasting))))
 
 
 def _sizes(courses: Sequence[Points]) -> list[GrowthCourse]:
-    return [GrowthCourse(np.array([p.value for p in own]), np.array([p.u for p in own])) for own in courses]
+    return [GrowthCourse(np.array([p.value for p in points]), np.array([p.u for p in points])) for points in courses]
 
 
 def _by_term(courses: Sequence[Points]) -> list[list[Points]]:
     """Those of one term of one kind of sensor together."""
-    return [list(own) for _, own in groupby(sorted(courses, key=_term), key=_term)]
+    return [list(term) for _, term in groupby(sorted(courses, key=_term), key=_term)]
 
 
 def _term(course: Points) -> tuple[str, str]:
@@ -83,10 +83,10 @@ def _term(course: Points) -> tuple[str, str]:
 
 def _sentences(courses: Sequence[Points], found: Sequence[Growth]) -> tuple[str, ...]:
     """One a sensor, or one of all: what makes every sensor noisier is hardly each of them."""
-    larger = [(own[-1], one) for own, one in zip(courses, found, strict=True) if one.is_larger]
+    larger = [(points[-1], g) for points, g in zip(courses, found, strict=True) if g.is_larger]
     if len(larger) < max(SEVERAL, len(courses)):
-        return tuple(_sentence(last, one) for last, one in larger)
-    last, times = larger[0][0], sorted(one.times for _, one in larger)
+        return tuple(_sentence(last, g) for last, g in larger)
+    last, times = larger[0][0], sorted(g.times for _, g in larger)
     sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
     return (
         say(

@@ -300,7 +300,7 @@ def _axis(text: str) -> list[float | str]:
     parts = text.replace(";", " ").split()
     parts = text.split(",") if len(parts) == 1 else parts
     numbers = [number for part in parts if (number := _value(part.strip(","))) is not None]
-    if _fault_of_direction(numbers) or len(numbers) != DIRECTION or not all(isinstance(one, float) for one in numbers):
+    if _fault_of_direction(numbers) or len(numbers) != DIRECTION or not all(isinstance(n, float) for n in numbers):
         return numbers
     azimuth, elevation = (radians(float(number)) for number in numbers)
     direction = (cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation))

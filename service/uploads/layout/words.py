@@ -78,7 +78,7 @@ IN_FORM = {
 
 def said_on_page(problems: Sequence[Problem], mapping: Mapping[str, Any]) -> tuple[Problem, ...]:
     """The faults of a mapping under the labels of its page."""
-    return tuple(Problem(_label(one.field, mapping), _in_form(one.message), one.row) for one in problems)
+    return tuple(Problem(_label(p.field, mapping), _in_form(p.message), p.row) for p in problems)
 
 
 def _label(field: str, mapping: Mapping[str, Any]) -> str:

@@ -29,8 +29,9 @@ const watcher = new IntersectionObserver(
   { rootMargin: "400px" },
 );
 
-const places = document.querySelectorAll(".chart");
-places.forEach((place) => watcher.observe(place));
+const watch = (part) => part.querySelectorAll(".chart").forEach((place) => watcher.observe(place));
+watch(document);
+document.addEventListener("unfolded", (event) => watch(event.target));
 const isFolded = (place) => place.closest("details:not([open])");
 window.addEventListener("beforeprint", () =>
   [...document.querySelectorAll(".chart:not(.drawn)")].filter((place) => !isFolded(place)).forEach(draw),

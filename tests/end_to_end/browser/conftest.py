@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Locator, Page, Request, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Locator, Page, Request, expect, sync_playwright
 
 from service.uploads.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
@@ -147,8 +147,21 @@ def draw_all(page: Page) -> None:
 
     Nothing here waits for a frame: on a busy machine a headless browser may stop to paint for minutes.
     """
+    fetched(page)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     page.wait_for_function(DRAWN, polling=100)
+
+
+def open_all(page: Page) -> None:
+    """Opens every fold, and those that come with what an opened one holds."""
+    page.evaluate(OPEN_ALL)
+    fetched(page)
+    page.evaluate(OPEN_ALL)
+
+
+def fetched(page: Page) -> None:
+    """Waits until what stands open is there."""
+    expect(page.locator("details[open] > .awaited")).to_have_count(0, timeout=1000 * LONG)
 
 
 OPEN_ALL = "document.querySelectorAll('details').forEach((one) => { one.open = true; })"

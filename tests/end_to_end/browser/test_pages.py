@@ -9,7 +9,7 @@ import axe_playwright_python
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.end_to_end.browser.conftest import OPEN_ALL, Site, Witness, draw_all, follow, opened
+from tests.end_to_end.browser.conftest import Site, Witness, draw_all, follow, open_all, opened
 
 pytestmark = pytest.mark.browser
 
@@ -134,7 +134,7 @@ def visit(browser: Browser, site: Site, path: str) -> Seen:
         draw_all(page)
         height = page.evaluate(HEIGHT)
         if path != LONG_AND_ALIKE:
-            page.evaluate(OPEN_ALL)
+            open_all(page)
         for width in WIDTHS:
             page.set_viewport_size({"width": width, "height": 900})
             draw_all(page)
@@ -231,6 +231,7 @@ def test_reading_needs_no_script(chromium: Browser, site: Site) -> None:
     with opened(chromium, java_script_enabled=False) as (_, page):
         page.goto(address(site, "/units/BA-017"))
         assert "Unfit" in page.locator("h1").inner_text()
+        follow(page.locator("#bias-accelerometer a"))
         page.locator("#bias-accelerometer .twin summary").click()
         assert "µg" in page.locator("#bias-accelerometer table tbody tr").first.inner_text()
 
@@ -239,8 +240,8 @@ def test_a_folded_chart_is_drawn_when_it_comes_near(chromium: Browser, site: Sit
     last = "[...document.querySelectorAll('.chart')].at(-1)"
     with opened(chromium) as (_, page):
         page.goto(address(site, "/units/BA-017"))
+        open_all(page)
         assert not page.evaluate(f"{last}.classList.contains('drawn')")
-        page.evaluate(OPEN_ALL)
         page.evaluate(f"{last}.scrollIntoView({{ behavior: 'instant' }})")
         page.wait_for_function(f"{last}.classList.contains('drawn')", polling=100)
 
@@ -278,7 +279,7 @@ def test_pages_in_russian_fit_and_hold_no_barrier(chromium: Browser, site: Site)
         witness.watch(page)
         for path in IN_RUSSIAN:
             page.goto(address(site, path))
-            page.evaluate(OPEN_ALL)
+            open_all(page)
             assert page.locator("html").get_attribute("lang") == "ru"
             page.evaluate(AXE)
             for width in (390, 1024):

@@ -14,7 +14,7 @@ from pypdf import PdfReader
 from service.settings import Settings
 from tests.builders import Document, accelerometer_block
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
-from tests.end_to_end.browser.conftest import OPEN_ALL, Witness, draw_all, opened
+from tests.end_to_end.browser.conftest import Witness, draw_all, open_all, opened
 from tests.serving import serving
 
 pytestmark = pytest.mark.browser
@@ -98,7 +98,7 @@ def test_a_browser_runs_nothing_that_a_name_says(chromium: Browser, planted: Pla
             answer = page.goto(planted.url + path)
             assert answer is not None
             assert answer.status == 200, path
-            page.evaluate(OPEN_ALL)
+            open_all(page)
             draw_all(page)
             for mark in page.locator(".chart .mark-symbol path, .chart .mark-rect path").all()[:20]:
                 mark.dispatch_event("mousemove")
@@ -110,7 +110,7 @@ def test_a_browser_runs_nothing_that_a_name_says(chromium: Browser, planted: Pla
 def test_the_tip_of_a_mark_shows_a_name_as_text(chromium: Browser, planted: Planted) -> None:
     with opened(chromium) as (_, page):
         page.goto(planted.url + planted.paths[5])
-        page.evaluate(OPEN_ALL)
+        open_all(page)
         draw_all(page)
         tips = set()
         marks = page.locator(".chart [aria-roledescription='point'], .chart .mark-symbol path").all()

@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.end_to_end.browser.conftest import OPEN_ALL, Site, Witness, follow, opened
+from tests.end_to_end.browser.conftest import Site, Witness, follow, open_all, opened
 
 pytestmark = pytest.mark.browser
 
@@ -43,7 +43,7 @@ def test_keys_are_letters_where_somebody_writes(chromium: Browser, site: Site) -
 def test_keys_can_be_switched_off(chromium: Browser, site: Site) -> None:
     with opened(chromium) as (_, page):
         page.goto(f"{site.url}/help")
-        page.evaluate(OPEN_ALL)
+        open_all(page)
         page.get_by_label("Keys are switched on").uncheck()
         page.goto(site.url)
         page.keyboard.press("j")

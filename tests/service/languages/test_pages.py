@@ -18,6 +18,7 @@ UPLOADS = (session_bytes(month=1, **RECORDED), session_bytes(seed=2, month=2, a3
 SESSION = session_id(UPLOADS[1])
 ADDRESSES = {
     "/units/{serial:path}": "/units/BA-017",
+    "/units/{serial:path}/parameters/{name}": "/units/BA-017/parameters/bias-accelerometer",
     "/sessions/{id}": f"/sessions/{SESSION}",
     "/sessions/{id}/certificate": f"/sessions/{SESSION}/certificate",
     "/sessions/{id}/diagnosis": f"/sessions/{SESSION}/diagnosis",

@@ -38,6 +38,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "fleet": (1, lambda store: Fleet(store).units(FleetQuery())),
     "condition": (1, lambda store: Fleet(store).condition()),
     "history": (2, lambda store: History(store).points(Units(store).key("BA-000"), HistoryQuery())),
+    "the latest of every parameter": (2, lambda store: History(store).latest(Units(store).key("BA-000"))),
     "unit": (3, lambda store: unit_report(store, "BA-000", NOW)),
     "what units may be used for": (2, lambda store: usable_of(store, Fleet(store).units(FleetQuery()), NOW)),
     "flags": (1, lambda store: Flags(store).page(FlagQuery())),

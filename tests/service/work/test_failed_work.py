@@ -13,6 +13,7 @@ from service.kit.failure import AT_FAULT
 from service.opening import open_database
 from service.settings import Settings
 from tests.databases import one_engine
+from tests.patience import until
 from tests.service.made_sessions import session_bytes, session_id
 from tests.serving import limited_client
 
@@ -49,9 +50,12 @@ def put_histories(settings: Settings, evidence: bytes) -> None:
 
 
 def fail_a_forecast(client: httpx.Client, settings: Settings) -> None:
-    """The dates of one unit rest on the histories of another one of its type."""
-    send(client, FIRST)
-    send(client, session_bytes(unit=DAMAGED, seed=2, month=2))
+    """The dates of one unit rest on the histories of another one of its type, which nothing writes any more: it is
+    diagnosed and dated."""
+    files = FIRST, session_bytes(unit=DAMAGED, seed=2, month=2)
+    assert [send(client, content) for content in files] == [201, 201]
+    diagnoses = [f"/api/v1/sessions/{session_id(content)}/diagnosis" for content in files]
+    until(lambda: all(client.get(address).is_success for address in diagnoses))
     assert dated_outlook(client, DAMAGED)["due"]
     put_histories(settings, b"no numbers")
     assert [send(client, session_bytes(unit=SOUND, seed=s, month=s)) for s in (1, 2)] == [201, 201]
