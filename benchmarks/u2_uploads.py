@@ -35,8 +35,8 @@ START = datetime(2020, 1, 1, tzinfo=UTC)
 numbers = count()
 """Of the uploads of this run: no two are the same."""
 NOTE = """
-U2 misses its target for one client where the machine does much else, as here: the service shares two cores with all of
-it, where the import that m is needs one for a moment. An upload takes 0.37 m on a quiet machine.
+U2: on a machine that does much else one client waits 0.6 m, as the service shares its cores; these figures are of a
+quiet one.
 """
 
 
