@@ -57,8 +57,8 @@ SELECT 'C-' || id, id, 0, started_at, 'U10', '' FROM sessions
 NOTE = """
 U4 misses its target for the fleet, whose page counts 10,000 units by condition, stand and type in eight statements, by
 little for a unit with 500 sessions, and for the charts of one parameter, a request of their own that a unit's page
-sends for what stands open; of 500 sessions they show the extremes. A plan for sensors on a cone is kept: asked for the first
-time it takes some 2 m, as it simulates the session.
+sends for what stands open; of 500 sessions they show the extremes. A plan for sensors on a cone is kept: asked for
+the first time it takes some 2 m, as it simulates the session.
 """
 
 
