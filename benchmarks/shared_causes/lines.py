@@ -76,7 +76,8 @@ def is_asked(line: Line) -> bool:
 def asked(lines: Sequence[Line], reasons: list[str]) -> str:
     """One line a case where the same is asked of every case, else one line a target."""
     parts = [
-        (words.partition(": "), target, told((words, target, measured), reasons)) for words, target, measured in lines
+        (words.partition(": "), target, with_reason((words, target, measured), reasons))
+        for words, target, measured in lines
     ]
     cases = list(dict.fromkeys(case for (case, _, _), _, _ in parts))
     columns = list(dict.fromkeys((of, target) for (_, _, of), target, _ in parts))
@@ -87,7 +88,7 @@ def asked(lines: Sequence[Line], reasons: list[str]) -> str:
     return table(("", *(f"{of}, {target}" for of, target in columns)), rows)
 
 
-def told(line: Line, reasons: list[str]) -> str:
+def with_reason(line: Line, reasons: list[str]) -> str:
     """What is measured; where it misses its target that too, with the number of its reason."""
     words, target, measured = line
     verdict = verdict_of(target, measured)

@@ -9,7 +9,7 @@ from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.explanation.naming import merged, named_cause
-from estimator.diagnosis.explanation.power_on import told_from_power_on
+from estimator.diagnosis.explanation.power_on import timed_from_power_on
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
 from estimator.diagnosis.explanation.shared_course import CourseMember, shared_finding
@@ -40,7 +40,7 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     excess = [] if cause is None else [excess_finding(state, cause, e) for e in state.excess]
     shared = [shared_finding(state, members, fitted) for members in courses(named)]
     of_sensors = merged([(m.detection.best.cause, m.finding) for m in named if not any(m in c for c in courses(named))])
-    whole = (told_from_power_on(f, state.baseline.session) for f in (*shared, *of_sensors, *excess))
+    whole = (timed_from_power_on(f, state.baseline.session) for f in (*shared, *of_sensors, *excess))
     return tuple(sorted(whole, key=lambda f: -f.strength))
 
 

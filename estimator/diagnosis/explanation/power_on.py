@@ -16,7 +16,7 @@ WAIT = 3.0
 """Time constants in which all but a twentieth dies away."""
 
 
-def told_from_power_on(finding: Finding, session: CalibrationSession) -> Finding:
+def timed_from_power_on(finding: Finding, session: CalibrationSession) -> Finding:
     """The finding with when its amplitudes are counted from, and how long to wait; others as they are."""
     cause, begun = find(finding.cause), session.time_since_power_on
     if cause is None or not cause.since_power_on or begun is None:

@@ -12,8 +12,6 @@ MOST = 120
 """Changes up to which every one is drawn."""
 STRETCHES = 40
 """Of time, each about as wide as a mark."""
-
-
 LISTED = 50
 """Newest changes that a table lists, drawn or not."""
 
@@ -37,6 +35,6 @@ def drawn(changes: Sequence[MeasuredChange]) -> set[int]:
             stretch = int(STRETCHES * ((point.at - start) / whole)) if whole else 0
             key = (stretch, change.epoch, point.verdict, point.is_reference, point.tolerance)
             groups.setdefault(key, []).append((i, value, change.expanded or 0.0))
-    ends = (lambda one: one[1], lambda one: one[1] - one[2], lambda one: one[1] + one[2])
+    ends = (lambda c: c[1], lambda c: c[1] - c[2], lambda c: c[1] + c[2])
     extremes = (pick(group, key=end)[0] for group in groups.values() for end in ends for pick in (min, max))
     return {len(changes) - 1, *(group[0][0] for group in groups.values()), *extremes}

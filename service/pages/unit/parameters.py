@@ -86,12 +86,12 @@ def parameter_heads(latest: Sequence[HistoryPoint], worst: str | None) -> tuple[
             groups.setdefault((ALL_PARAMETERS.index(point.parameter), point.kind), []).append(point)
     several = len({kind for _, kind in groups}) > 1
     heads = [_head(groups[key], several) for key in sorted(groups)]
-    return tuple(sorted(heads, key=lambda one: (one.worst.rank, one.parameter != worst)))
+    return tuple(sorted(heads, key=lambda head: (head.worst.rank, head.parameter != worst)))
 
 
 def _head(points: Sequence[HistoryPoint], several: bool) -> ParameterHead:
     parameter, kind = points[0].parameter, points[0].kind
-    name, judged = heading(parameter), [one for one in map(judged_as, points) if one is not NOT_JUDGED]
+    name, judged = heading(parameter), [found for found in map(judged_as, points) if found is not NOT_JUDGED]
     return ParameterHead(
         parameter,
         kind,
@@ -105,14 +105,14 @@ def parameter_page(
     head: ParameterHead,
     points: Sequence[HistoryPoint],
     most: int,
-    said: UnitEvents,
+    events: UnitEvents,
     outlook: UnitOutlook | None,
     *,
     raw: bool,
 ) -> ParameterPage:
     """The charts and the table of at most so many points of one parameter."""
-    services = [service for service in said.services if service.state is RecordState.ACCEPTED]
-    notes = [note for note in said.notes if note.withdrawal is None]
+    services = [service for service in events.services if service.state is RecordState.ACCEPTED]
+    notes = [note for note in events.notes if note.withdrawal is None]
     trends = () if outlook is None or raw else outlook.trends
     (tracks,) = tracks_of(points, services)
     rows = tuple(islice(_rows(tracks), LISTED + 1))
