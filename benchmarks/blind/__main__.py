@@ -1,4 +1,5 @@
-"""``python -m benchmarks.blind write FOLDER``, ``answer FOLDER``, ``score FOLDER ANSWERS``: docs/diagnosis/blind.md."""
+"""``python -m benchmarks.blind write FOLDER``, ``answer FOLDER``, ``score FOLDER ANSWERS``, ``table FOLDER ANSWERS…``:
+docs/diagnosis/blind.md."""
 
 import argparse
 import os
@@ -9,9 +10,10 @@ from typing import TypeVar
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from benchmarks.blind.answer import answered
+from benchmarks.blind.answer import Look, Threshold, causes_told, looks
+from benchmarks.blind.entrants import ENTRANTS, OURS
 from benchmarks.blind.folder import Answers, drawn, numbers, read_answers, read_secret, write
-from benchmarks.blind.marks import marks, outcomes
+from benchmarks.blind.marks import compared, marked_table, outcomes
 
 T = TypeVar("T")
 
@@ -22,17 +24,23 @@ def secret_of(folder: Path) -> Path:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Three commands."""
+    """Four commands."""
     found = argparse.ArgumentParser(prog="python -m benchmarks.blind", description=__doc__)
     commands = found.add_subparsers(dest="command", required=True)
-    for name in ("write", "answer", "score"):
+    for name in ("write", "answer", "score", "table"):
         commands.add_parser(name).add_argument("folder", type=Path)
-    commands.choices["write"].add_argument("--sessions", type=int, default=1000)
-    commands.choices["write"].add_argument("--seed", type=int, help="makes an open benchmark, which anybody can mark")
-    commands.choices["answer"].add_argument("--processes", type=int, default=os.cpu_count() or 1)
-    commands.choices["answer"].add_argument("--out", type=Path, default=Path("answers.json"))
-    commands.choices["score"].add_argument("answers", type=Path)
-    commands.choices["score"].add_argument("--secret", type=Path, help="default: FOLDER.secret.json")
+    written, answered, scored, table = (commands.choices[name] for name in ("write", "answer", "score", "table"))
+    written.add_argument("--sessions", type=int, default=1000)
+    written.add_argument("--seed", type=int, help="makes an open benchmark, which anybody can mark")
+    written.add_argument("--sound", action="store_true", help="no session has an effect: sets thresholds")
+    answered.add_argument("--by", nargs="+", default=[OURS], choices=[OURS, *ENTRANTS])
+    answered.add_argument("--sound", type=Path, help="folder of sound sessions, which set a rival's threshold")
+    answered.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    answered.add_argument("--out", type=Path, default=Path("answers.json"), help="of several: with the name added")
+    scored.add_argument("answers", type=Path, nargs=1)
+    table.add_argument("answers", type=Path, nargs="+")
+    for command in (answered, scored, table):
+        command.add_argument("--secret", type=Path, help="default: FOLDER.secret.json")
     return found
 
 
@@ -46,21 +54,59 @@ def counted(items: Iterable[T], total: int) -> list[T]:
     return listed
 
 
+def answer(options: argparse.Namespace) -> None:
+    """Of every session, by everybody who is named."""
+    folder, names, out = options.folder, options.by, options.out
+    rivals = [name for name in names if name != OURS]
+    if rivals and options.sound is None:
+        raise SystemExit("a rival needs --sound FOLDER, which `write FOLDER --sound` makes")
+    parts = {out.with_suffix(".looks"): (folder, names), out.with_suffix(".sound.looks"): (options.sound, rivals)}
+    looked: list[list[Look]] = [
+        counted(looks(*given, file, options.processes), len(numbers(given[0]))) if given[1] else []
+        for file, given in parts.items()
+    ]
+    for name in names:
+        given = answers_by(name, options, *looked)
+        file = out.with_stem(f"{out.stem}-{name}") if len(names) > 1 else out
+        Answers(name, dict(zip(numbers(folder), given, strict=True))).write(file)
+    for file in parts:
+        file.unlink(missing_ok=True)
+
+
+def answers_by(name: str, options: argparse.Namespace, looked: list[Look], sound: list[Look]) -> list[Look]:
+    """In the order of the sessions."""
+    if name == OURS:
+        return [look[name] for look in looked]
+    told: list[list[str]] = [[] for _ in looked]
+    if ENTRANTS[name].is_told:
+        told = causes_told(read_secret(options.secret or secret_of(options.folder), options.folder), looked, name)
+    threshold = Threshold.of(name, sound)
+    return [threshold.answer(look[name], causes) for look, causes in zip(looked, told, strict=True)]
+
+
+def mark(options: argparse.Namespace) -> str:
+    """The marks of one file of answers, or of several beside one another."""
+    secret = read_secret(options.secret or secret_of(options.folder), options.folder)
+    given = [read_answers(file) for file in options.answers]
+    marked = list(zip(*counted(outcomes(options.folder, secret, given), secret.sessions), strict=True))
+    if options.command == "score":
+        return marked_table(marked[0])
+    return compared([one.by for one in given], marked, secret.sessions)
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Run one of them."""
     options = parser().parse_args(arguments)
     folder: Path = options.folder
     if options.command == "write":
-        secret = drawn(options.sessions, options.seed)
+        secret = drawn(options.sessions, options.seed, sound=options.sound)
         counted(write(folder, secret), secret.sessions)
         secret_of(folder).write_bytes(secret.content)
         print(f"{folder} is to be given away; keep {secret_of(folder)}, SHA-256 {secret.commitment}")
     elif options.command == "answer":
-        given = counted(answered(folder, options.processes), len(numbers(folder)))
-        Answers("imu-health", dict(given)).write(options.out)
+        answer(options)
     else:
-        secret = read_secret(options.secret or secret_of(folder), folder)
-        print(marks(counted(outcomes(folder, secret, read_answers(options.answers)), secret.sessions)))
+        print(mark(options))
 
 
 if __name__ == "__main__":

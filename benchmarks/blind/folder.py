@@ -31,11 +31,14 @@ class Secret:
 
     seed: int
     sessions: int
+    sound: bool = False
+    """Whether no session has an effect: such a folder sets thresholds."""
 
     @property
     def content(self) -> bytes:
         """Of its file."""
-        return json.dumps({"format": SECRET, "seed": f"{self.seed:x}", "sessions": self.sessions}).encode()
+        document = {"format": SECRET, "seed": f"{self.seed:x}", "sessions": self.sessions}
+        return json.dumps(document | ({"sound": True} if self.sound else {})).encode()
 
     @property
     def commitment(self) -> str:
@@ -46,18 +49,18 @@ class Secret:
         """Every session by its number, with its truth."""
         kinds = np.random.default_rng(self.seed).choice(list(SHARES), size=self.sessions, p=list(SHARES.values()))
         for number, kind in enumerate(kinds, 1):
-            yield f"{number:05}", draw_case(str(kind), (self.seed, number))
+            yield f"{number:05}", draw_case("none" if self.sound else str(kind), (self.seed, number))
 
 
-def drawn(sessions: int, seed: int | None) -> Secret:
+def drawn(sessions: int, seed: int | None, *, sound: bool = False) -> Secret:
     """A secret; a stated seed is none, and makes a benchmark that everybody can mark."""
-    return Secret(secrets.randbits(128) if seed is None else seed, sessions)
+    return Secret(secrets.randbits(128) if seed is None else seed, sessions, sound)
 
 
 def read_secret(file: Path, folder: Path) -> Secret:
     """The secret of a folder; ValueError where the folder was made of another one."""
     document = json.loads(file.read_text("utf-8"))
-    secret = Secret(int(document["seed"], 16), document["sessions"])
+    secret = Secret(int(document["seed"], 16), document["sessions"], document.get("sound", False))
     stated = json.loads((folder / MANIFEST).read_text("utf-8"))["commitment"]
     if secret.commitment != stated:
         raise ValueError(f"{file} is not the secret of {folder}: SHA-256 {secret.commitment}, published {stated}")

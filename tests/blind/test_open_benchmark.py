@@ -10,19 +10,20 @@ from benchmarks.blind.folder import Answers, Secret, drawn, read_secret, write
 from benchmarks.blind.marks import is_wrong, outcomes, right_cause
 from tests.blind.case import Case
 
-SECRET = Secret(seed=3, sessions=3)
+SECRET = Secret(seed=3, sessions=6)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three sessions."""
+    """Six sessions."""
     made = tmp_path_factory.mktemp("benchmark") / "blind"
-    assert list(write(made, SECRET)) == ["00001", "00002", "00003"]
+    assert list(write(made, SECRET)) == [f"{k:05}" for k in range(1, 7)]
+    made.with_name("blind.secret.json").write_bytes(SECRET.content)
     return made
 
 
 def test_nothing_that_is_given_away_tells_the_seed(folder: Path) -> None:
-    assert drawn(3, None).seed.bit_length() > 100
+    assert drawn(6, None).seed.bit_length() > 100
     assert json.loads((folder / "benchmark.json").read_text())["commitment"] == SECRET.commitment
     assert {file.name.rstrip("-0123456789.json") for file in folder.glob("*/*")} <= {"sessi", "history"}
 
@@ -30,7 +31,7 @@ def test_nothing_that_is_given_away_tells_the_seed(folder: Path) -> None:
 def test_another_secret_is_refused(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "s.json").write_bytes(SECRET.content)
     assert read_secret(tmp_path / "s.json", folder) == SECRET
-    (tmp_path / "s.json").write_bytes(Secret(4, 3).content)
+    (tmp_path / "s.json").write_bytes(Secret(4, 6).content)
     with pytest.raises(ValueError, match="is not the secret"):
         read_secret(tmp_path / "s.json", folder)
 
@@ -43,11 +44,10 @@ def truth(case: Case) -> dict[str, object]:
 
 def test_the_truth_has_all_marks_and_a_wrong_name_none(folder: Path) -> None:
     known = {number: truth(case) for number, case in SECRET.cases()}
-    right = list(outcomes(folder, SECRET, Answers("truth", known)))
-    assert all(o.good for o in right)
-    wrong = {"findings": [{"cause": "no such cause"}]}
-    for outcome in outcomes(folder, SECRET, Answers("guess", dict.fromkeys(known, wrong))):
-        assert (is_wrong(outcome), right_cause(outcome)) == (True, False)
+    wrong = Answers("guess", {number: {"findings": [{"cause": "no such cause"}]} for number in known})
+    for right, guessed in outcomes(folder, SECRET, [Answers("truth", known), wrong]):
+        assert right.good
+        assert (is_wrong(guessed), right_cause(guessed)) == (True, False)
 
 
 def test_files_that_somebody_changed_are_refused(folder: Path, tmp_path: Path) -> None:
@@ -57,7 +57,7 @@ def test_files_that_somebody_changed_are_refused(folder: Path, tmp_path: Path) -
     document["table"][document["sensors"][0]["name"]][0] *= 1.001
     file.write_text(json.dumps(document))
     with pytest.raises(ValueError, match="is not the file"):
-        next(outcomes(folder, SECRET, Answers("", {})))
+        next(outcomes(folder, SECRET, [Answers("", {})]))
     file.write_text(was)
 
 

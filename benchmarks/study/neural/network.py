@@ -207,6 +207,8 @@ class Answer(NamedTuple):
     """That something acts."""
     cause: str
     """The likeliest, if something does."""
+    sensor: int | None = None
+    """The likeliest, where the cause is of one sensor."""
 
 
 def answer(file: Path, residuals: WhitenedResiduals) -> Answer:
@@ -215,8 +217,10 @@ def answer(file: Path, residuals: WhitenedResiduals) -> Answer:
     z = residuals.z[: residuals.baseline.residual.size].reshape(-1, m).T
     found = log_posterior(w, Design(*(x[None] for x in design_of(residuals))), z[None, :, None])[0, 0]
     own, shared = np.split(found[1:], [m * len(w["own"])])
-    each = [*log_sum(own.reshape(m, -1), np, axis=0)[0], *shared]
-    return Answer(float(log_sum(found[1:], np)[0] - found[0]), str([*w["own"], *w["shared"]][int(np.argmax(each))]))
+    each = np.array([*log_sum(own.reshape(m, -1), np, axis=0)[0], *shared])
+    best, log_odds = int(np.argmax(each)), float(log_sum(found[1:], np)[0] - found[0])
+    sensor = int(np.argmax(own.reshape(m, -1)[:, best])) if best < len(w["own"]) else None
+    return Answer(log_odds, str([*w["own"], *w["shared"]][best]), sensor)
 
 
 @lru_cache

@@ -1,0 +1,15 @@
+"""A neural posterior, `benchmarks.study.neural`: it knows no catalogue of signatures, only simulated sessions."""
+
+from benchmarks.blind.given import Claim, Given
+from benchmarks.details import PROJECT
+from benchmarks.study.neural.network import answer
+
+NETWORK = PROJECT / "build" / "neural.npz"
+"""Where ``python -m benchmarks.study.neural`` writes its weights."""
+
+
+def neural(given: Given) -> list[Claim]:
+    """Its likeliest cause."""
+    found = answer(NETWORK, given.state.residuals)
+    sensors = [] if found.sensor is None else [given.state.names[found.sensor]]
+    return [Claim(found.log_odds, {"cause": found.cause, "sensors": sensors})]
