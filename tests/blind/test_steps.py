@@ -16,6 +16,7 @@ def found_in(hidden: Stepped) -> tuple[Finding, ...]:
     return diagnose(read_session(hidden.session)).findings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("block", "count", "seed"),
     [

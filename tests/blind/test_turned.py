@@ -32,6 +32,7 @@ def test_a_drift_beside_a_large_turn_is_found_and_blamed_on_nobody_else(programm
     assert set(found.drifts + found.judged) <= {found.drifted}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("programme", [p for p in PROGRAMMES if p.stand], ids=lambda p: p.name)
 def test_a_block_turned_by_degrees_in_its_flipped_run_is_named_so_and_nothing_else(programme: Programme) -> None:
     found = examine_flipped(programme, 3.0, (15, 30))

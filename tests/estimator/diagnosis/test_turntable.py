@@ -70,6 +70,7 @@ def test_sound_sessions_are_called_sound() -> None:
     assert named <= 1, "1 %; the level is 0.3 %"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", [0.1, 0.5, 1.0])
 @pytest.mark.parametrize("rate", [6.0, 20.0])
 def test_a_table_out_of_level_is_no_lever_arm_however_coarse_its_rows(row: float, rate: float) -> None:

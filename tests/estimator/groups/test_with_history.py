@@ -66,6 +66,7 @@ def test_the_calibration_holds_it_with_what_is_not_known_of_it() -> None:
     assert np.any(np.diagonal(found.calibration.covariance) > 1.001 * np.diagonal(found.baseline.covariance))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", ["cubic-nonlinearity", "beta-eccentricity"])
 def test_what_has_ended_is_not_named(cause: str) -> None:
     found = told(cause, ended=True)

@@ -83,6 +83,7 @@ def test_a_common_factor_is_taken_off_all_scales() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [4, 6, 8])
 def test_a_sensor_that_tilts_alone_is_found_and_does_not_smear(m: int) -> None:
     found = [split(m, np.random.default_rng([m, seed]), tilted(m, 1, 30.0))["axes"] for seed in range(40)]

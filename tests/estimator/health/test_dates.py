@@ -8,6 +8,7 @@ from benchmarks.backtest.dates import SOURCES, Sample, fleets, held, statements
 LIVES = SOURCES[-1]
 
 
+@pytest.mark.slow
 def test_dates_hold_about_as_often_as_they_claim() -> None:
     """The bounds are wide: one type gives a rate of 10 % to within a factor of two."""
     found = statements(LIVES, Sample(types=1), np.random.default_rng(31))

@@ -80,6 +80,7 @@ def test_a_drift_is_known_for_what_it_is(course: object, kind: tuple[Kind, ...])
     assert found(readings(one)).changes[0].kind in kind
 
 
+@pytest.mark.slow
 def test_the_size_of_a_drift_is_as_uncertain_as_stated() -> None:
     rng = np.random.default_rng(6)
     t = np.linspace(0, 3, 8)

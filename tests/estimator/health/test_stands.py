@@ -80,6 +80,7 @@ def test_however_blocks_are_seated_a_stand_that_stays_is_left_alone(seating: Sea
     assert alarms <= stats.binom.isf(1e-3, 10, 0.01)
 
 
+@pytest.mark.slow
 def test_a_unit_that_was_dropped_is_no_fault_of_any_stand() -> None:
     def dropped(stand: str, unit: str, time: float) -> Array:
         return 30 * SHIFT if unit == "U3" and time > 1.5 else np.zeros(3)

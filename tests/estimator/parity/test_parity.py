@@ -49,6 +49,7 @@ def test_rest_raises_no_alarms():
     assert sum(r.detected for r in results(6, manoeuvres=STILL)) <= 2
 
 
+@pytest.mark.slow
 def test_stated_sigmas_are_honest():
     """Where the sensors are said to sit in one point, as they do; a stated place leaves half a millimetre."""
     found = unchanged()
@@ -84,6 +85,7 @@ def test_the_amplitude_is_found_within_its_sigma():
     assert 0.7 < np.sqrt(np.mean(z**2)) < 1.3
 
 
+@pytest.mark.slow
 def test_a_change_of_the_detectable_size_is_usually_detected():
     caught = 0
     for seed in range(20):

@@ -87,6 +87,7 @@ def test_none_of_the_twelve_shows_anything_alone() -> None:
     assert [find_causes(read_upload(content, "a.json")).findings for content in GROUP] == [()] * 12
 
 
+@pytest.mark.slow
 @one_engine
 def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(filled: Filled) -> None:
     storage = filled(twelve)

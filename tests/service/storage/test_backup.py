@@ -116,6 +116,7 @@ def test_a_restored_service_goes_on(full: Settings, other: Databases, tmp_path: 
         assert client.post("/api/v1/sessions", content=session_bytes(seed=9, month=6)).status_code == 201
 
 
+@pytest.mark.slow
 def test_a_backup_of_an_earlier_schema_is_restored_as_it_was(databases: Databases, tmp_path: Path) -> None:
     old, new = databases.empty(), databases.empty()
     upgrade(old, "0003")
@@ -331,6 +332,7 @@ def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_p
     database.close()
 
 
+@pytest.mark.slow
 @across
 def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
     settings: Settings, storage: Storage, other: Databases, tmp_path: Path

@@ -32,6 +32,7 @@ def named(found: Diagnosis) -> list[tuple[str, tuple[str, ...]]]:
     return [(f.cause, f.sensors) for f in found.findings]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [3, 4, 6])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_clipped_sensor_is_named_with_its_limit(m: int, side: float) -> None:

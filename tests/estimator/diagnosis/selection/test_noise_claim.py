@@ -48,6 +48,7 @@ def test_wrong_standard_errors_are_said_and_nothing_else(factor: float) -> None:
     assert scale.factor == pytest.approx(1 / factor, rel=0.25)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.1, 1 / 3, 3.0])
 @pytest.mark.parametrize("identifier", ["bias-jump", "bias-ramp", "beta-second-harmonic"])
 def test_a_cause_is_named_whatever_the_errors_are_stated_as(identifier: str, factor: float) -> None:
