@@ -36,6 +36,8 @@ OF_STRENGTH = np.repeat([SHARES["weak"] / 6, SHARES["single"] / 12], [6, 12]) / 
 """Each strength's share of the prior."""
 NOISIER = np.geomspace(1.2, 20.0, 24)
 """Factors of a sensor's noise."""
+NOISE = "excess-noise"
+"""A cause without a signature: a variance."""
 UNDERFLOW = 1e-250
 
 Choice = Callable[[SearchState], tuple[Claim, Scored | None] | None]
@@ -65,15 +67,14 @@ def bayes(given: Given) -> list[Claim]:
 
 
 def given_cause(given: Given) -> list[Claim]:
-    """The best of each cause, for somebody who is told which one acts, the surest first."""
+    """The best of each cause, for somebody who is told which one acts, the surest first; noise, by each sensor's χ²."""
     state = given.state
     seen = scores(state.residuals, state.traces, state.attributed())
     sure, cause = surprise(state, seen), causes_of(state, seen)
     best = [np.flatnonzero(cause == c) for c in dict.fromkeys(cause)]
     chosen = [int(k[np.argmax(sure[k])]) for k in best]
-    return [
-        Claim(float(sure[k]), finding(_beside(state, seen.scored(k)))) for k in sorted(chosen, key=lambda k: -sure[k])
-    ]
+    claims = [Claim(float(sure[k]), finding(_beside(state, seen.scored(k)))) for k in chosen]
+    return sorted([*claims, *_noisiest(state)], key=lambda claim: -claim.statistic)
 
 
 def _in_turn(state: SearchState, choose: Choice) -> Iterator[Claim]:
@@ -134,7 +135,7 @@ def _best_matched(state: SearchState) -> tuple[Claim, Scored] | None:
 def _likeliest(state: SearchState) -> tuple[Claim, Scored | None] | None:
     """The cause and sensors of most posterior, the other causes as alternatives until all hold `CREDIBLE` together."""
     seen = scores(state.residuals, state.traces, state.attributed())
-    groups = {**_weighed(state, seen), **({} if state.detections else _noisier(state))}
+    groups = {**_weighed(state, seen), **_noisier(state)}
     if not groups:
         return None
     causes = len({cause for cause, _ in groups})
@@ -165,7 +166,27 @@ def _weighed(state: SearchState, seen: Scores) -> dict[Group, tuple[float, int |
 
 def _noisier(state: SearchState) -> dict[Group, tuple[float, int | None]]:
     """ln Λ of each sensor's noise being larger than stated, averaged over factors and sensors."""
-    square, freedom = remaining_of_sensors(state.residuals, None)
+    square, freedom = _left_of_sensors(state)
     ratio = 0.5 * np.outer(square, 1 - NOISIER**-2.0) - np.outer(freedom, np.log(NOISIER))
     mean = logsumexp(ratio, axis=1) - np.log(len(NOISIER) * len(ratio))
-    return {("excess-noise", (i,)): (float(mean[i]), None) for i in np.flatnonzero(~state.baseline.unstated)}
+    return {(NOISE, (i,)): (float(mean[i]), None) for i in _stated(state)}
+
+
+def _noisiest(state: SearchState) -> Iterator[Claim]:
+    """The sensor whose residuals lie farthest beyond its stated noise, if any states it."""
+    square, freedom = _left_of_sensors(state)
+    sure = -log_tail(square, freedom) - np.log(state.families * len(square))
+    if known := _stated(state):
+        i = max(known, key=lambda k: sure[k])
+        yield Claim(float(sure[i]), {"cause": NOISE, "sensors": [state.names[i]]})
+
+
+def _left_of_sensors(state: SearchState) -> tuple[Array, Array]:
+    """(m,) energy, dimensionless, and (m,) degrees of freedom that what was found leaves of every sensor."""
+    found = [f.best.shape.columns for f in state.detections]
+    return remaining_of_sensors(state.residuals, np.concatenate(found, axis=-1) if found else None)
+
+
+def _stated(state: SearchState) -> list[int]:
+    """Sensors whose noise the file states."""
+    return [int(i) for i in np.flatnonzero(~state.baseline.unstated)]

@@ -13,6 +13,7 @@ from benchmarks.blind.answer import ALARMS, Look, Threshold, looks
 from benchmarks.blind.folder import Answers, read_answers
 from benchmarks.blind.regression import FEWER, kept_terms
 from benchmarks.blind.subspaces import log_tail
+from benchmarks.details import DOCS, RESULTS
 from tests.blind.catalogue import CATALOGUE
 
 BY = ("matched-subspaces", "cusum")
@@ -58,6 +59,13 @@ def test_the_table_has_a_column_for_each(folder: Path, capsys: pytest.CaptureFix
     printed = capsys.readouterr().out
     assert "| mark | matched-subspaces | cusum |" in printed
     assert "| CUSUM of each parameter over the history |" in printed
+
+
+def test_the_documentation_shows_what_the_whole_table_begins_with() -> None:
+    name = Path("diagnosis") / "blind.md"
+    _, _, short, *_ = (RESULTS / name).read_text("utf-8").split("\n\n")
+    assert short.startswith("| by |")
+    assert short in (DOCS / name).read_text("utf-8")
 
 
 def test_a_run_that_was_cut_off_goes_on(folder: Path, tmp_path: Path) -> None:
