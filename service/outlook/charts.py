@@ -158,11 +158,6 @@ ROOM = 1.5
 """The fan may widen a chart to this many tolerances, not further."""
 
 
-def trends_by_place(trends: Sequence[ParameterTrend]) -> Trends:
-    """As the charts look them up."""
-    return {(trend.sensor, trend.kind, trend.parameter): trend for trend in trends}
-
-
 def trend_of(track: ParameterCourse, trends: Trends) -> ParameterTrend | None:
     """The trend of a track."""
     return trends.get((track.sensor, track.name.rpartition("-")[2], track.parameter))
@@ -309,7 +304,7 @@ def history_charts(
     trends: Sequence[ParameterTrend] = (),
 ) -> ChartSet:
     """The panels of one parameter; every track has the same parameter and unit."""
-    known = trends_by_place(trends)
+    known = {(trend.sensor, trend.kind, trend.parameter): trend for trend in trends}
     span = _span(tracks, known, [*(s.at for s in services), *(n.at for n in notes)])
     return ChartSet(
         name=tracks[0].name,

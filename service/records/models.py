@@ -11,7 +11,6 @@ from math import exp, hypot
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
-from estimator.diagnosis.results import Gain
 from estimator.errors import Problem
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
@@ -57,7 +56,7 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
             cause=new.cause,
             sensors=finding.sensors,
             session=session.id,
-            evidence=_evidence(finding, diagnosis.found.gain),
+            evidence=copied(AcceptedFinding, finding, gain=diagnosis.found.gain, pooled=None),
             accepted_by=new.by,
             note=new.note,
             accepted_at=now,
@@ -111,10 +110,6 @@ def _as_alternative(finding: Finding, wanted: str) -> Finding:
     """The finding with the sensors of the alternative; its amplitude is another quantity and is left out."""
     sensors = next((s.sensors for s in finding.separations if s.cause == wanted), finding.sensors)
     return replace(finding, sensors=sensors, amplitude=(), sigma=(), units=(), nonlinear_each=({},))
-
-
-def _evidence(finding: Finding, gain: Gain) -> AcceptedFinding:
-    return copied(AcceptedFinding, finding, gain=gain, pooled=None)
 
 
 def _subject(new: NewModel, session: StoredSession, unit_type: str, sensors: tuple[str, ...]) -> str:
@@ -175,7 +170,7 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
                 subject=taken.subject,
                 cause=new.cause,
                 sensors=taken.sensors,
-                session=_latest(store, group),
+                session=members_of(store, group).pooled[-1].session,
                 evidence=term_evidence(taken, shown) if isinstance(taken, EmpiricalTerm) else evidence_of(taken, shown),
                 accepted_by=new.by,
                 note=new.note,
@@ -286,10 +281,6 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
             names=names,
         ),
     )
-
-
-def _latest(store: Store, group: Group) -> str:
-    return members_of(store, group).pooled[-1].session
 
 
 def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: datetime) -> ModelRevision:

@@ -70,7 +70,7 @@ class LimitedBodies:
             await self.app(scope, receive, send)
             return
         limit = None if scope["path"] in UPLOADS else self.limits.most
-        if limit is not None and _announced(scope) > limit:
+        if limit is not None and int(Headers(scope=scope).get("content-length", "0")) > limit:
             await _answer(_too_large(limit))(scope, receive, send)
             return
         body = _Body(receive, send, limit, self.limits.patience)
@@ -123,11 +123,6 @@ class _Body:
                 remaining = LATE_SECONDS  # The service was late, not the client: look for what came meanwhile.
         self._waited += loop.time() - start
         return message
-
-
-def _announced(scope: Scope) -> int:
-    """The announced length; the server has checked that it is a number."""
-    return int(Headers(scope=scope).get("content-length", "0"))
 
 
 def _too_large(limit: int) -> Unfinished:
