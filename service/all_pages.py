@@ -54,7 +54,6 @@ def mount(app: FastAPI) -> None:
 
 @cache
 def _every() -> APIRouter:
-    """The addresses of all pages, built once for all applications."""
     every = APIRouter(dependencies=ADMITTED)
     for part in PARTS:
         every.include_router(part.router)

@@ -159,7 +159,6 @@ def in_address(template: str, names: Mapping[str, Any]) -> str:
 
 
 def _request(request: str, sent: Json) -> tuple[str, str, Json]:
-    """Method, address, and the remaining parameters."""
     method, template = request.split()
     in_path = {name for _, name, _, _ in Formatter().parse(template) if name}
     rest = {name: _plain(value) for name, value in sent.items() if name not in in_path and value is not None}

@@ -129,7 +129,6 @@ def _alignments(member: DemoMember, rng: np.random.Generator) -> Iterator[DemoFi
 
 
 def _file(session: CalibrationSession, at: datetime) -> DemoFile:
-    """As it would be uploaded."""
     dated = replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", origin=SIMULATED)
     return DemoFile(f"{session.unit}-{at:%Y-%m-%d}.json", json.dumps(session_document(dated)).encode(), at)
 

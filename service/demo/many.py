@@ -138,7 +138,6 @@ def fill_many(settings: Settings, planned: ManyPlan, now: datetime, workers: int
 
 
 def _fill_beside(settings: Settings, life: Life, now: datetime) -> int:
-    """One unit, in a process of its own."""
     with opened(settings) as storage:
         return _fill_one(storage, settings, life, now)
 

@@ -50,7 +50,6 @@ MINE, NOBODYS = "Assigned to me", "Assigned to nobody"
 
 
 def _number(asked: str) -> str:
-    """A flag's number; empty where it is none."""
     return asked if asked.isascii() and asked.isdecimal() and 0 < int(asked) <= 2_000_000_000 else ""
 
 

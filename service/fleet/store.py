@@ -212,7 +212,6 @@ def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
 
 
 def _held(name: str, column: InstrumentedAttribute[str]) -> Select[str, str]:
-    """What the register says of units in use."""
     return select(literal(name), column).where(column != "", UnitRow.retired_at.is_(None)).distinct()
 
 
@@ -349,7 +348,6 @@ def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
 
 
 def _held_by(unit: UnitRow) -> dict[str, Any]:
-    """What the register says of it."""
     return {name: getattr(unit, name) for name in ("owner", "location", "custodian", "retired_at")}
 
 

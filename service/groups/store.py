@@ -200,7 +200,6 @@ def _belongs(group: Group) -> ColumnElement[bool]:
 
 
 def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:
-    """As the fields of `Member`."""
     has = and_(SessionStatisticsRow.format == FORMAT, SessionStatisticsRow.document.is_not(None))
     return (
         select(

@@ -83,8 +83,6 @@ class ProgressReporter:
 
 
 class _Reporter:
-    """The reporter of this process."""
-
     progress_reporter = ProgressReporter()
 
 

@@ -82,7 +82,6 @@ def _dataset(group: h5py.Group, name: str, filename: str) -> h5py.Dataset:
 
 
 def _values(name: str, column: h5py.Dataset, filename: str) -> object:
-    """The cells; None where a text is empty, NaN where a number is missing."""
     if column.dtype.kind in "fiu":
         return np.asarray(column[()])
     if h5py.check_string_dtype(column.dtype) is None:

@@ -48,7 +48,6 @@ def _head(rows: TableScan, filename: str) -> CalibrationSession:
 
 
 def _frames(rows: TableScan, names: list[str], filename: str) -> Iterator[pl.DataFrame]:
-    """Readings alone."""
     columns, limit, rows_read = len(rows.names), in_force().log_cells, 0
     try:
         for frame in rows.stretches(names):

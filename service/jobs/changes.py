@@ -57,7 +57,6 @@ def add_model_job(store: Store, changed: ModelRevision, units: int, now: datetim
 
 
 def _pieces(store: Store, new: NewJob) -> int:
-    """Number of pieces."""
     if new.kind is JobKind.REPORT:
         return 1
     units = Jobs(store).units(new.scope, new.subject)

@@ -76,8 +76,6 @@ LARGE = replace(SMALL, **{name: TIMES * getattr(SMALL, name) for name in SCALED}
 
 
 class _InForce:
-    """The one set of this process."""
-
     limits: Limits | None = None
 
 

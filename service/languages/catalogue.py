@@ -93,7 +93,6 @@ def forms_of(stored: Stored) -> tuple[str, ...]:
 
 
 def _texts(text: object) -> tuple[str, ...]:
-    """Of one message, or of its forms; empty for the header of the file."""
     texts = text if isinstance(text, tuple | list) else (text,)
     return tuple(str(form) for form in texts) if texts != ("",) else ()
 

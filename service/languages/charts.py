@@ -16,7 +16,6 @@ def chart_in(data: Any, say: Callable[[str], str], locale: Mapping[str, Any]) ->
 
 
 def _part_in(data: Any, say: Callable[[str], str]) -> Any:
-    """A part of a definition with translated texts."""
     if isinstance(data, dict):
         return {k: _text_in(v, say) if k in READ else _part_in(v, say) for k, v in data.items()}
     if isinstance(data, list | tuple):

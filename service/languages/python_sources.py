@@ -101,7 +101,6 @@ def _name(node: ast.expr) -> str:
 
 
 def _templates(call: ast.Call) -> list[str]:
-    """The literal templates of a call."""
     name = _name(call.func)
     arguments = call.args[-1:] if name in HELPERS else call.args[: TEMPLATES.get(name, 0)]
     return [a.value for a in arguments if isinstance(a, ast.Constant) and isinstance(a.value, str)]

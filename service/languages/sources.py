@@ -114,7 +114,6 @@ def _all() -> Iterator[MessageEntry]:
 
 
 def _names_of(cause: Cause) -> Iterator[str]:
-    """Names of a cause and its amplitudes."""
     yield from filter(re.compile(r"[a-z]{2}").search, (cause.name, cause.shape_words, *cause.amplitude_words))
 
 

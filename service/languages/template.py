@@ -91,7 +91,6 @@ class Template:
         return frozenset(k for tag in self._tags if ENGLISH in tag.group() for k in range(tag.start(), self._end(tag)))
 
     def _end(self, first: re.Match[str]) -> int:
-        """End of an element."""
         depth = 0
         for tag in self._tags:
             if tag.start() >= first.start() and tag[2] == first[2]:

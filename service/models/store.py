@@ -273,7 +273,6 @@ def _of(task: Task) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
 
 
 def _read(document: Json) -> Recomputed:
-    """Reads a document of `settle`."""
     furthest = document["furthest"]
     return Recomputed(
         sessions=document["sessions"],

@@ -345,7 +345,6 @@ def _point(point: TrackPoint) -> Json:
 
 
 def _limits(track: ParameterCourse, span: list[str]) -> list[Json]:
-    """Tolerance and reference, each stretch until the next one begins, from edge to edge of the chart."""
     starts = [_iso(point.at) for point in track.limits]
     return [
         {"from": start, "to": end, "ref": 0, "hi": _short(point.limit_upper), "lo": _short(point.limit_lower)}

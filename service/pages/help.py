@@ -78,7 +78,6 @@ def _value(settings: Settings, name: str, value: Any) -> str:
 
 
 def _plain(value: Any) -> str:
-    """As people write it."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if value is None or value == "" or value == ():

@@ -168,12 +168,10 @@ def _revisions(store: Store, stored: StoredSession) -> tuple[ModelRevision, ...]
 
 
 def _model(revisions: tuple[ModelRevision, ...], stored: StoredSession) -> Model:
-    """That its calibration was made under."""
     return replace(model_of(revisions, stored.started_at), revision=stored.revision)
 
 
 def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
-    """The reference of the session."""
     if stored.is_reference:
         return None
     unit, block = Units(store).key(stored.unit), UnitTypes(store).of_unit(stored.unit).block

@@ -147,7 +147,6 @@ def sign(desk: Desk, signing: Signing, attempt: SignInAttempt, now: datetime) ->
 def _files(
     desk: Desk, found: CertifiedSession, issue: Issue, signatures: tuple[Signature, ...]
 ) -> tuple[CertificateFile, ...]:
-    """An approved certificate in every format, sealed where the laboratory has a key."""
     seal, sealed_by = desk.seal, ""
     if seal is not None:
         seal.require_valid(signatures[-1].signed_at)

@@ -214,7 +214,6 @@ def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> Red
 
 
 def _provider(request: Request) -> str:
-    """Name of the sign-in provider."""
     provider = application_of(request).part(Gate).provider
     return provider.name if provider else ""
 

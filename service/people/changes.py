@@ -147,8 +147,6 @@ class SignInAttempt:
 
 @dataclass(frozen=True)
 class _Limit:
-    """A limit of wrong attempts within a time."""
-
     key: str
     """A hash, since people also type passwords as logins."""
     most: int

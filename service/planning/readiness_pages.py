@@ -248,7 +248,6 @@ def show_missing(request: Request, brought: BroughtOf) -> HTMLResponse:
 
 
 def _read(kind: type[T], brought: Brought) -> T:
-    """The fields; RefusedError that names each that cannot be used."""
     try:
         return kind.model_validate({name: value.strip() for name, value in brought.fields.items()})
     except ValidationError as fault:

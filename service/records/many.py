@@ -177,7 +177,6 @@ def _outcome(future: Future[UnitOutcome], serial: str) -> UnitOutcome:
 
 
 def _work(last: str, serial: str, now: datetime) -> UnitOutcome:
-    """In the worker."""
     storage, coverage_factor = _own(last)
     return recalibrate_one(storage, serial, now, coverage_factor)
 

@@ -248,7 +248,6 @@ def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> AcceptedFinding:
 
 
 def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
-    """The learned term that is meant."""
     found = [t for t in shown.terms if t.level and t.subject and new.sensors in ((), t.sensors)]
     if len(found) == 1:
         return found[0]
@@ -258,7 +257,6 @@ def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
 
 
 def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
-    """The one that is meant."""
     found = [f for f in shown.findings if f.cause == new.cause and new.sensors in ((), f.sensors)]
     if len(found) == 1 and not found[0].subject:
         raise _refused(

@@ -89,7 +89,6 @@ def _problems(entry: NewEntry, known: Registered | None, *, is_measured: bool) -
 
 
 def _enter(store: Store, entry: NewEntry, known: Registered | None, entering: Entering) -> bool:
-    """Stores one entry; whether that changed anything."""
     if known is not None and known.registered_at is not None and not _differences(entry, known):
         return False
     if entry.unit_type and (known is None or entry.unit_type != known.unit_type):
@@ -113,7 +112,6 @@ def _enter(store: Store, entry: NewEntry, known: Registered | None, entering: En
 
 
 def _differences(entry: NewEntry, known: Registered) -> tuple[str, ...]:
-    """Fields that the register says otherwise."""
     names = ("unit_type", "owner", "location", "custodian", "note")
     asked = {name: getattr(entry, name) for name in names}
     if not entry.unit_type:

@@ -104,7 +104,6 @@ def _faults(given: Attaching) -> list[Problem]:
 
 
 def _home(store: Store, given: Attaching) -> tuple[str, str | None]:
-    """Unit and session; NotFoundError where there is none."""
     if given.session:
         session = Sessions(store).get(given.session)
         return session.unit, session.id

@@ -249,7 +249,6 @@ def residual_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
 
 
 def _columns(calibration: Calibration, kind: str) -> list[int]:
-    """The sensors of a kind that have residuals."""
     value = calibration.residuals.value
     return [i for i, s in enumerate(calibration.sensors) if s.kind == kind and np.isfinite(value[:, i]).any()]
 

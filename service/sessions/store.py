@@ -304,5 +304,4 @@ def motion_record(row: CommonMotionRow) -> CommonMotion:
 
 
 def _plain(value: Any) -> Any:
-    """JSON's lists are the tuples that they were."""
     return tuple(map(_plain, value)) if isinstance(value, list) else value

@@ -204,7 +204,6 @@ def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
 
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
-    """Types, each with its current revision of tolerances."""
     return select(UnitTypeRow, ToleranceRow).join(
         ToleranceRow,
         (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),

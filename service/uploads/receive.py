@@ -195,8 +195,6 @@ def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
 
 @dataclass(frozen=True, eq=False)
 class _Ready:
-    """A session with everything computed before its transaction."""
-
     new: Calibrated
     digests: Digests
     made: MadeCalibration
@@ -244,7 +242,6 @@ def _store(store: Store, derivation: Deriving, received: Received, ready: _Ready
 def _derived(
     derivation: Deriving, known: KnownUnit, record: StoredSession, ready: _Ready, replaces: Replaced | None
 ) -> dict[str, Derived]:
-    """Everything that follows from a new session, by unit."""
     store, shared = known.store, {record.id} | ({replaces.session} if replaces else set())
     doubts_found = doubts(known, ready.new.checked, known.calibration(record.id), shared)
     if doubts_found:
@@ -281,7 +278,6 @@ def _unit(store: Store, received: Received, new: Calibrated) -> int:
 
 
 def _record(received: Received, new: Calibrated) -> StoredSession:
-    """The record before judgement."""
     session = new.checked.session
     return StoredSession(
         id=received.sha256[:ID_DIGITS],

@@ -83,8 +83,6 @@ class LimitedBodies:
 
 
 class _Body:
-    """One incoming body: bytes received, and time waited for it."""
-
     def __init__(self, receive: Receive, send: Send, limit: int | None, patience: float) -> None:
         self._receive, self._send, self._most = receive, send, limit
         self._patience = patience

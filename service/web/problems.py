@@ -60,7 +60,6 @@ class ProblemAnswer(JSONResponse):
 
 
 def _translated(content: Mapping[str, Any], say: Callable[[str], str]) -> Json:
-    """A problem with translated sentences; its keys and fields stay."""
     translated = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
     if "problems" in translated:
         translated["problems"] = [fault | {"message": say(fault["message"])} for fault in translated["problems"]]

@@ -124,7 +124,6 @@ def _text(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
 
 
 def _separator(text: str) -> str:
-    """The separator that cuts most of the first lines into the same number of cells."""
     lines = [line for line in text[:100_000].split("\n")[:SCANNED_ROWS] if line.strip()]
     for separator in SEPARATORS:
         counts = [line.count(separator) for line in lines if separator in line]
@@ -195,7 +194,6 @@ def _headed(
     filename: str,
     sheets: tuple[str, ...] = (),
 ) -> Grid:
-    """The headings, found or stated, and the rows below them."""
     width = max(map(len, rows), default=0)
     rows = [row + [None] * (width - len(row)) for row in rows]
     first = int(stated.get("first_row") or _first_row(rows)) - 1
@@ -249,7 +247,6 @@ def _is_title(row: Sequence[Cell]) -> bool:
 
 
 def _share(row: Sequence[Cell]) -> float:
-    """Share of numbers among the cells that are not empty."""
     cells = [cell for cell in row if not is_nothing(cell)]
     return sum(number_of(cell, ",") is not None for cell in cells) / len(cells) if cells else 0.0
 

@@ -111,7 +111,6 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
 
 
 def _left_out(streams: Sequence[Stream], cleaned: Sequence[Stream]) -> Iterator[str]:
-    """Samples and streams that are not in the table."""
     for stream, clean in zip(streams, cleaned, strict=True):
         if len(clean.time) < len(stream.time):
             lost = len(stream.time) - len(clean.time)

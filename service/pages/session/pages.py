@@ -191,7 +191,6 @@ def session_page(
 
 
 def _state(report: SessionReport) -> str:
-    """Why a session does not count."""
     state = report.session.state
     if state is RecordState.ACCEPTED:
         return ""

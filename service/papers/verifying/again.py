@@ -98,7 +98,6 @@ def _record(
 
 
 def _reason(found: Calibrated, decisions: tuple[Decision, ...]) -> str:
-    """Why the verdict is what it is."""
     if found.comparison is not None:
         return recording_in_words(found.comparison.result, decisions)
     return reason(decisions, too_few(found.calibration))

@@ -85,7 +85,6 @@ def _is_settled(store: Store, occasion: Occasion, settled: Moment | None) -> boo
 
 
 def _by_sensor(outlook: UnitOutlook) -> dict[str, list[Found]]:
-    """What chance does not explain, the most evident first."""
     found: dict[str, list[Found]] = {}
     for trend in outlook.trends:
         for change in trend.changes:

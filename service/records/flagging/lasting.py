@@ -104,7 +104,6 @@ def _settle(
     store: Store, concern: Concern, flag: Flag | None, revision: ModelRevision | None, latest: Member | None,
     at: datetime,
 ) -> None:  # fmt: skip
-    """One effect that is shown."""
     is_open = flag is not None and flag.state is not FlagState.RESOLVED
     if flag is not None and is_open:
         occasion = Occasion(Units(store).hold(flag.unit), None if latest is None else latest.session, at)

@@ -36,8 +36,6 @@ MOST_NAMED = 12
 
 @dataclass(frozen=True)
 class _Fault:
-    """A stand that sessions find at fault."""
-
     concern: Concern
     at: Moment
     """Of the last session that shows it."""

@@ -93,7 +93,6 @@ def _label(field: str, mapping: Mapping[str, Any]) -> str:
 
 
 def _entry(entries: Any, number: str) -> Mapping[str, Any]:
-    """An entry of a list by its number, from 1."""
     found = entries[int(number) - 1] if isinstance(entries, list) and int(number) <= len(entries) else {}
     return found if isinstance(found, Mapping) else {}
 
