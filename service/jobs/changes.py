@@ -44,7 +44,7 @@ def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:
 def require_room(store: Store) -> None:
     """BusyError where too many jobs wait."""
     if Jobs(store).open_count() >= MOST_OPEN:
-        raise BusyError(say("{most_open} jobs wait already. Cancel one, or ask again later.", most_open=MOST_OPEN))
+        raise BusyError("{most_open} jobs wait already. Cancel one, or ask again later.", most_open=MOST_OPEN)
 
 
 def add_model_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
@@ -96,7 +96,7 @@ def file_of(files: Files, job: Job) -> bytes:
     """The file made by a job; ConflictError where there is none any more."""
     if job.made is None:
         raise ConflictError(
-            say("Job {id} has no file to give out: it is {state}, or its time is over.", id=job.id, state=job.state)
+            "Job {id} has no file to give out: it is {state}, or its time is over.", id=job.id, state=job.state
         )
     return read_made(files, job.id, job.made.sha256)
 

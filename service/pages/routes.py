@@ -6,7 +6,6 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
 from estimator.allan.results import TERMS
-from estimator.message import say
 from service.diagnosis.store import Diagnoses
 from service.errors import NotFoundError
 from service.flags.store import FlagQuery, Flags
@@ -111,7 +110,7 @@ def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw
     heads = parameter_heads(History(store).latest(Units(store).key(serial)), None)
     head = next((head for head in heads if head.anchor == name), None)
     if head is None:
-        raise NotFoundError(say("Unit {serial} has no history of {name}.", serial=serial, name=repr(name)))
+        raise NotFoundError("Unit {serial} has no history of {name}.", serial=serial, name=repr(name))
     wanted = HistoryQuery(parameter=head.parameter, kind=head.kind, raw=raw)
     points = recent_history(store, serial, HISTORY_LIMIT, wanted)
     outlook = Outlooks(store).of_unit(serial)

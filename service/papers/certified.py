@@ -5,7 +5,6 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
-from estimator.message import say
 from estimator.results import Calibration, Residuals
 from estimator.session import AS_LEFT, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis
@@ -136,7 +135,7 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
         report = session_report(store, id)
         stored = report.session
         if stored.state is not RecordState.ACCEPTED:
-            raise ConflictError(say(NOT_ACCEPTED, state=stored.state))
+            raise ConflictError(NOT_ACCEPTED, state=stored.state)
         until = stored.started_at + JUST_AFTER
         revisions, unit_type = _revisions(store, stored), UnitTypes(store).of_unit(stored.unit)
         return CertifiedSession(

@@ -7,7 +7,6 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 from pydantic import BaseModel, ConfigDict, Field
 
-from estimator.message import say
 from service.errors import ConflictError, ForbiddenError
 from service.kit.answer import answer
 from service.kit.person import UNNAMED, Account, Role, Token
@@ -157,7 +156,7 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
         raise ConflictError(NO_ACCOUNT)
     if not person.may(new.role):
         parts = {"account": person.account, "role": person.role, "wanted_role": new.role}
-        raise ForbiddenError(say("{account} is {role} and cannot make a token for {wanted_role}.", **parts))
+        raise ForbiddenError("{account} is {role} and cannot make a token for {wanted_role}.", **parts)
     lasts = timedelta(days=new.days)
     token, secret = make_token(storage, person.login, new.label, new.role, now, lifetime=lasts, who=person.name)
     return MadeToken(**vars(token), secret=secret)

@@ -58,7 +58,7 @@ def add_account(storage: Storage, login: str, name: str, role: Role, now: dateti
             raise ConflictError("The first account must be an admin: from then on everybody has to sign in.")
         shown_name = name.strip() or lower
         if not Accounts(store).add(lower, shown_name, role, now):
-            raise ConflictError(say("There is an account {small} already.", small=repr(lower)))
+            raise ConflictError("There is an account {small} already.", small=repr(lower))
         Audit(store).write(now, who, "add account", lower, {"name": shown_name, "role": role})
         return Accounts(store).get(lower)
 
@@ -344,7 +344,7 @@ def make_token(
         account = Accounts(store).get(login)
         if not account.is_active or not account.role.may(role):
             parts = {"login": account.login, "role": account.role, "wanted_role": role}
-            raise ConflictError(say("{login} is {role} and cannot have a token for {wanted_role}.", **parts))
+            raise ConflictError("{login} is {role} and cannot have a token for {wanted_role}.", **parts)
         new = Token(0, account.login, label.strip() or "token", role, now, now + lifetime, None, None)
         token = Tokens(store).add(account, new, stored_hash(secret))
         details = {"token": token.id, "label": token.label, "role": role, "until": token.expires_at.isoformat()}

@@ -3,7 +3,6 @@
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 
-from estimator.message import say
 from service.errors import ConflictError
 from service.flags.api import Handling
 from service.judging.records import said
@@ -134,7 +133,7 @@ def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now, 
         owner = Sessions(store).get(new.session).unit
     if owner != serial:
         raise ConflictError(
-            say("Session {session} is of {owner}, not of {serial}.", session=new.session, owner=owner, serial=serial)
+            "Session {session} is of {owner}, not of {serial}.", session=new.session, owner=owner, serial=serial
         )
     step = Step(person.signs(new.by), now, new.why)
     session, _ = choose_reference(reception.storage, deriving(reception, now), new.session, step)

@@ -286,9 +286,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
     with storage.database.writing() as store:
         known = Models(store).get(revision)
         if known not in in_force(Models(store).of_subject(known.scope, known.subject)):
-            raise ConflictError(
-                say("Revision {id} is not in force: withdrawn before, or a withdrawal itself.", id=known.id)
-            )
+            raise ConflictError("Revision {id} is not in force: withdrawn before, or a withdrawal itself.", id=known.id)
         made = Models(store).add(
             replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
         )

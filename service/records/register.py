@@ -152,10 +152,10 @@ def retired_in_words(entry: Registered) -> str:
 def _require_change(was: Registered, move: Move) -> None:
     if move.step is CustodyStep.RETIRED and was.retired_at is not None:
         day = day_of(was.retired_at)
-        raise ConflictError(say("{unit} is retired since {day} already.", unit=was.unit, day=day))
+        raise ConflictError("{unit} is retired since {day} already.", unit=was.unit, day=day)
     if move.step is CustodyStep.RETURNED and was.retired_at is None:
-        raise ConflictError(say("{unit} is in use already.", unit=was.unit))
+        raise ConflictError("{unit} is in use already.", unit=was.unit)
     asked = {"location": move.location, "custodian": move.custodian}
     is_same = all(value in (None, getattr(was, name)) for name, value in asked.items())
     if move.step is CustodyStep.MOVED and is_same:
-        raise ConflictError(say("{unit} is there already, with the same custodian.", unit=was.unit))
+        raise ConflictError("{unit} is there already, with the same custodian.", unit=was.unit)

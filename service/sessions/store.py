@@ -21,7 +21,6 @@ from sqlalchemy.orm import InstrumentedAttribute, aliased
 
 from estimator.health.common_motion import CommonMotion
 from estimator.health.temperature_law import Steps, TemperatureCorrection
-from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
@@ -67,7 +66,7 @@ class Sessions(Queries):
         """One session."""
         found = self._session.execute(_BY_ID, {"id": id}).one_or_none()
         if found is None:
-            raise NotFoundError(say("There is no session {id}.", id=repr(id)))
+            raise NotFoundError("There is no session {id}.", id=repr(id))
         return session_record(*found)
 
     def only_demonstration(self) -> bool:

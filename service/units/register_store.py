@@ -5,7 +5,6 @@ from datetime import datetime
 
 from sqlalchemy import Select, select, update
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.kit.copying import copied
 from service.storage.queries import Queries
@@ -22,7 +21,7 @@ class Register(Queries):
         """What is known of one unit."""
         found = self.find((serial,))
         if not found:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         return found[serial]
 
     def find(self, serials: Sequence[str]) -> dict[str, Registered]:

@@ -5,7 +5,6 @@ from datetime import datetime
 
 from sqlalchemy import Select, exists, select, update
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.kit.copying import copied
 from service.sessions.states import RecordState
@@ -53,7 +52,7 @@ class Units(Queries):
             select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
         ).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         return Customer(*row)
 
     def set_customer(self, serial: str, new: Customer) -> None:
@@ -108,7 +107,7 @@ class Units(Queries):
         """The same of a unit that must be there."""
         key = self.held(serial)
         if key is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         return key
 
     def find(self, serial: str) -> int | None:
@@ -122,7 +121,7 @@ class Units(Queries):
             return known
         key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
         if key is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         self.remember_unit(serial, key)
         return key
 
@@ -158,7 +157,7 @@ class Services(Queries):
         """One recorded break."""
         row = self._session.execute(_services().where(ServiceRow.id == number)).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no service {number}.", number=number))
+            raise NotFoundError("There is no service {number}.", number=number)
         return service_record(*row)
 
     def put_state(self, number: int, state: RecordState) -> None:

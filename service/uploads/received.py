@@ -75,10 +75,8 @@ class Arriving:
         limit = self.most if may_be_log(landing.start) else self._whole
         if landing.size > limit:
             raise TooLargeError(
-                say(
-                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
-                    limit=f"{limit:,}",
-                )
+                "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                limit=f"{limit:,}",
             )
         if landing.is_due:
             await run_in_threadpool(landing.write)

@@ -7,7 +7,6 @@ from typing import Annotated
 from fastapi import Depends, Request
 from starlette.types import Message
 
-from estimator.message import say
 from service.errors import TooLargeError
 from service.kit.limits import in_force
 from service.kit.metrics import Metrics
@@ -63,10 +62,8 @@ def limited(request: Request, limit: int, *, is_form: bool) -> Request:
         received += len(message.get("body", b""))
         if received > limit_in_all:
             raise TooLargeError(
-                say(
-                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
-                    limit=f"{limit:,}",
-                )
+                "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                limit=f"{limit:,}",
             )
         return message
 

@@ -289,10 +289,8 @@ def set_tolerances(
         current = UnitTypes(store).hold(name)
         if seen is not None and seen != current.revision:
             raise ConflictError(
-                say(
-                    "Other tolerances were set meanwhile, revision {revision}: check them, then set yours.",
-                    revision=current.revision,
-                )
+                "Other tolerances were set meanwhile, revision {revision}: check them, then set yours.",
+                revision=current.revision,
             )
         said = {"why": why} if why else {}
         wished = _others(current, watch)

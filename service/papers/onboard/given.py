@@ -7,7 +7,6 @@ from datetime import datetime
 import numpy as np
 
 from estimator.allan import BlockNoise
-from estimator.message import say
 from estimator.nominal_vector import NominalVector
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from service.errors import ConflictError
@@ -92,9 +91,9 @@ def _uses(given: ExportInput) -> Iterator[str]:
 def check(given: ExportInput) -> None:
     """ConflictError where the unit must not be used, or the session does not count."""
     if given.state is not RecordState.ACCEPTED:
-        raise ConflictError(say(NOT_COUNTED, state=given.state.value, force=FORCE))
+        raise ConflictError(NOT_COUNTED, state=given.state.value, force=FORCE)
     if not given.use.usable:
-        raise ConflictError(say(REFUSED, unit=given.unit, why=given.use.why, force=FORCE))
+        raise ConflictError(REFUSED, unit=given.unit, why=given.use.why, force=FORCE)
 
 
 def commented(lines: Iterator[str]) -> list[str]:

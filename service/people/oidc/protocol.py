@@ -197,7 +197,7 @@ def _text(claims: Mapping[str, Any], name: str) -> str:
 
 
 def _refused(why: str) -> SignInError:
-    return SignInError(say(REFUSED, why=why))
+    return SignInError(REFUSED, why=why)
 
 
 def _unavailable(fault: str) -> AwayError:

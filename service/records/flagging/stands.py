@@ -150,5 +150,5 @@ def _require_whole(condition: StandCondition) -> None:
     """Raises for sessions whose common motion cannot be used; without them the stand is still judged."""
     if condition.unreadable:
         raise ServiceError(
-            say("What is stored of these sessions cannot be used: {reason}.", reason=", ".join(condition.unreadable))
+            "What is stored of these sessions cannot be used: {reason}.", reason=", ".join(condition.unreadable)
         )
