@@ -24,7 +24,10 @@ def assignee_meant(store: Store, asked: str, person: Person) -> Assignee | None:
     if not asked:
         return None
     if asked == ME:
-        return _me(person)
+        if not person.login:
+            fault = "`me` is whoever signs in, and nobody did; give a name"
+            raise RefusedError("It is not known whose flags are meant.", (Problem("assigned", fault),))
+        return Assignee(person.name, person.login)
     known = (assignee for assignee in Flags(store).assignees() if asked in (assignee.login, assignee.name))
     return NOBODY if asked == OF_NOBODY else next(known, Assignee(asked))
 
@@ -34,13 +37,6 @@ def active_names(store: Store) -> tuple[str, ...]:
     active = [account for account in Accounts(store).every() if account.is_active]
     often = Counter(account.name for account in active)
     return tuple(account.name if account.name and often[account.name] == 1 else account.login for account in active)
-
-
-def _me(person: Person) -> Assignee:
-    if not person.login:
-        fault = "`me` is whoever signs in, and nobody did; give a name"
-        raise RefusedError("It is not known whose flags are meant.", (Problem("assigned", fault),))
-    return Assignee(person.name, person.login)
 
 
 STATES = {FlagState.RAISED.value: "Not acknowledged", FlagState.ACKNOWLEDGED.value: "Acknowledged"}

@@ -89,7 +89,8 @@ def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
             return read(content, filename)
     log = logs.log_of(content, filename)
     if log is not None:
-        return _log(log)
+        grid = _named("log", log.columns)
+        return replace(grid, meanings=dict(zip(grid.headings, log.meanings, strict=True)), facts=log.facts)
     return _text(content, filename, stated)
 
 
@@ -347,11 +348,6 @@ def _named(kind: str, table: Mapping[str, Any]) -> Grid:
         tuple(c for c in columns if len(c) == rows),
         {"first_row": 1, "decimal": "."},
     )
-
-
-def _log(log: logs.LogTable) -> Grid:
-    grid = _named("log", log.columns)
-    return replace(grid, meanings=dict(zip(grid.headings, log.meanings, strict=True)), facts=log.facts)
 
 
 def _listed(cells: Sequence[Cell] | NDArray[Any]) -> list[Cell]:
