@@ -12,6 +12,7 @@ from sqlalchemy import (
     SQLColumnExpression,
     and_,
     bindparam,
+    case,
     func,
     or_,
     select,
@@ -27,14 +28,14 @@ from service.errors import NotFoundError
 from service.kit.arriving_files import DEMONSTRATION
 from service.kit.copying import copied
 from service.sessions.decision import Decision, Verdict
-from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionQuery, StoredSession
+from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionOrder, SessionQuery, StoredSession
 from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow
-from service.sessions.wanted_store import SESSIONS
 from service.stands.tables import StandRow
 from service.storage.audit import AuditRow
+from service.storage.listing import Key, Listing
 from service.storage.queries import Queries, lists
 from service.types.tables import UnitTypeRow
 from service.units.tables import ServiceRow, UnitRow
@@ -304,3 +305,41 @@ def motion_record(row: CommonMotionRow) -> CommonMotion:
 
 def _plain(value: Any) -> Any:
     return tuple(map(_plain, value)) if isinstance(value, list) else value
+
+
+SEVERITY = case({verdict.value: verdict.severity for verdict in Verdict}, value=SessionRow.verdict)
+"""A number that orders verdicts from good to bad."""
+LATEST = (Key(SessionRow.started_at, is_falling=True), Key(SessionRow.id, is_falling=True))
+ORDERS = {
+    SessionOrder.MEASURED: LATEST,
+    SessionOrder.UPLOADED: (Key(SessionRow.uploaded_at, is_falling=True), Key(SessionRow.id, is_falling=True)),
+    SessionOrder.VERDICT: (Key(SEVERITY, is_falling=True), *LATEST),
+    SessionOrder.UNIT: (Key(UnitRow.serial), Key(SessionRow.started_at), Key(SessionRow.id)),
+}
+
+
+def _is_of(name: str) -> ColumnElement[bool]:
+    of_type = select(UnitTypeRow.id).where(UnitTypeRow.name == name)
+    return UnitRow.unit_type_id == of_type.scalar_subquery()
+
+
+def _is_on(stand: str) -> ColumnElement[bool]:
+    return SessionRow.stand_id == select(StandRow.id).where(StandRow.name == stand).scalar_subquery()
+
+
+SESSIONS: Listing[SessionQuery] = Listing(
+    name=SessionRow.id,
+    keys=lambda wanted: ORDERS[wanted.order],
+    conditions={
+        "text": lambda text: UnitRow.serial.icontains(text, autoescape=True),
+        "unit": lambda serial: UnitRow.serial == serial,
+        "unit_type": _is_of,
+        "stand": _is_on,
+        "since": lambda since: SessionRow.started_at >= since,
+        "until": lambda until: SessionRow.started_at < until,
+        "state": lambda state: SessionRow.state == state,
+        "verdict": lambda verdict: SessionRow.verdict == verdict,
+        "is_reference": lambda is_so: SessionRow.is_reference.is_(is_so),
+        "reserved": lambda _: DiagnosisRow.reservations.is_not(None),
+    },
+)
