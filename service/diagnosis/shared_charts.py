@@ -8,7 +8,18 @@ from estimator.message import say
 from estimator.results import Residuals
 from service.kit.libraries import alt
 from service.kit.measures import COVERAGE, THIN, decimals, deviation_measure, number
-from service.sessions.charts import DATA_FORM, HEIGHT, Across, ChartSet, Panel, in_order, padded, specification, ticks
+from service.sessions.charts import (
+    DATA_FORM,
+    HEIGHT,
+    Across,
+    ChartSet,
+    Panel,
+    hints,
+    in_order,
+    padded,
+    specification,
+    ticks,
+)
 
 
 def shared_chart(shared: Shared, kind: str, residuals: Residuals, name: str) -> ChartSet:
@@ -41,7 +52,6 @@ def shared_chart(shared: Shared, kind: str, residuals: Residuals, name: str) -> 
                     "moves by {swing} in the session",
                     swing=f"{number(swing, decimals(swing / 10))}{THIN}{measure.label}",
                 ),
-                condition=None,
                 datasets={DATA_FORM: points},
             ),
         ),
@@ -58,9 +68,6 @@ def _spec(across: Across, unit: str, reach: float) -> Json:
     line = base.mark_line(color="var(--accent)").encode(y=alt.Y("course:Q", scale=y_scale))
     marks = base.mark_point(color="var(--second)", filled=True, opacity=1, size=30).encode(
         y=alt.Y("y:Q", title=unit, axis=alt.Axis(tickCount=5), scale=y_scale),
-        tooltip=[
-            alt.Tooltip("row:Q", title="row"),
-            alt.Tooltip("y:Q", title=say("all sensors together, {unit}", unit=unit)),
-        ],
+        tooltip=hints({"row:Q": "row", "y:Q": say("all sensors together, {unit}", unit=unit)}),
     )
     return specification([band, line, marks], HEIGHT)
