@@ -13,7 +13,7 @@ from rich.markup import escape
 
 from estimator.on_demand import function_on_demand
 from service.client import Client, connect
-from service.commands.calls import Answer, Call, ListColumns, Row, app_of, in_address
+from service.commands.calls import Answer, Call, ListColumns, Row, in_address
 from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, ListOutput, Server, screen
 from service.commands.speech import output_language, translated
 from service.errors import ServiceError
@@ -342,8 +342,3 @@ COMMANDS: dict[str, Row] = {
     "views": Call("GET /views", {}, VIEWS),
     "open": open_page,
 }
-
-
-def command_of(name: str) -> typer.Typer:
-    """The command or the group of commands of a name."""
-    return app_of(name, COMMANDS)
