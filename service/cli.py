@@ -78,11 +78,7 @@ def _taught(command: Any, words: str) -> Any:
 
 
 app = typer.Typer(
-    name="imu-health",
-    cls=Commands,
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
+    name="imu-health", cls=Commands, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None
 )
 
 

@@ -13,15 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from estimator.alignment.axes import Triad, of_kind, require_alive, triad
 from estimator.alignment.coarse import Coarse, coarse
-from estimator.alignment.filtering import (
-    PRIOR,
-    TABLE_SIGMA,
-    Filtered,
-    FilterSetting,
-    Measured,
-    relative,
-    run,
-)
+from estimator.alignment.filtering import PRIOR, TABLE_SIGMA, Filtered, FilterSetting, Measured, relative, run
 from estimator.alignment.levers import FARTHEST, without_lever_arms
 from estimator.alignment.noise import LEAST_DENSITY, FilterNoise, at_rest
 from estimator.alignment.positions import (

@@ -134,9 +134,7 @@ class ChannelsSwapped(RecordCorrection):
             yield (
                 (i, k),
                 replace(
-                    session,
-                    readings=session.readings[:, order],
-                    standard_errors=session.standard_errors[:, order],
+                    session, readings=session.readings[:, order], standard_errors=session.standard_errors[:, order]
                 ),
             )
 

@@ -19,14 +19,7 @@ from estimator.diagnosis.selection.start import begin
 from estimator.errors import Problem, ScheduleError
 from estimator.message import say
 from estimator.planning.elevation import conditioning, gyro_errors, optimal_elevation
-from estimator.planning.expected import (
-    expected_sigmas,
-    head_kind,
-    input_noise,
-    over_elevation,
-    over_positions,
-    planned,
-)
+from estimator.planning.expected import expected_sigmas, head_kind, input_noise, over_elevation, over_positions, planned
 from estimator.planning.positions import optimal_positions
 from estimator.planning.results import JudgedParameter, Plan, Request
 from estimator.results import PARAMETERS

@@ -49,8 +49,7 @@ def check_extent(rows: int, columns: int, problems: Problems) -> None:
         )
     if columns > most.columns:
         raise problems.fail(
-            "table",
-            say("has {columns} columns; at most {limit} can be read", columns=columns, limit=most.columns),
+            "table", say("has {columns} columns; at most {limit} can be read", columns=columns, limit=most.columns)
         )
     if rows * columns > most.cells:
         raise problems.fail(

@@ -34,8 +34,7 @@ class NewWebhook(
         },
     )
     secret: Secret | None = Field(
-        default=None,
-        description="What messages to a host are signed with, 16 characters or more; never shown again.",
+        default=None, description="What messages to a host are signed with, 16 characters or more; never shown again."
     )
     by: Name = Field(description="Who registers it.")
 

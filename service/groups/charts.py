@@ -157,10 +157,7 @@ def _forest_spec() -> Json:
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     marks = base.mark_point(
         filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)", clip=True
-    ).encode(
-        y=y,
-        tooltip=hints({"date:N": "session", "unit:N": "unit", "value:N": "alone"}),
-    )
+    ).encode(y=y, tooltip=hints({"date:N": "session", "unit:N": "unit", "value:N": "alone"}))
     return specification(
         [
             pooled.mark_area(color="var(--second)", opacity=0.25).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
@@ -241,8 +238,7 @@ def _picture_spec(title: str, *, by_angle: bool) -> Json:
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=0.13)
     marks = base.mark_point(filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)").encode(
-        y=y_axis(scale),
-        tooltip=hints({"x:Q": title, "y:Q": VALUE}),
+        y=y_axis(scale), tooltip=hints({"x:Q": title, "y:Q": VALUE})
     )
     return specification([band.encode(y=alt.Y("low:Q", scale=scale), y2="band:Q"), zero_line(), marks], HEIGHT)
 

@@ -91,10 +91,7 @@ def _described(session: CalibrationSession) -> str:
 
 
 def _text_problems(session: CalibrationSession) -> list[Problem]:
-    names = {
-        "unit_type": session.unit_type or "",
-        "stand.id": session.stand.id if session.stand else "",
-    }
+    names = {"unit_type": session.unit_type or "", "stand.id": session.stand.id if session.stand else ""}
     names |= {f"sensors[{i}].name": sensor.name for i, sensor in enumerate(session.sensors)}
     names |= {f"sensors[{i}].reading_unit": sensor.reading_unit for i, sensor in enumerate(session.sensors)}
     texts = {"operator": session.operator, "notes": session.notes}

@@ -21,11 +21,7 @@ from service.web.render import render
 
 HIDDEN = "set, not shown"
 NONE = "none"
-ORIGINS = {
-    Origin.DEFAULT: "default",
-    Origin.ENVIRONMENT: "environment",
-    Origin.START: "option at the start",
-}
+ORIGINS = {Origin.DEFAULT: "default", Origin.ENVIRONMENT: "environment", Origin.START: "option at the start"}
 FILES = "_file"
 """End of the names of settings that say where a secret lies: the place is shown, what lies there is not."""
 

@@ -75,11 +75,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/")
 def show_fleet(
-    request: Request,
-    store: ReadingFleet,
-    now: Now,
-    person: PersonOf,
-    view: Annotated[FleetView, Query()],
+    request: Request, store: ReadingFleet, now: Now, person: PersonOf, view: Annotated[FleetView, Query()]
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
     filling = application_of(request).find(Filling)
@@ -120,12 +116,7 @@ def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw
 
 @router.get("/units/{serial:path}")
 def show_unit(
-    request: Request,
-    store: Reading,
-    settings: SettingsOf,
-    now: Now,
-    serial: Key,
-    raw: bool = False,
+    request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key, raw: bool = False
 ) -> HTMLResponse:
     """One unit; ``raw``: histories of its parameters with what the whole block did left in."""
     report = unit_report(store, serial, now)
@@ -174,13 +165,7 @@ def show_session(
         model=model_as_of(Models(store).of_session(id), report.session.revision),
         computed=Calibrations(store).revisions(id),
         retired=retired_in_words(Register(store).get(report.session.unit)),
-        said=remarks(
-            report.session.unit,
-            id,
-            said.notes,
-            said.files,
-            in_force().attached,
-        ),
+        said=remarks(report.session.unit, id, said.notes, said.files, in_force().attached),
         temperatures=covered_at(store, report.session),
     )
     return render(request, "session.html", page)

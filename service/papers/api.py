@@ -50,11 +50,7 @@ CertificateNumber = Annotated[
 ]
 
 
-@router.get(
-    "/{id}/certificate",
-    responses={**FILES, **errors(404, 409, 422, 507)},
-    response_class=Response,
-)
+@router.get("/{id}/certificate", responses={**FILES, **errors(404, 409, 422, 507)}, response_class=Response)
 def read_certificate(
     id: SessionId,
     desk: DeskOf,
@@ -189,9 +185,7 @@ def read_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: D
 
 
 @labels_router.get(
-    "/{serial:path}/status.pdf",
-    responses={200: {"content": {PDF: BYTES}}, **errors(404, 422)},
-    response_class=Response,
+    "/{serial:path}/status.pdf", responses={200: {"content": {PDF: BYTES}}, **errors(404, 422)}, response_class=Response
 )
 def read_status(serial: Serial, store: Reading, now: Now, language: LanguageOf) -> Response:
     """One page to hand over with the unit: may it be used, next calibration, reservations, what is closest to its
@@ -200,9 +194,7 @@ def read_status(serial: Serial, store: Reading, now: Now, language: LanguageOf) 
 
 
 @labels_router.get(
-    "/{serial:path}/label.svg",
-    responses={200: {"content": {SVG: BYTES}}, **errors(404, 422)},
-    response_class=Response,
+    "/{serial:path}/label.svg", responses={200: {"content": {SVG: BYTES}}, **errors(404, 422)}, response_class=Response
 )
 def draw_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
     """The same label as a drawing."""

@@ -44,9 +44,7 @@ router = APIRouter(prefix="/views", tags=["views"])
 
 @router.get("", responses=errors(422))
 def list_views(
-    store: Reading,
-    person: PersonOf,
-    page: Annotated[ListPage | None, Query(description="Only of this list.")] = None,
+    store: Reading, person: PersonOf, page: Annotated[ListPage | None, Query(description="Only of this list.")] = None
 ) -> ViewList:
     """Views that everybody has, and your own."""
     return ViewList(views=SavedViews(store).of(person.login, page))

@@ -56,11 +56,7 @@ def _panel(title: str, measure: Measure, points: list[Json], chosen: float) -> P
         if measure.label
         else "largest over smallest eigenvalue"
     )
-    return Panel(
-        title=title,
-        description=words,
-        datasets={DATA_FORM: points, "chosen": [{"x": round(chosen, 2)}]},
-    )
+    return Panel(title=title, description=words, datasets={DATA_FORM: points, "chosen": [{"x": round(chosen, 2)}]})
 
 
 def _points(series: str, at: Array, values: Array) -> list[Json]:

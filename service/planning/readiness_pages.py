@@ -166,10 +166,7 @@ def missing_page(positions: int | None, runs: str, found: Missing | None = None)
 def _known(expected: tuple[ExpectedSigma, ...]) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
     size = len(PARAMETERS)
     return tuple(
-        (
-            expected[i].sensor,
-            tuple((_spread(e, e.so_far), _spread(e, e.complete)) for e in expected[i : i + size]),
-        )
+        (expected[i].sensor, tuple((_spread(e, e.so_far), _spread(e, e.complete)) for e in expected[i : i + size]))
         for i in range(0, len(expected), size)
     )
 

@@ -330,8 +330,7 @@ def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit:
             "row": row,
         }
         for row, (x, y, s, turned) in enumerate(
-            zip(across.values, residuals.value[:, column], noise.stated[:, column], flipped, strict=True),
-            1,
+            zip(across.values, residuals.value[:, column], noise.stated[:, column], flipped, strict=True), 1
         )
         if np.isfinite(y)
     ]

@@ -91,7 +91,6 @@ def _spec() -> Json:
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     shade = base.mark_area(color="var(--accent)", opacity=0.25).encode(y=alt.Y("low:Q", scale=scale), y2="high:Q")
     line = base.mark_line(color="var(--accent)", strokeWidth=2).encode(
-        y=y_axis(scale),
-        tooltip=hints({"x:Q": "°C", "y:Q": UNIT, "band:Q": BAND}),
+        y=y_axis(scale), tooltip=hints({"x:Q": "°C", "y:Q": UNIT, "band:Q": BAND})
     )
     return specification([shade, zero_line(), line], HEIGHT)

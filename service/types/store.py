@@ -204,8 +204,7 @@ def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
     return select(UnitTypeRow, ToleranceRow).join(
-        ToleranceRow,
-        (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
+        ToleranceRow, (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
     )
 
 

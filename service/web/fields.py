@@ -73,8 +73,7 @@ SessionId = Annotated[
     ),
 ]
 Serial = Annotated[
-    str,
-    Path(pattern=TEXT, max_length=200, description="The unit's serial number.", examples=["BA-017"]),
+    str, Path(pattern=TEXT, max_length=200, description="The unit's serial number.", examples=["BA-017"])
 ]
 TypeName = Annotated[
     str, Path(pattern=TEXT, max_length=200, description="The unit type's name.", examples=["hex-cone"])

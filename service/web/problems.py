@@ -74,12 +74,7 @@ def problem(
     id: str | None = None,
 ) -> ProblemAnswer:
     """The answer to a request that was not carried out; ``id`` where the context does not have it."""
-    content: Json = {
-        "type": "about:blank",
-        "title": HTTPStatus(status).phrase,
-        "status": status,
-        "detail": detail,
-    }
+    content: Json = {"type": "about:blank", "title": HTTPStatus(status).phrase, "status": status, "detail": detail}
     known_id = id or request_id()
     if known_id is not None:
         content["request_id"] = known_id

@@ -64,8 +64,7 @@ def unwrapped(content: bytes, filename: str) -> tuple[Json, bytes]:
             parts = archive.infolist()
             if len(parts) != PARTS or any(part.compress_type != ZIP_STORED for part in parts):
                 raise refusal(
-                    filename,
-                    say("must contain two uncompressed parts: {mapping} and the table", mapping=MAPPING),
+                    filename, say("must contain two uncompressed parts: {mapping} and the table", mapping=MAPPING)
                 )
             text, table = (archive.read(part) for part in parts)
     except UNREADABLE as error:

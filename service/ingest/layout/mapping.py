@@ -135,8 +135,7 @@ def _wrong_columns(columns: Any) -> list[Problem]:
         if isinstance(meaning, str) and meaning in seen:
             problems.append(
                 Problem(
-                    f"{place}.as",
-                    say("another column is also read as {meaning}; remove one", meaning=shown(meaning)),
+                    f"{place}.as", say("another column is also read as {meaning}; remove one", meaning=shown(meaning))
                 )
             )
         seen.add(meaning if isinstance(meaning, str) and meaning else None)

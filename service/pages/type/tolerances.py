@@ -205,8 +205,7 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
     if found.recordings:
         units = counted(found.recordings, "unit")
         yield say(
-            "{units} not counted: the latest session is a recording in service without a calibration.",
-            units=units,
+            "{units} not counted: the latest session is a recording in service without a calibration.", units=units
         )
     if found.beyond:
         yield say("Only the worst units were checked; not checked: {beyond}.", beyond=counted(found.beyond, "unit"))

@@ -102,9 +102,7 @@ def list_units(
 
 
 @router.get(
-    "/{serial:path}/history",
-    responses={200: {"content": TABLES}, **errors(404, 422)},
-    response_model=HistoryPage,
+    "/{serial:path}/history", responses={200: {"content": TABLES}, **errors(404, 422)}, response_model=HistoryPage
 )
 def read_history(request: Request, serial: Serial, store: Reading, asked: Annotated[HistoryAsked, Query()]) -> Response:
     """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point.
