@@ -85,4 +85,3 @@ def _error(response: httpx.Response) -> ServiceError:
 _KINDS: dict[int, type[ServiceError]] = {
     kind.status: kind for kind in ServiceError.__subclasses__() if kind.status != ServiceError.status
 }
-"""Errors by their status."""

@@ -39,7 +39,6 @@ SessionId = Annotated[str, typer.Argument(metavar="SESSION", help="The session's
 FlagId = Annotated[int, typer.Argument(metavar="FLAG", help="Number of the flag.")]
 At = Annotated[datetime | None, typer.Option(help="When, UTC.", show_default="now")]
 DAYS = ["%Y-%m-%d"]
-"""Format of a day."""
 
 
 def is_session(client: Client, name: str) -> bool:

@@ -40,7 +40,6 @@ class ListColumns:
     entries: str
     """Field of the answer with the list."""
     empty: str
-    """Printed for an empty list."""
     cells: Mapping[str, Callable[[Answer], str]]
     """CellKind under each heading, as Rich markup."""
     is_paged: bool = False

@@ -95,7 +95,6 @@ class FlagQuery(ListQuery):
 IS_OF_UNIT = FlagRow.scope == Scope.UNIT
 """About the unit itself, not about its type or a stand."""
 IS_OF_RETIRED = exists().where(UnitRow.id == FlagRow.unit_id, UnitRow.retired_at.is_not(None))
-"""On a unit that is retired."""
 IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
 """A number that orders open flags before those that are resolved."""
 

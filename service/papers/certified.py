@@ -94,7 +94,6 @@ class StatedSession:
     customer: Customer
     traceability: Traceability
     software: str
-    """Version."""
     temperatures: CoveredTemperatures | None
     """That the unit's calibrations up to the session cover; None where nothing says them."""
 

@@ -140,7 +140,6 @@ class SignInAttempt:
 
     login: str
     address: str
-    """Address of the client."""
     browser: str = ""
     """Identifier of a browser that has signed in to this account before; empty for any other."""
 

@@ -14,7 +14,6 @@ class Loss:
 
     table: str
     rows: int
-    """Deleted rows."""
     values: tuple[tuple[str, int], ...] = ()
     """Deleted columns, each with the number of rows that have a value in it."""
 

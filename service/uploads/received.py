@@ -264,7 +264,6 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
 
 
 FileOf = Annotated[SentFile, Depends(_received)]
-"""The uploaded file."""
 
 REQUEST_BODY: Json = {
     "requestBody": {
@@ -302,4 +301,3 @@ async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:
 
 
 FormFiles = Annotated[tuple[SentFile, ...], Depends(_files)]
-"""The uploaded files."""

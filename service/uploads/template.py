@@ -83,7 +83,6 @@ EXAMPLE = {
     "unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "powered_on_at": "2026-03-01T08:20:00Z",
     "operator": "K. Ito", "notes": "after transport",
 }  # fmt: skip
-"""Values of the example."""
 AXIS_DIGITS = 10
 """Decimals of axes: 2e-5 arcsec."""
 

@@ -71,11 +71,9 @@ def limited(request: Request, limit: int, *, is_form: bool) -> Request:
 
 
 SettingsOf = Annotated[Settings, Depends(_settings)]
-"""The settings of the service."""
 UploadSlotOf = Annotated[None, Depends(_slot, scope="function")]
 """A slot for an upload; BusyError where none is free."""
 MetricsOf = Annotated[Metrics, Depends(_metrics)]
-"""The metrics of the service."""
 Now = Annotated[datetime, Depends(_now)]
 """The time of the request, UTC."""
 Reading = Annotated[Store, Depends(_reading, scope="function")]

@@ -27,7 +27,6 @@ UNEXPECTED = "Unexpected error. It was logged; nothing was stored in part."
 """Does not state the cause, which may be confidential; the log has it."""
 CUT_OFF = "The request ended before it was complete. Nothing was stored."
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
-"""Methods of routes."""
 BODY_PARTS = ("body", "query", "path", "header")
 """FastAPI's prefixes of a field's name."""
 

@@ -11,12 +11,10 @@ from estimator.message import joined, say
 from estimator.reading.problems import shown
 
 FORMAT = "imu-mapping/1"
-"""Value of ``format``."""
 PARTS = ("format", "table", "columns", "session")
 TABLE = {"encoding": str, "separator": str, "decimal": str, "sheet": str, "header_row": int, "first_row": int}
 """Settings of the parser, as far as stated."""
 COLUMN = {"heading": str, "as": str, "unit": str, "words": dict, "fill_down": bool}
-"""Fields of a column."""
 ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")
 """Encodings of tables that are recognised, and can be chosen by hand."""
 MOST_ROW = 1_048_576

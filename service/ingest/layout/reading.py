@@ -15,7 +15,6 @@ from service.ingest.layout.vocabulary import conversion, target_label
 
 FORMAT = "imu-session/1"
 WORDS = ("run", "position")
-"""Columns of words."""
 CLOCK = re.compile(r"^(?:(?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(?:[.,]\d+)?)$")
 """A time of day, or minutes and seconds."""
 DAY = 86_400.0

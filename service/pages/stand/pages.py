@@ -81,7 +81,6 @@ class StandReport:
     units: tuple[UnitSummary, ...]
     """Whose latest session was measured on it, the latest first."""
     uses: Mapping[str, Usable]
-    """What they may be used for."""
     sessions: tuple[StoredSession, ...]
     """Newest first."""
     models: tuple[ModelRevision, ...]

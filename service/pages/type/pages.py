@@ -81,7 +81,6 @@ class TypeReport:
     units: tuple[UnitSummary, ...]
     """Worst first."""
     uses: Mapping[str, Usable]
-    """What they may be used for."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
 
