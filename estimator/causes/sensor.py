@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from estimator.causes.contract import GridCause, SensorCause, Setting, Shape, column
+from estimator.causes.contract import Cause, GridCause, SensorCause, Setting, Shape, column
 from estimator.session import Array
 
 
@@ -193,3 +193,14 @@ class ReadingOutlier(GridCause):
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
         """(S, R, 1) 1 in one row, else 0, dimensionless."""
         return column((np.arange(setting.rows) == np.array(grid)).astype(float))
+
+
+class ExcessNoise(Cause):
+    """The amplitude is the extra standard deviation of one reading at the input."""
+
+    identifier = "excess-noise"
+    scope = "sensor"
+    equation = "variance above the stated one, no mean effect"
+    units = ("m/s²",)
+    sentence = "{sensors} is noisier than its stated uncertainty."
+    advice = "Look for vibration, a loose connector or a bad converter; average longer and state the true uncertainty."

@@ -35,10 +35,9 @@ from service.queue.tables import WorkRow
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
 from service.sessions.records import DiagnosisState, StoredSession
-from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
-from service.sessions.store import is_waiting, reference_query, session_record, session_rows
+from service.sessions.store import is_waiting, reference_query, reservations_from_list, session_record, session_rows
 from service.sessions.tables import DecisionRow, SessionRow
 from service.stands.tables import StandRow
 from service.storage.columns import RESOLVED

@@ -1,6 +1,6 @@
 """Sessions and their decisions."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, fields
 from datetime import datetime
 from typing import Any
@@ -22,19 +22,21 @@ from sqlalchemy.orm import InstrumentedAttribute, aliased
 
 from estimator.health.common_motion import CommonMotion
 from estimator.health.temperature_law import Steps, TemperatureCorrection
+from estimator.json_object import Json
 from estimator.session import CALIBRATIONS
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
 from service.kit.arriving_files import DEMONSTRATION
 from service.kit.copying import copied
 from service.sessions.decision import Decision, Verdict
+from service.sessions.doubt import Reservation, Reservations
 from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionOrder, SessionQuery, StoredSession
-from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow
 from service.stands.tables import StandRow
 from service.storage.audit import AuditRow
+from service.storage.json_text import STORED
 from service.storage.listing import Key, Listing
 from service.storage.queries import Queries, lists
 from service.types.tables import UnitTypeRow
@@ -343,3 +345,13 @@ SESSIONS: Listing[SessionQuery] = Listing(
         "reserved": lambda _: DiagnosisRow.reservations.is_not(None),
     },
 )
+
+
+def reservations_to_list(reservations: Sequence[Reservation]) -> list[Json] | None:
+    """Every reservation, or None where there are none."""
+    return STORED.written(list(reservations)) or None
+
+
+def reservations_from_list(diagnosed: str | None, entries: list[Any] | None) -> Reservations:
+    """What `reservations_to_list` wrote; None where no diagnosis is stored yet."""
+    return None if diagnosed is None else tuple(STORED.read(Reservation, entry) for entry in entries or ())

@@ -19,7 +19,7 @@ from service.outlook.store import Outlooks
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records.derive_again import Deriving
-from service.records.flagging.lasting import flag_overdue
+from service.records.flagging.overdue_units import flag_overdue
 from service.records.flagging.stands import flag_shifted_stands
 from service.records.follow import date, date_one, derive_waiting_of
 from service.records.refresh_group import current

@@ -1,6 +1,6 @@
 """What every parameter file is written from, and what all of them say."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -96,7 +96,7 @@ def check(given: ExportInput) -> None:
         raise ConflictError(REFUSED, unit=given.unit, why=given.use.why, force=FORCE)
 
 
-def commented(lines: Iterator[str]) -> list[str]:
+def commented(lines: Iterable[str]) -> list[str]:
     """As comments of all four systems."""
     return [f"# {' '.join(line.split())}" for line in lines]
 

@@ -2,8 +2,7 @@
 the type or the stand. It keeps the unit whose session showed it last.
 
 An effect that an engineer accepted into the model is known and has none, nor has one that a worse flag covers. What a
-person resolved stays resolved; what the sessions no longer show is closed. That a unit
-is overdue is flagged too, and resolves itself once nothing is due any more.
+person resolved stays resolved; what the sessions no longer show is closed.
 """
 
 from collections.abc import Iterable
@@ -14,20 +13,15 @@ from estimator.groups import GroupFinding
 from estimator.message import say
 from service.flags.records import Concern, Flag, FlagState, Matter, NoticeKind
 from service.flags.store import FlagQuery, Flags
-from service.fleet.store import Fleet
 from service.groups.records import Group, Level, Member
 from service.groups.words import holds, lasting_place, lasting_summary
-from service.kit.guard import Alone, plainly
 from service.models.records import SCOPES, ModelRevision, Scope
 from service.models.rules import in_force
 from service.models.store import Models
 from service.outlook.records import UnitOutlook
-from service.outlook.store import Outlooks
 from service.outlook.words import NOTHING_DUE, calibrated, was_due
 from service.records.flagging.acts import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
-from service.records.flagging.drift import flag_drift
 from service.sessions.records import StoredSession
-from service.storage import Storage
 from service.storage.queries import Store
 from service.units.store import Units
 
@@ -39,7 +33,7 @@ def no_longer_overdue(
     due now.
 
     ``latest``: the unit's latest calibration, the reason where it came after the flag was raised.
-    It is raised as time passes (`flag_overdue`) and not here: records that are entered late, one after another, would
+    It is raised as time passes (`overdue_units`) and not here: records that are entered late, one after another, would
     raise and resolve it with every one.
     """
     opened = tuple(flag for flag in Flags(store).open_of(occasion.unit) if flag.matter is Matter.OVERDUE)
@@ -110,6 +104,7 @@ def _settle(
     store: Store, concern: Concern, flag: Flag | None, revision: ModelRevision | None, latest: Member | None,
     at: datetime,
 ) -> None:  # fmt: skip
+    """One effect that is shown."""
     is_open = flag is not None and flag.state is not FlagState.RESOLVED
     if flag is not None and is_open:
         occasion = Occasion(Units(store).hold(flag.unit), None if latest is None else latest.session, at)
@@ -144,26 +139,3 @@ def _by_person(store: Store, flag: Flag) -> bool:
     """Whether a person settled the matter, the last time."""
     done = [change for change in Flags(store).get(flag.id).changes if change.kind is NoticeKind.RESOLVED]
     return bool(done) and done[-1].who != SERVICE
-
-
-def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
-    """Raises a flag on every unit that is overdue and has none; resolves those of units that no longer are."""
-    with storage.database.reading() as store:
-        late = Outlooks(store).overdue_units(now)
-        opened = [flag.unit for flag in Flags(store).open_about(Matter.OVERDUE)]
-    for serial in sorted({*late, *opened}):
-        with alone("due dates", serial):
-            _settle_overdue(storage, serial, now)
-
-
-def _settle_overdue(storage: Storage, serial: str, now: datetime) -> None:
-    with storage.database.writing() as store:
-        occasion = Occasion(Units(store).hold(serial), None, now)
-        outlook = Outlooks(store).of_unit(serial)
-        concern = overdue_by(outlook, now)
-        if no_longer_overdue(store, occasion, outlook):
-            return
-        if concern is not None:
-            raise_flag(store, occasion, concern)
-        unit = Fleet(store).unit(serial)
-        flag_drift(store, replace(occasion, session=None if unit is None else unit.last_session), outlook)

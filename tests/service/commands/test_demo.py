@@ -20,7 +20,7 @@ from service.fleet.store import Fleet
 from service.judging.use import Use, in_words
 from service.models.records import Scope
 from service.outlook.reading import outlook_of
-from service.records.flagging.lasting import flag_overdue
+from service.records.flagging.overdue_units import flag_overdue
 from service.records.flagging.stands import flag_shifted_stands
 from service.sessions.decision import Verdict
 from service.sessions.records import SessionQuery

@@ -5,7 +5,7 @@ from datetime import UTC, datetime, timedelta
 from service.flags.records import FlagState, Matter
 from service.flags.store import FlagQuery, Flags
 from service.outlook.reading import outlook_of
-from service.records.flagging.lasting import flag_overdue
+from service.records.flagging.overdue_units import flag_overdue
 from service.storage import Storage
 from tests.service.dated import upload_and_date
 from tests.service.made_sessions import session_bytes

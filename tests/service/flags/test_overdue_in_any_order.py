@@ -7,7 +7,7 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.records.flagging.lasting import flag_overdue
+from service.records.flagging.overdue_units import flag_overdue
 from service.settings import Settings
 from tests.databases import one_engine
 from tests.service.made_sessions import session_bytes

@@ -12,7 +12,7 @@ from service.outlook.records import Action, DueRule, ParameterTrend, UnitOutlook
 from service.outlook.words import next_calibration
 from service.pages.type.tolerances import Watch, set_tolerances
 from service.records.flagging.drift import SMALL
-from service.records.flagging.lasting import flag_overdue
+from service.records.flagging.overdue_units import flag_overdue
 from service.sessions.store import Sessions
 from service.storage import Storage
 from service.types.store import UnitTypes
