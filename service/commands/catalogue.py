@@ -99,10 +99,7 @@ CATALOGUE = {
     "stand-affected": CommandEntry(
         "api", "List every certificate whose numbers rest on a stand, for when it was found bad."
     ),
-    "stand-dcc": CommandEntry(
-        "stands.stand_dcc",
-        "Record a stand's certificate from its document.",
-    ),
+    "stand-dcc": CommandEntry("api", "Record a stand's certificate from its document."),
     "correction": CommandEntry(
         "documents.correction", "Write the correction that firmware applies to readings, as JSON."
     ),

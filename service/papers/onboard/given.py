@@ -7,12 +7,19 @@ from datetime import datetime
 import numpy as np
 
 from estimator.allan import BlockNoise
-from estimator.nominal_vector import NominalVector
+from estimator.nominal_vector import NominalVector, nominal_vector
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from service.errors import ConflictError
 from service.judging.records import Usable
+from service.judging.usable_reading import usable_unit
 from service.judging.use import Use, in_words
+from service.judging.words import verdict_in_words
+from service.papers.correction import corrected
+from service.sessions.calibrations_store import SessionNoises
 from service.sessions.states import RecordState
+from service.sessions.words.conditions import condition_of
+from service.settings import VERSION
+from service.storage import Storage
 
 STANDARD_GRAVITY = 9.80665
 """m/s², at which what is left of an accelerometer's error is stated."""
@@ -172,3 +179,30 @@ def left_of(given: ExportInput) -> Iterator[str]:
             f"Left in angular rate: scale factors, up to {1e6 * float(np.abs(scale - 1).max()):.3g} ppm, "
             f"and axes up to {1e3 * angle:.3g} mrad askew: gyros have an offset only."
         )
+
+
+def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
+    """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
+    vector that a driver makes holds it too."""
+    source = corrected(storage, id)
+    if source.found.left_out:
+        why = "; ".join(f"{name}: {reason}" for name, reason in source.found.left_out)
+        raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
+    with storage.database.reading() as store:
+        noise, use = SessionNoises(store).get(id), usable_unit(store, source.stored.unit, now)
+    curves = source.calibration.thermal
+    return ExportInput(
+        unit=source.stored.unit,
+        session=source.stored.id,
+        measured_at=source.stored.started_at,
+        state=source.stored.state,
+        verdict=verdict_in_words(
+            condition_of(source.stored.verdict, is_reference=source.stored.is_reference), source.stored.reservations
+        ),
+        use=use,
+        simulated=source.stored.simulated,
+        software=f"imu-health {VERSION}",
+        vectors={block.kind: nominal_vector(source.session, block) for block in source.found.blocks},
+        noise=noise,
+        temperature=None if curves is None else curves.reference_temperature,
+    )
