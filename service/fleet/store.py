@@ -45,7 +45,7 @@ from service.storage.queries import Queries
 from service.types.store import unit_type_of
 from service.types.tables import ToleranceRow, UnitTypeRow
 from service.units.records import Customer
-from service.units.register_store import register_entry
+from service.units.store import register_entry
 from service.units.tables import UnitRow
 
 Other = aliased(SessionRow)

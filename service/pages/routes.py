@@ -32,9 +32,8 @@ from service.pages.unit.pages import unit_page
 from service.pages.unit.parameters import parameter_heads, parameter_page
 from service.pages.unit.remarks import remarks
 from service.pages.unit.report import covered_now, unit_report
-from service.papers.certified import traceability_of
+from service.papers.certified import recent_history, session_report, traceability_of
 from service.papers.found_and_left import found_and_left
-from service.papers.session_report import recent_history, session_report
 from service.people.admission import PersonOf
 from service.people.dependencies import Key, StorageOf
 from service.people.view_store import SavedViews
@@ -49,9 +48,8 @@ from service.sessions.doubt import Remedies
 from service.sessions.history_store import History, HistoryQuery
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
-from service.units.register_store import Register
 from service.units.remarks_store import SaidOf
-from service.units.store import Units
+from service.units.store import Register, Units
 from service.uploads.correct import remedies_of
 from service.uploads.layout.form import carried
 from service.uploads.pages import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page

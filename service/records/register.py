@@ -21,8 +21,7 @@ from service.storage.queries import Store
 from service.types.rules import named_only
 from service.types.store import UnitTypes
 from service.units.records import CustodyStep, Move, NewEntry, Registered
-from service.units.register_store import Register
-from service.units.store import Units
+from service.units.store import Register, Units
 
 NO_TYPE = "is missing: say the type of a unit that is not known yet"
 

@@ -16,7 +16,7 @@ from service.records.register import Entered, Entering, enter, move_unit
 from service.storage.queries import Store
 from service.units.records import Custody, CustodyStep, Move, NewEntry, Registered
 from service.units.register_file import read_register
-from service.units.register_store import Register
+from service.units.store import Register
 from service.uploads.received import SentOf
 from service.web.dependencies import Now, Reading
 from service.web.fields import Body, LongText, Moment, Name, Reason, Serial, Text

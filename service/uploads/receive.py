@@ -47,8 +47,7 @@ from service.storage.files import content_hash
 from service.storage.queries import Store
 from service.types.rules import type_of
 from service.types.store import UnitTypes
-from service.units.register_store import Register
-from service.units.store import Units
+from service.units.store import Register, Units
 from service.uploads.store import Layouts, Log
 
 LONGEST_MESSAGE = 1000

@@ -17,7 +17,7 @@ from service.outlook.store import Outlooks
 from service.pages.stand.pages import every_stand, stand_report
 from service.pages.type.pages import every_type, type_report
 from service.pages.unit.report import unit_report
-from service.papers.session_report import session_report
+from service.papers.certified import session_report
 from service.sessions.history_store import History, HistoryQuery
 from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
