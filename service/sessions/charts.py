@@ -96,12 +96,12 @@ def hints(titles: Mapping[str, str]) -> "list[alt.Tooltip]":
     return [alt.Tooltip(field, title=title) for field, title in titles.items()]
 
 
-def x_scale(**options: bool | str) -> "alt.Scale":
+def x_scale(**options: Any) -> "alt.Scale":
     """Over the range that x is given."""
     return alt.Scale(domain=[LEFT, RIGHT], **options)
 
 
-def y_scale(**options: bool) -> "alt.Scale":
+def y_scale(**options: Any) -> "alt.Scale":
     """Over the range that y is given."""
     return alt.Scale(domain=[LOW, HIGH], **options)
 
