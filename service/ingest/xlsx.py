@@ -50,7 +50,7 @@ def check_workbook(content: bytes, filename: str) -> None:
     try:
         _check_members(content, filename, lengths, shared, extents)
     except TooMuchError as error:
-        raise refusal(filename, say("{error}; average or split it", error=error)) from error
+        raise refusal(filename, "{error}; average or split it", error=error) from error
     except FormatError:
         raise  # it is another kind of archive
     except DAMAGED as error:

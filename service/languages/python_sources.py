@@ -29,6 +29,8 @@ TEMPLATES = {"say": 1, "say_count": 2, "translated": 1}
 """Functions of `estimator.message` that take templates, with the number of templates."""
 ERRORS = re.compile(r"[A-Z]\w+Error$")
 """Errors of the service take the parts of their sentence."""
+OF_A_FIELD = ("add", "add_to_schedule", "fail", "refusal", "_refused")
+"""Functions that take a place, then a template, and its parts."""
 HELPERS = {
     "counted": ("{n} @", "{n} @s"),
     "few": ("{n} @ is too few", "{n} @s are too few"),
@@ -109,7 +111,10 @@ def _name(node: ast.expr) -> str:
 def _templates(call: ast.Call) -> list[str]:
     name = _name(call.func)
     count = int(bool(call.keywords)) if ERRORS.match(name) else TEMPLATES.get(name, 0)
-    arguments = call.args[-1:] if name in HELPERS else call.args[:count]
+    if name in HELPERS:
+        arguments = call.args[-1:]
+    else:
+        arguments = call.args[1:2] if name in OF_A_FIELD and call.keywords else call.args[:count]
     return [a.value for a in arguments if isinstance(a, ast.Constant) and isinstance(a.value, str)]
 
 

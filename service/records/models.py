@@ -97,11 +97,9 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
     if known is None or not known.can_be_modelled:
         raise _refused(
             "cause",
-            say(
-                "{wanted} concerns this record or a change since earlier sessions and cannot be part of a model; "
-                "correct the record and upload it again, or service the unit",
-                wanted=repr(wanted),
-            ),
+            "{wanted} concerns this record or a change since earlier sessions and cannot be part of a model; "
+            "correct the record and upload it again, or service the unit",
+            wanted=repr(wanted),
         )
     return (*named, *equal)[0]
 
@@ -127,7 +125,8 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
         found = joined(" and ", sensors)
         raise _refused(
             "scope",
-            say("is 'stand', but the cause acts on {sensors}; accept it for the unit or the unit type", sensors=found),
+            "is 'stand', but the cause acts on {sensors}; accept it for the unit or the unit type",
+            sensors=found,
         )
     if session.stand is None:
         raise _refused("scope", "is 'stand', but the session names no stand; accept it for the unit or the unit type")
@@ -137,13 +136,12 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
 def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
     shown = ", ".join(f.cause for f in findings) or "none"
     return _refused(
-        "cause",
-        say("{cause} is not among the causes that this session shows ({known})", cause=repr(wanted), known=shown),
+        "cause", "{cause} is not among the causes that this session shows ({known})", cause=repr(wanted), known=shown
     )
 
 
-def _refused(field: str, message: str) -> RefusedError:
-    return RefusedError("The cause cannot be accepted.", (Problem(field, message),))
+def _refused(field: str, message: str, /, **parts: object) -> RefusedError:
+    return RefusedError("The cause cannot be accepted.", (Problem(field, say(message, **parts)),))
 
 
 MOST = 700.0
@@ -260,7 +258,7 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
     found = [f for f in shown.findings if f.cause == new.cause and new.sensors in ((), f.sensors)]
     if len(found) == 1 and not found[0].subject:
         raise _refused(
-            "cause", say("{cause} belongs to a stand or a type, and the sessions name none", cause=repr(new.cause))
+            "cause", "{cause} belongs to a stand or a type, and the sessions name none", cause=repr(new.cause)
         )
     if len(found) == 1:
         return found[0]
@@ -268,16 +266,16 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
         places = joined(" or ", (", ".join(f.sensors) or "none" for f in found))
         raise _refused(
             "sensors",
-            say("must state which one: these sessions show {cause} on {places}", cause=repr(new.cause), places=places),
+            "must state which one: these sessions show {cause} on {places}",
+            cause=repr(new.cause),
+            places=places,
         )
     names = joined(", ", (cause_on(f.cause, f.sensors) for f in shown.findings)) or "none"
     raise _refused(
         "cause",
-        say(
-            "{cause} is not among the causes that these sessions show together ({names})",
-            cause=repr(new.cause),
-            names=names,
-        ),
+        "{cause} is not among the causes that these sessions show together ({names})",
+        cause=repr(new.cause),
+        names=names,
     )
 
 

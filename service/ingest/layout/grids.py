@@ -138,8 +138,7 @@ def _cut(text: str, separator: str, filename: str) -> list[list[Cell]]:
         rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator[:1]))
     except (csv.Error, ValueError, TypeError) as error:
         raise refusal(
-            filename,
-            say("is not a table that can be cut at {separator}: {error}", separator=repr(separator), error=error),
+            filename, "is not a table that can be cut at {separator}: {error}", separator=repr(separator), error=error
         ) from error
     while rows and not any(cell.strip() for cell in rows[-1]):
         rows.pop()
@@ -158,8 +157,10 @@ def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
     if not frames:
         raise refusal(
             filename,
-            say("has no sheet {chosen}; choose one of {names}", chosen=repr(chosen), names=", ".join(names)),
+            "has no sheet {chosen}; choose one of {names}",
             "table.sheet",
+            chosen=repr(chosen),
+            names=", ".join(names),
         )
     name = max(frames, key=lambda name: (frames[name][2], _filled(frames[name][0])))
     texts, numbers, _ = frames[name]
