@@ -42,6 +42,7 @@ def test_zeros_that_step_together_are_one_finding_with_one_moment(
         assert abs(value - true[sensor]) < 4 * sigma
 
 
+@pytest.mark.slow
 def test_beside_jumps_of_eighty_standard_errors_no_other_sensor_seems_to_jump() -> None:
     for block in BLOCKS[:3]:
         hidden = draw_steps(block, np.full(3, 80.0), np.random.default_rng((23, 3)))
@@ -57,6 +58,7 @@ def test_zeros_that_step_apart_are_no_event() -> None:
     assert len({shape["row"] for f in found for shape in f.nonlinear_each}) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "block", "strength", "seed"),
     [

@@ -6,6 +6,7 @@ from benchmarks.study.turned_pairs import PROGRAMMES, Programme, Wish
 from benchmarks.study.turns import Turned, examine, examine_flipped, page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("programme", "degrees"),
     [(p, 5.0) for p in PROGRAMMES] + [(p, 0.5) for p in PROGRAMMES[::3]],
@@ -17,6 +18,7 @@ def test_a_turn_of_the_block_is_no_change_of_its_sensors(programme: Programme, d
     assert found.remount == programme.shows_a_turn
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("programme", PROGRAMMES[::2], ids=lambda p: p.name)
 def test_mountings_of_a_history_that_differ_are_no_change_of_the_sensors(programme: Programme) -> None:
     found = examine(Wish(programme, 5.0, earlier=3), (12,))

@@ -39,6 +39,7 @@ def told(cause: str, *, ended: bool = False) -> Diagnosis:
     return diagnose(sessions[-1], sessions[:-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", WEAK)
 def test_the_twelfth_names_what_twelve_show_together_and_none_alone(cause: str) -> None:
     sessions, effect = weak(cause)

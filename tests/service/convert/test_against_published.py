@@ -25,6 +25,8 @@ def recordings_let_go():
 
 FILES = {"kth-mimu": 2}
 """How many are enough, where all take long."""
+ARRAY = pytest.param("kth-mimu", 2, marks=pytest.mark.slow)
+"""Its packets take seven seconds and 200 MB to read."""
 
 
 def some(name):
@@ -32,7 +34,9 @@ def some(name):
     return recordings(name, FILES.get(name))
 
 
-@pytest.mark.parametrize("name", [converter.name for converter in FORMATS])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in FILES)) for name in (c.name for c in FORMATS)]
+)
 def test_the_recordings_convert_and_calibrate(name):
     found = [calibrate(recording.session).fit for recording in some(name)]
     assert found
@@ -51,7 +55,7 @@ def test_published_parameters_leave_more_than_ours_on_the_same_positions(name, w
     assert np.all(rms(triads(recording), recording.session, recording.g) < known)
 
 
-@pytest.mark.parametrize(("name", "count"), [("imu-tk", 1), ("mpu9150-five", 6), ("ctu-mat", 1), ("kth-mimu", 2)])
+@pytest.mark.parametrize(("name", "count"), [("imu-tk", 1), ("mpu9150-five", 6), ("ctu-mat", 1), ARRAY])
 def test_held_out_positions_are_met_as_well_as_by_the_usual_fit(name, count):
     found = some(name)
     assert len(found) == count
@@ -85,6 +89,7 @@ def test_six_labelled_positions_give_the_published_result_within_our_uncertainty
     assert result.fit.p_value > 0.05
 
 
+@pytest.mark.slow
 def test_twenty_four_accelerometers_of_one_board_repeat_from_session_to_session():
     first, second = (triads(r) for r in some("kth-mimu")[:2])
     change = np.array([b.scale / a.scale - 1 for a, b in zip(first, second, strict=True)])

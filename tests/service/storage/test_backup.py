@@ -125,6 +125,7 @@ def test_a_backup_of_an_earlier_schema_is_restored_as_it_was(databases: Database
     assert rows(new) == {name: [] for name in rows(new)}
 
 
+@pytest.mark.slow
 def test_what_is_uploaded_meanwhile_is_wholly_in_it_or_not_at_all(full: Settings, tmp_path: Path) -> None:
     meanwhile = [session_bytes(seed=seed, month=seed - 46) for seed in (50, 51)]
     with http_client(create_app(full)) as client, ThreadPoolExecutor(1) as uploading:
@@ -173,6 +174,7 @@ def test_a_backup_that_was_cut_off_or_changed_is_refused(full: Settings, tmp_pat
         verified(backup)
 
 
+@pytest.mark.slow
 @one_engine
 def test_no_byte_of_its_manifest_and_index_changes_without_an_answer(full: Settings, tmp_path: Path) -> None:
     backup = backup_of(full, tmp_path)
@@ -183,6 +185,7 @@ def test_no_byte_of_its_manifest_and_index_changes_without_an_answer(full: Setti
             verified(backup)
 
 
+@pytest.mark.slow
 @one_engine
 @pytest.mark.parametrize("place", [6, 8, 10], ids=["version", "flags", "packing"])
 @pytest.mark.parametrize("bit", [1, 64])
@@ -284,6 +287,7 @@ CALLS = (2, 1000, 1950)
 """At the beginning, on the way, near the end: restoring so little takes 1971 calls, writing it 2390."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", CALLS)
 def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(
     full: Settings, killed_at: Killed, tmp_path: Path, call: int
@@ -296,6 +300,7 @@ def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(
     assert not list(tmp_path.glob(".part-*"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", CALLS)
 def test_a_restore_that_is_killed_leaves_no_schema_and_can_be_started_again(
     full: Settings, databases: Databases, killed_at: Killed, tmp_path: Path, call: int
@@ -350,6 +355,7 @@ def _backup(settings: Settings, folder: Path, name: str) -> Path:
     return folder / f"{name}.backup"
 
 
+@pytest.mark.slow
 @one_engine
 def test_a_large_file_that_waits_to_be_read_is_restored_with_its_job(
     settings: Settings, databases: Databases, tmp_path: Path

@@ -107,6 +107,7 @@ def listening(storage: Storage, what: str, to: Callable[..., Any]) -> Iterator[N
         event.remove(storage.database.engine, what, to)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("databases", "failing", "send"),
     [

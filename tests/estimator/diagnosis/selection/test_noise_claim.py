@@ -164,6 +164,7 @@ def test_where_repeats_agree_with_the_stated_noise_misfit_is_no_noise() -> None:
     assert doubted(begin(baseline_of(stated(session, 0.2)), (), ()))
 
 
+@pytest.mark.slow
 def test_a_course_of_the_applied_vector_is_no_wrong_claim() -> None:
     assert diagnose(measured(swaying(2e-4))).noise == ()
     assert diagnose(stated(measured(swaying(2e-4)), 0.3)).noise[0].factor == pytest.approx(1 / 0.3, rel=0.25)
