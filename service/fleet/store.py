@@ -22,6 +22,7 @@ from sqlalchemy.orm import InstrumentedAttribute, aliased, join, load_only
 
 from estimator.session import PROGRAMMES
 from service.diagnosis.tables import DiagnosisRow
+from service.errors import NotFoundError
 from service.flags.tables import FlagRow
 from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
 from service.fleet.records import UNCALIBRATED, FleetChoices, FleetQuery, Tally
@@ -155,6 +156,13 @@ class Fleet(Queries):
         """One unit."""
         row = self._session.execute(_summaries().where(UnitRow.serial == serial)).one_or_none()
         return None if row is None else _summary(row)
+
+    def get(self, serial: str) -> UnitSummary:
+        """One unit; NotFoundError where there is none of that serial number."""
+        unit = self.unit(serial)
+        if unit is None:
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
+        return unit
 
     def unit_known(self, serial: str, now: datetime) -> UnitKnown | None:
         """One unit with what its page begins with, in one query."""

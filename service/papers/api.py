@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
 from estimator.json_object import Json
-from service.errors import NotFoundError
 from service.fleet.store import Fleet
 from service.judging.usable_reading import usable_of
 from service.papers.changes import Signing
@@ -156,9 +155,7 @@ class Labels:
 
     def of(self, serial: str, *, due: bool) -> Label:
         """The label of a unit; its address is the public one, or the one that the request was sent to."""
-        unit = Fleet(self.store).unit(serial)
-        if unit is None:
-            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
+        unit = Fleet(self.store).get(serial)
         base = self.settings.public_url or str(self.request.base_url)
         use = usable_of(self.store, (unit,), self.now)[serial]
         return label_of(unit, use, base, with_due=due)

@@ -118,10 +118,7 @@ def set_lot(storage: Storage, serial: str, lot: str | None, now: datetime, *, wh
         if was != lot:
             ask_for_summaries(store, serial, now)
             Audit(store).write(now, who, "lot", serial, {"before": was, "lot": lot})
-        found = Fleet(store).unit(serial)
-    if found is None:
-        raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
-    return found
+        return Fleet(store).get(serial)
 
 
 def set_customer(storage: Storage, serial: str, new: Customer, now: datetime, *, who: str = "crew") -> Customer:
