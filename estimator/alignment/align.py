@@ -30,8 +30,7 @@ from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, InertialMod
 from estimator.alignment.strapdown import BlockMotion, Strapdown, strapdown
 from estimator.applied_vector import gravity
 from estimator.arrays import eigh
-from estimator.errors import Problem, ScheduleError
-from estimator.message import say
+from estimator.errors import ScheduleError, problem_at
 from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 from estimator.significance import p_value
@@ -96,13 +95,11 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     if session.programme != ROTATION_ALIGNMENT:
         raise ScheduleError(
             [
-                Problem(
+                problem_at(
                     "programme",
-                    say(
-                        "is {programme}; an alignment is {rotation_alignment}",
-                        programme=session.programme,
-                        rotation_alignment=ROTATION_ALIGNMENT,
-                    ),
+                    "is {programme}; an alignment is {rotation_alignment}",
+                    programme=session.programme,
+                    rotation_alignment=ROTATION_ALIGNMENT,
                 )
             ]
         )

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.errors import Problem
+from estimator.errors import problem_at
 from estimator.message import say
 from service.errors import BusyError, ConflictError, ForbiddenError, RefusedError
 from service.jobs.records import Job, JobKind, NewJob
@@ -63,7 +63,7 @@ def _pieces(store: Store, new: NewJob) -> int:
     if new.scope is not None and not units:
         raise RefusedError(
             "There is nothing to compute again.",
-            (Problem("subject", say("no unit is {subject}'s", subject=repr(new.subject))),),
+            (problem_at("subject", "no unit is {subject}'s", subject=repr(new.subject)),),
         )
     return units
 

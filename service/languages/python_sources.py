@@ -29,7 +29,7 @@ TEMPLATES = {"say": 1, "say_count": 2, "translated": 1}
 """Functions of `estimator.message` that take templates, with the number of templates."""
 ERRORS = re.compile(r"[A-Z]\w+Error$")
 """Errors of the service take the parts of their sentence."""
-OF_A_FIELD = ("add", "add_to_schedule", "fail", "refusal", "_refused")
+OF_A_FIELD = ("add", "add_to_schedule", "fail", "problem_at", "refusal", "_refused")
 """Functions that take a place, then a template, and its parts."""
 HELPERS = {
     "counted": ("{n} @", "{n} @s"),

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from hashlib import sha256
 
-from estimator.errors import Problem
-from estimator.message import say
+from estimator.errors import Problem, problem_at
 from service.errors import ConflictError, ForbiddenError, RefusedError, SignInError, TooOftenError
 from service.kit.person import Account, Person, Role, Token
 from service.people.secret import TOKEN_PREFIX, fault_of, hashed, is_password, new_secret, stored_hash
@@ -336,7 +335,7 @@ def make_token(
 ) -> tuple[Token, str]:
     """A token for an account with its secret, which is not stored; its role is at most that of its account."""
     if not timedelta(0) < lifetime <= LONGEST:
-        fault = Problem("days", say("must be from 1 to {days}", days=LONGEST.days))
+        fault = problem_at("days", "must be from 1 to {days}", days=LONGEST.days)
         raise RefusedError("The token cannot be made.", (fault,))
     secret = TOKEN_PREFIX + new_secret()
     with storage.database.writing() as store:

@@ -2,8 +2,8 @@
 
 from datetime import datetime
 
-from estimator.errors import Problem
-from estimator.message import joined, say
+from estimator.errors import problem_at
+from estimator.message import joined
 from estimator.session import IN_SERVICE
 from service.diagnosis.records import Diagnosed
 from service.errors import ConflictError, RefusedError
@@ -225,13 +225,12 @@ def require_possible(store: Store, serial: str, new: NewService, now: datetime) 
     """RefusedError for a service in the future or of an unknown sensor."""
     found = []
     if new.at > now + CLOCK_LEEWAY:
-        found.append(Problem("at", say("is in the future ({at}); record what has been done", at=f"{new.at:%Y-%m-%d}")))
+        found.append(problem_at("at", "is in the future ({at}); record what has been done", at=f"{new.at:%Y-%m-%d}"))
     sensors = UnitTypes(store).of_unit(serial).sensors
     if new.sensor and new.sensor not in sensors:
         found.append(
-            Problem(
-                "sensor",
-                say("is not a sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
+            problem_at(
+                "sensor", "is not a sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)
             )
         )
     if found:

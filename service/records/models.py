@@ -11,7 +11,7 @@ from math import exp, hypot
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
-from estimator.errors import Problem
+from estimator.errors import problem_at
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.results import EmpiricalTerm
@@ -141,7 +141,7 @@ def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
 
 
 def _refused(field: str, message: str, /, **parts: object) -> RefusedError:
-    return RefusedError("The cause cannot be accepted.", (Problem(field, say(message, **parts)),))
+    return RefusedError("The cause cannot be accepted.", (problem_at(field, message, **parts),))
 
 
 MOST = 700.0

@@ -12,7 +12,7 @@ from starlette.datastructures import FormData, Headers, UploadFile
 from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException, MultiPartParser
 
-from estimator.errors import Problem, SessionError
+from estimator.errors import Problem, SessionError, problem_at
 from estimator.json_object import Json
 from estimator.message import say
 from service.errors import ForbiddenError, RefusedError, TooLargeError
@@ -253,9 +253,8 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
     faults = [Problem(name, NEEDED) for name, text in (("by", by), ("why", why)) if not text]
     if len(why) > LONGEST_REASON:
         faults.append(
-            Problem(
-                "why",
-                say("is {length} characters long; at most {limit} are kept", length=len(why), limit=LONGEST_REASON),
+            problem_at(
+                "why", "is {length} characters long; at most {limit} are kept", length=len(why), limit=LONGEST_REASON
             )
         )
     if faults:
