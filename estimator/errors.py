@@ -27,6 +27,11 @@ class Problem:
         return say("{place}: {message}", place=place, message=self.message)
 
 
+def problem_at(field: str, message: str, row: int | None = None, /, **parts: object) -> Problem:
+    """One thing wrong, its message the template of a sentence with its ``parts``."""
+    return Problem(field, say(message, **parts), row)
+
+
 class SessionError(ValueError):
     """A session that cannot be used; ``problems`` holds every fault found, in file order."""
 

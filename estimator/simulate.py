@@ -204,11 +204,7 @@ def orientation_vectors(schedule: CalibrationSession, rng: np.random.Generator) 
 
 
 def orientation_schedule(
-    sensors: tuple[Sensor, ...],
-    site: Site,
-    directions: Array,
-    *,
-    unit_name: str = "simulated",
+    sensors: tuple[Sensor, ...], site: Site, directions: Array, *, unit_name: str = "simulated"
 ) -> CalibrationSession:
     """Still orientations to be measured: directions (R, 3) of the specific force, any length, block axes.
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.applied_vector import STANDARD_GRAVITY
-from estimator.errors import Problem, ScheduleError
+from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.message import joined, say
 from estimator.rest_noise import Indices, waves
 from estimator.rest_tilt import MeanErrors, errors_of_means
@@ -167,16 +167,14 @@ def require_still(intervals: Intervals, moves: NDArray[np.bool_]) -> Intervals:
     )
     raise ScheduleError(
         [
-            Problem(
+            problem_at(
                 "table",
-                say(
-                    "the block moves in {moves} of {intervals} positions (samples {rows}, …): it turns by more than "
-                    "{motion} rad where it should be at rest; label still samples only, or check sample_rate_hz",
-                    moves=np.count_nonzero(moves),
-                    intervals=len(intervals),
-                    rows=rows,
-                    motion=f"{MOTION:g}",
-                ),
+                "the block moves in {moves} of {intervals} positions (samples {rows}, …): it turns by more than "
+                "{motion} rad where it should be at rest; label still samples only, or check sample_rate_hz",
+                moves=np.count_nonzero(moves),
+                intervals=len(intervals),
+                rows=rows,
+                motion=f"{MOTION:g}",
             )
         ]
     )

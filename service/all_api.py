@@ -8,7 +8,6 @@ from fastapi.openapi.utils import get_openapi
 from estimator.json_object import Json
 from service.diagnosis import api as diagnoses
 from service.flags import api as flags
-from service.flags import webhooks_api as webhooks
 from service.groups import api as groups
 from service.kit.person import Role
 from service.models import api as models
@@ -22,16 +21,13 @@ from service.pages.stand import api as stands
 from service.pages.type import api as unit_types
 from service.pages.unit import api as units
 from service.pages.unit import remarks_api as remarks
-from service.pages.unit import usable_api as usable
 from service.papers import api as papers
 from service.papers.onboard import api as onboard
 from service.people import api as people
-from service.people import view_api as views
 from service.people.access import NEEDED
 from service.people.admission import ADMITTED, Gate
 from service.planning import api as plans
 from service.records import api as records
-from service.records import events_api as events
 from service.records import register_api as register
 from service.uploads import api as uploads
 from service.web.headers import API
@@ -84,10 +80,11 @@ PREFIX = API
 """The version of the contract is part of every address."""
 ROUTERS = (
     groups.router, remarks.attachments_router, sessions.router, records.router, papers.router, onboard.router,
-    papers.printing_router, diagnoses.router, events.router, register.router, usable.router, papers.labels_router,
-    units.router, unit_types.router, models.router, plans.router, stands.router, uploads.templates_router,
-    uploads.layouts_router, uploads.router, flags.router, views.router, remarks.router, webhooks.router, feeds.router,
-    due.router, review.router, fleet.router, work.router, people.router,
+    papers.printing_router, diagnoses.router, records.events_router, register.router, units.usable_router,
+    papers.labels_router, units.router, unit_types.router, models.router, plans.router, stands.router,
+    uploads.templates_router, uploads.layouts_router, uploads.router, flags.router, people.views_router,
+    remarks.router, flags.webhooks_router, feeds.router, due.router, review.router, fleet.router, work.router,
+    people.router,
 )  # fmt: skip
 """Of every resource, in the order in which addresses are tried."""
 

@@ -25,7 +25,6 @@ from service.people.oidc import pages as oidc_pages
 from service.planning import pages as plan_pages
 from service.planning import readiness_pages as before_pages
 from service.records import pages as records
-from service.records import register_pages as register
 from service.uploads import arrivals_pages
 from service.uploads.layout import pages as layouts
 from service.web import assets
@@ -36,7 +35,7 @@ from service.work import pages as work
 
 PARTS = (
     routes, due, review, account_pages, admin_pages, papers, diagnoses, flags, saved, layouts, models, records,
-    register, remarks, oidc_pages, before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
+    remarks, oidc_pages, before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
     assets,
 )  # fmt: skip
 """Every file of addresses."""
@@ -54,7 +53,6 @@ def mount(app: FastAPI) -> None:
 
 @cache
 def _every() -> APIRouter:
-    """The addresses of all pages, built once for all applications."""
     every = APIRouter(dependencies=ADMITTED)
     for part in PARTS:
         every.include_router(part.router)

@@ -61,7 +61,7 @@ class Commands(TyperGroup):
 def _command(name: str) -> Any:
     module, _, member = CATALOGUE[name].home.partition(".")
     loaded = import_module(f"service.commands.{module}")
-    found = getattr(loaded, member) if member else loaded.command_of(name)
+    found = getattr(loaded, member) if member else import_module("service.commands.calls").app_of(name, loaded.COMMANDS)
     if not isinstance(found, typer.Typer):
         single = typer.Typer(add_completion=False)
         single.command(name)(found)
@@ -78,11 +78,7 @@ def _taught(command: Any, words: str) -> Any:
 
 
 app = typer.Typer(
-    name="imu-health",
-    cls=Commands,
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
+    name="imu-health", cls=Commands, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None
 )
 
 

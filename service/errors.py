@@ -18,6 +18,7 @@ ServiceError (500)
 from http import HTTPStatus
 
 from estimator.errors import Problem
+from estimator.message import say
 
 
 class ServiceError(Exception):
@@ -25,9 +26,10 @@ class ServiceError(Exception):
 
     status = HTTPStatus.INTERNAL_SERVER_ERROR
 
-    def __init__(self, detail: str) -> None:
-        self.detail = detail
-        super().__init__(detail)
+    def __init__(self, detail: str, /, **parts: object) -> None:
+        """``detail``: the sentence, or the template of one with its ``parts``."""
+        self.detail = say(detail, **parts) if parts else detail
+        super().__init__(self.detail)
 
     @property
     def title(self) -> str:

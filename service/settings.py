@@ -13,7 +13,6 @@ from platformdirs import user_data_dir
 from pydantic import Field, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
-from estimator.message import say
 from service.errors import ServiceError
 
 VERSION = version("imu-health")
@@ -193,7 +192,7 @@ class Settings(BaseSettings):
     def _none_retired(cls, given: Any) -> Any:
         if gone := retired(os.environ):
             old, new = ", ".join(gone), ", ".join(sorted(set(gone.values())))
-            raise ServiceError(say("No longer read: {old}. Unset it, and use {new} instead.", old=old, new=new))
+            raise ServiceError("No longer read: {old}. Unset it, and use {new} instead.", old=old, new=new)
         return given
 
     @field_validator("oidc_roles", mode="before")

@@ -51,4 +51,3 @@ SUBJECTS = (
 )  # fmt: skip
 """Where tables are defined."""
 METADATA = Base.metadata
-"""All of them."""

@@ -13,15 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from estimator.alignment.axes import Triad, of_kind, require_alive, triad
 from estimator.alignment.coarse import Coarse, coarse
-from estimator.alignment.filtering import (
-    PRIOR,
-    TABLE_SIGMA,
-    Filtered,
-    FilterSetting,
-    Measured,
-    relative,
-    run,
-)
+from estimator.alignment.filtering import PRIOR, TABLE_SIGMA, Filtered, FilterSetting, Measured, relative, run
 from estimator.alignment.levers import FARTHEST, without_lever_arms
 from estimator.alignment.noise import LEAST_DENSITY, FilterNoise, at_rest
 from estimator.alignment.positions import (
@@ -38,8 +30,7 @@ from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, InertialMod
 from estimator.alignment.strapdown import BlockMotion, Strapdown, strapdown
 from estimator.applied_vector import gravity
 from estimator.arrays import eigh
-from estimator.errors import Problem, ScheduleError
-from estimator.message import say
+from estimator.errors import ScheduleError, problem_at
 from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 from estimator.significance import p_value
@@ -104,13 +95,11 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     if session.programme != ROTATION_ALIGNMENT:
         raise ScheduleError(
             [
-                Problem(
+                problem_at(
                     "programme",
-                    say(
-                        "is {programme}; an alignment is {rotation_alignment}",
-                        programme=session.programme,
-                        rotation_alignment=ROTATION_ALIGNMENT,
-                    ),
+                    "is {programme}; an alignment is {rotation_alignment}",
+                    programme=session.programme,
+                    rotation_alignment=ROTATION_ALIGNMENT,
                 )
             ]
         )

@@ -12,7 +12,7 @@ import numpy as np
 from estimator.alignment.positions import Stop
 from estimator.alignment.strapdown import BlockMotion
 from estimator.arrays import unit
-from estimator.errors import Problem, ScheduleError
+from estimator.errors import ScheduleError, problem_at
 from estimator.least_squares import least_squares
 from estimator.message import say
 from estimator.session import Array
@@ -87,5 +87,5 @@ def _require_heading(north: Array, inverse: Array, density: Array, shortest: flo
         message = say("the gyros read {size} ± {spread} °/h of the Earth's horizontal rotation", **parts)
         advice = "rest longer at each angle, or use less noisy gyros"
         raise ScheduleError(
-            [Problem("table", say("{message}: too uncertain for a heading; {advice}", message=message, advice=advice))]
+            [problem_at("table", "{message}: too uncertain for a heading; {advice}", message=message, advice=advice)]
         )

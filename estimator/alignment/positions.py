@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from estimator.errors import Problem, ScheduleError
+from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.message import joined, say
 from estimator.session import Array, CalibrationSession
 from estimator.wording import counted
@@ -60,7 +60,7 @@ def interval(session: CalibrationSession) -> float:
     steps = np.diff(session.time)
     if len(steps) < 2:
         raise ScheduleError(
-            [Problem("time_s", say("has {time}; a time series is needed", time=counted(len(session.time), "row")))]
+            [problem_at("time_s", "has {time}; a time series is needed", time=counted(len(session.time), "row"))]
         )
     usual = float(np.median(steps))
     uneven = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
@@ -70,14 +70,12 @@ def interval(session: CalibrationSession) -> float:
         message = say("is {steps} s after the row before, where rows are {interval} s apart", **parts)
         raise ScheduleError(
             [
-                Problem(
+                problem_at(
                     "time_s",
-                    say(
-                        "{message}; give evenly spaced rows without gaps ({uneven} uneven)",
-                        message=message,
-                        uneven=len(uneven),
-                    ),
+                    "{message}; give evenly spaced rows without gaps ({uneven} uneven)",
                     row,
+                    message=message,
+                    uneven=len(uneven),
                 )
             ]
         )
@@ -114,7 +112,7 @@ def require_positions(stationary: list[Stop]) -> None:
             fewest_rows=FEWEST_ROWS,
         )
         raise ScheduleError(
-            [Problem("turn_angle_deg", say("the table rests {where}; {advice}", where=where, advice=advice))]
+            [problem_at("turn_angle_deg", "the table rests {where}; {advice}", where=where, advice=advice)]
         )
 
 
@@ -130,9 +128,10 @@ def require_rest(stationary: list[Stop], rates: Array, row: float) -> None:
             parts = {"rows": stop.rows, "fastest": f"{np.degrees(fastest):.3g}"}
             problem = say("the table is at rest in {rows}, but the gyros read {fastest} °/s", **parts)
             problems.append(
-                Problem(
+                problem_at(
                     "turn_angle_deg",
-                    say("{problem}: the block was moved, or the columns are from different records", problem=problem),
+                    "{problem}: the block was moved, or the columns are from different records",
+                    problem=problem,
                 )
             )
     if problems:
@@ -158,7 +157,7 @@ def require_turns(stationary: list[Stop], angle: Array, rate_z: Array, row: floa
                 "check the sign and unit of turn_angle_deg, the gyros' scale and range, and that Z is the turn axis"
             )
             problems.append(
-                Problem("turn_angle_deg", say("{message}; {advice}", message=message, advice=advice), after.first + 1)
+                problem_at("turn_angle_deg", "{message}; {advice}", after.first + 1, message=message, advice=advice)
             )
     if problems:
         raise ScheduleError(problems)
@@ -178,13 +177,11 @@ def require_level(force: Array, g: float) -> None:
         )
         raise ScheduleError(
             [
-                Problem(
+                problem_at(
                     "table",
-                    say(
-                        "{message}; alignment needs it within {steepest}°",
-                        message=message,
-                        steepest=f"{np.degrees(STEEPEST):g}",
-                    ),
+                    "{message}; alignment needs it within {steepest}°",
+                    message=message,
+                    steepest=f"{np.degrees(STEEPEST):g}",
                 )
             ]
         )

@@ -20,7 +20,7 @@ from estimator.alignment.axes import TINY, Triad, triad
 from estimator.alignment.positions import interval
 from estimator.alignment.results import RateTableResult
 from estimator.applied_vector import EARTH_RATE
-from estimator.errors import Problem, ScheduleError
+from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.least_squares import least_squares
 from estimator.message import say
 from estimator.results import Fit
@@ -72,13 +72,11 @@ def rate_table(session: CalibrationSession) -> RateTableResult:
     if session.programme != RATE_TABLE:
         raise ScheduleError(
             [
-                Problem(
+                problem_at(
                     "programme",
-                    say(
-                        "is {programme}; a rate table is {rate_table}",
-                        programme=session.programme,
-                        rate_table=RATE_TABLE,
-                    ),
+                    "is {programme}; a rate table is {rate_table}",
+                    programme=session.programme,
+                    rate_table=RATE_TABLE,
                 )
             ]
         )
@@ -110,7 +108,7 @@ def whole_turns(session: CalibrationSession, rates: Array, row: float) -> WholeT
                 speed=f"{np.degrees(speed):g}",
                 length=f"{(last - first) / length:.2f}",
             )
-            short.append(Problem("turn_rate_deg_s", say("{part}; turn through whole turns", part=part), first + 1))
+            short.append(problem_at("turn_rate_deg_s", "{part}; turn through whole turns", first + 1, part=part))
         complete += [(speed, first + k * length, first + (k + 1) * length) for k in range(count)]
     if not complete:
         raise ScheduleError(short or [Problem("turn_rate_deg_s", "the table never turns; give its rate in every row")])
@@ -154,7 +152,7 @@ def _require_following(turns: WholeTurns) -> None:
         parts = {"problem": problem, "rate": f"{np.degrees(turns.means[worst, 2]):+.4g}"}
         message = say("{problem}, the gyros at {rate} °/s about the block's Z axis", **parts)
         advice = "check the sign and unit of turn_rate_deg_s, the gyros' scale and range, and Z, the table's axis"
-        raise ScheduleError([Problem("turn_rate_deg_s", say("{message}; {advice}", message=message, advice=advice))])
+        raise ScheduleError([problem_at("turn_rate_deg_s", "{message}; {advice}", message=message, advice=advice)])
 
 
 def _result(session: CalibrationSession, turns: WholeTurns, gyros: Triad) -> RateTableResult:

@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING
 
 from estimator.calibration.cut_off import require_whole_range
 from estimator.calibration.stand import calibrate_stand
-from estimator.errors import Problem, ScheduleError
-from estimator.message import say
+from estimator.errors import ScheduleError, problem_at
 from estimator.on_demand import function_on_demand
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, TWO_AXIS_STAND, CalibrationSession
@@ -44,9 +43,8 @@ def averaged(session: CalibrationSession, programmes: tuple[str, ...] = CALIBRAT
         hint = "; compare it with a calibration: imu-health parity" if session.programme == IN_SERVICE else ""
         raise ScheduleError(
             [
-                Problem(
-                    "programme",
-                    say("{programme} does not calibrate a block{hint}", programme=session.programme, hint=hint),
+                problem_at(
+                    "programme", "{programme} does not calibrate a block{hint}", programme=session.programme, hint=hint
                 )
             ]
         )

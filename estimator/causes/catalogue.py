@@ -6,7 +6,7 @@ blocks have.
 
 from estimator.causes import environment, fixture, gyro, lag, record, sensor, shared, stand, turntable, vibration
 from estimator.causes.contract import Cause
-from estimator.causes.noise import ExcessNoise
+from estimator.causes.sensor import ExcessNoise
 
 CATALOGUE: tuple[Cause, ...] = (
     gyro.GSensitivity(),

@@ -280,6 +280,9 @@ class Signature(Cause):
 class RecordCorrection(Cause):
     """A record error that can be undone: the corrected session is tried instead of a signature."""
 
+    scope = "record"
+    units = ()
+    between = True
     of_rows: ClassVar[bool] = False
     """Whether rows are concerned, not sensors."""
 
@@ -291,6 +294,7 @@ class RecordCorrection(Cause):
 class SensorCause(Signature):
     """A cause that acts on one sensor: `term` gives its columns, placed on every sensor in turn."""
 
+    scope = "sensor"
     alike: ClassVar[bool] = False
     """Whether its term is the same on every sensor: a course of time, temperature or β alone."""
 

@@ -58,7 +58,6 @@ class SensorDrift(SensorCause):
     """Amplitudes: relative scale, bias, and the axis' turn along its two tangents; zero where nothing moved."""
 
     identifier = "sensor-drift"
-    scope = "sensor"
     equation = "K, bias or axis of this sensor alone changed since the history"
     units = ("1", "m/s²", "rad", "rad")
     needs = frozenset({"history"})
@@ -83,11 +82,8 @@ class SensorDrift(SensorCause):
 
 class RunsSwapped(RecordCorrection):
     identifier = "runs-swapped"
-    scope = "record"
     equation = "direct and flipped labels exchanged"
-    units = ()
     needs = frozenset({"stand", "both runs", "nominal or history"})
-    between = True
     sentence = "The direct and the flipped run are exchanged in the record."
     advice = "Exchange the run labels and upload the session again."
 
@@ -98,11 +94,8 @@ class RunsSwapped(RecordCorrection):
 
 class BetaReversed(RecordCorrection):
     identifier = "beta-reversed"
-    scope = "record"
     equation = "β counted the wrong way"
-    units = ()
     needs = frozenset({"stand", "nominal or history"})
-    between = True
     sentence = "The head's angle was counted in the wrong direction."
     advice = "Change the sign of β and upload the session again."
 
@@ -113,11 +106,8 @@ class BetaReversed(RecordCorrection):
 
 class SignReversed(RecordCorrection):
     identifier = "sign-reversed"
-    scope = "record"
     equation = "u → −u"
-    units = ()
     needs = frozenset({"nominal or history"})
-    between = True
     sentence = "The reading of {sensors} has the wrong sign."
     advice = "Check the polarity of this channel's wiring and upload the session again."
 
@@ -130,11 +120,8 @@ class SignReversed(RecordCorrection):
 
 class ChannelsSwapped(RecordCorrection):
     identifier = "channels-swapped"
-    scope = "record"
     equation = "two sensors' columns exchanged"
-    units = ()
     needs = frozenset({"nominal or history"})
-    between = True
     sentence = "The channels of {sensors} are exchanged."
     advice = "Check the wiring or the column headings of these two channels and upload the session again."
 
@@ -147,18 +134,15 @@ class ChannelsSwapped(RecordCorrection):
             yield (
                 (i, k),
                 replace(
-                    session,
-                    readings=session.readings[:, order],
-                    standard_errors=session.standard_errors[:, order],
+                    session, readings=session.readings[:, order], standard_errors=session.standard_errors[:, order]
                 ),
             )
 
 
 class PositionsSwapped(RecordCorrection):
     identifier = "positions-swapped"
-    scope = "record"
     equation = "two rows exchanged"
-    units = ()
+    between = False
     of_rows = True
     sentence = "The readings of two positions are exchanged in the record."
     advice = "Exchange the readings of these two rows and upload the session again."

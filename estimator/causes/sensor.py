@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from estimator.causes.contract import GridCause, SensorCause, Setting, Shape, column
+from estimator.causes.contract import Cause, GridCause, SensorCause, Setting, Shape, column
 from estimator.session import Array
 
 
@@ -16,7 +16,6 @@ def across(setting: Setting, i: int) -> tuple[Array, Array]:
 
 class CubicNonlinearity(SensorCause):
     identifier = "cubic-nonlinearity"
-    scope = "sensor"
     equation = "k·a³"
     units = ("(m/s²)⁻²",)
     sentence = "{sensors} has a cubic nonlinearity."
@@ -31,7 +30,6 @@ class CubicNonlinearity(SensorCause):
 
 class OddQuadratic(SensorCause):
     identifier = "odd-quadratic"
-    scope = "sensor"
     equation = "k·a·|a|"
     units = ("(m/s²)⁻¹",)
     sentence = "{sensors} has a sign-dependent quadratic nonlinearity (K_oq)."
@@ -45,7 +43,6 @@ class OddQuadratic(SensorCause):
 
 class ScaleAsymmetry(SensorCause):
     identifier = "scale-asymmetry"
-    scope = "sensor"
     equation = "k·|a|"
     units = ("1",)
     sentence = "{sensors} has a different scale factor for positive and negative input."
@@ -58,7 +55,6 @@ class ScaleAsymmetry(SensorCause):
 
 class BiasAsymmetry(SensorCause):
     identifier = "bias-asymmetry"
-    scope = "sensor"
     equation = "k·sign(a)"
     units = ("m/s²",)
     sentence = "{sensors} has a different bias for positive and negative input (K_0′, a dead zone)."
@@ -71,7 +67,6 @@ class BiasAsymmetry(SensorCause):
 
 class CrossCoupling(SensorCause):
     identifier = "cross-coupling"
-    scope = "sensor"
     equation = "a·(k1·(p·n) + k2·(o·n))"
     units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
     sentence = (
@@ -89,7 +84,6 @@ class CrossCoupling(SensorCause):
 
 class CrossAxisQuadratic(SensorCause):
     identifier = "cross-axis-quadratic"
-    scope = "sensor"
     equation = "k1·(p·n)² + k2·(p·n)(o·n)"
     units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
     sentence = "{sensors} responds to the square of the acceleration across its axis (K_pp, K_po)."
@@ -103,7 +97,6 @@ class CrossAxisQuadratic(SensorCause):
 
 class Hysteresis(SensorCause):
     identifier = "hysteresis"
-    scope = "sensor"
     equation = "k·sign(a_j − a_{j−1}), 0 at the first position of a run"
     units = ("m/s²",)
     sentence = "{sensors} reads differently for rising and falling input."
@@ -119,7 +112,6 @@ class Hysteresis(SensorCause):
 
 class BiasPerPosition(SensorCause):
     identifier = "bias-per-position"
-    scope = "sensor"
     equation = "k1·sin β + k2·cos β"
     units = ("m/s²", "m/s²")
     needs = frozenset({"stand", "both runs"})
@@ -137,7 +129,6 @@ class Saturation(GridCause):
     """The nonlinear parameters are the limit at the input, reported as the amplitude, and the side: 0 both, ±1 one."""
 
     identifier = "saturation"
-    scope = "sensor"
     equation = "reading clipped beyond a limit"
     units = ("m/s²",)
     nonlinear_units = ("m/s²", "side")
@@ -186,7 +177,6 @@ class Saturation(GridCause):
 
 class ReadingOutlier(GridCause):
     identifier = "reading-outlier"
-    scope = "sensor"
     equation = "k at one position"
     units = ("m/s²",)
     nonlinear_units = ("row",)
@@ -203,3 +193,14 @@ class ReadingOutlier(GridCause):
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
         """(S, R, 1) 1 in one row, else 0, dimensionless."""
         return column((np.arange(setting.rows) == np.array(grid)).astype(float))
+
+
+class ExcessNoise(Cause):
+    """The amplitude is the extra standard deviation of one reading at the input."""
+
+    identifier = "excess-noise"
+    scope = "sensor"
+    equation = "variance above the stated one, no mean effect"
+    units = ("m/s²",)
+    sentence = "{sensors} is noisier than its stated uncertainty."
+    advice = "Look for vibration, a loose connector or a bad converter; average longer and state the true uncertainty."

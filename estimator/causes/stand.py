@@ -1,10 +1,17 @@
 """Causes in the stand: they move the applied vector, so they are common to all sensors."""
 
+from typing import ClassVar
+
 import numpy as np
 
 from estimator.causes.contract import CommonCause, Setting
-from estimator.message import say
 from estimator.session import Array
+
+
+def harmonic(setting: Setting, order: int) -> Array:
+    """(R, 2) sin and cos of a multiple of β, dimensionless."""
+    assert setting.beta is not None
+    return np.stack([np.sin(order * setting.beta), np.cos(order * setting.beta)], axis=-1)
 
 
 class BetaPattern(CommonCause):
@@ -12,10 +19,12 @@ class BetaPattern(CommonCause):
 
     scope = "stand"
     needs = frozenset({"stand"})
+    periods: ClassVar[int] = 1
+    """Per turn, of one that is periodic."""
 
     def pattern(self, setting: Setting) -> Array:
-        """(R, q) β error, rad per unit amplitude."""
-        raise TypeError(say("{identifier} states no pattern", identifier=self.identifier))
+        """(R, q) β error, rad per unit amplitude; unless told otherwise sin and cos of a multiple of β."""
+        return harmonic(setting, self.periods)
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, q) m/s² (rad/s) per unit amplitude."""
@@ -32,12 +41,6 @@ class AlphaPattern(BetaPattern):
         return setting.d_alpha[..., None] * self.pattern(setting)[:, None, None, :]
 
 
-def harmonic(setting: Setting, order: int) -> Array:
-    """(R, 2) sin and cos of a multiple of β, dimensionless."""
-    assert setting.beta is not None
-    return np.stack([np.sin(order * setting.beta), np.cos(order * setting.beta)], axis=-1)
-
-
 class BetaEccentricity(BetaPattern):
     identifier = "beta-eccentricity"
     equation = "δβ = k1·sin β + k2·cos β"
@@ -45,21 +48,14 @@ class BetaEccentricity(BetaPattern):
     sentence = "The head's angle scale is off centre: its error has one period per turn."
     advice = "Read the scale at two opposite places and average, or enter the head's correction table."
 
-    def pattern(self, setting: Setting) -> Array:
-        """(R, 2) sin β and cos β, rad per rad."""
-        return harmonic(setting, 1)
-
 
 class BetaSecondHarmonic(BetaPattern):
     identifier = "beta-second-harmonic"
     equation = "δβ = k1·sin 2β + k2·cos 2β"
     units = ("rad", "rad")
+    periods = 2
     sentence = "The head's angle scale is oval: its error has two periods per turn."
     advice = "Enter the head's correction table; have the angle scale checked."
-
-    def pattern(self, setting: Setting) -> Array:
-        """(R, 2) sin 2β and cos 2β, rad per rad."""
-        return harmonic(setting, 2)
 
 
 class BetaScale(BetaPattern):
@@ -81,10 +77,6 @@ class AxisWobble(AlphaPattern):
     units = ("rad", "rad")
     sentence = "The head's axis wobbles as it turns."
     advice = "Check the head's bearings and the clamping of the platform."
-
-    def pattern(self, setting: Setting) -> Array:
-        """(R, 2) sin β and cos β, rad per rad."""
-        return harmonic(setting, 1)
 
 
 class LevellingY(BetaPattern):

@@ -55,12 +55,6 @@ def mean_of(U: Array, F: Array) -> Mean:
     return Mean(value / largest, np.sqrt(np.diagonal(covariance)), covariance, float(spread) / largest, p)
 
 
-def _weights(u: Array, f: Array, tau2: float) -> tuple[Array, Array]:
-    """(n, w, w) V⁻¹ and (n, w) V⁻¹·a of every session."""
-    shrink = np.linalg.inv(np.eye(u.shape[1]) + tau2 * f)
-    return f @ shrink, (shrink @ u[..., None])[..., 0]
-
-
 def _over_spreads(u: Array, f: Array) -> tuple[Array, Array]:
     """(w,) mean and (w, w) covariance over the restricted likelihood of τ.
 
@@ -88,7 +82,8 @@ def _over_spreads(u: Array, f: Array) -> tuple[Array, Array]:
 
 def _heterogeneity(u: Array, f: Array, tau2: float, alone: float) -> float:
     """Q at a τ²; ``alone`` is Σ uᵀF⁻¹u. It uses F⁻¹(I + τ²F)⁻¹ = F⁻¹ − τ²(I + τ²F)⁻¹."""
-    W, weighted = _weights(u, f, tau2)
+    shrink = np.linalg.inv(np.eye(u.shape[1]) + tau2 * f)
+    W, weighted = f @ shrink, (shrink @ u[..., None])[..., 0]
     total = weighted.sum(axis=0)
     return float(alone - tau2 * (u * weighted).sum() - total @ inverse(W.sum(axis=0)) @ total)
 

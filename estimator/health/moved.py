@@ -82,7 +82,7 @@ def _solved(a: Array, c: Array) -> tuple[Array, Array]:
 def moved(changes: Changes) -> list[int] | None:
     """The sensors that moved on their own; None when that cannot be decided."""
     m, excluded = len(changes.names), list[int]()
-    limit = _limit(changes)
+    limit = chi2_limit(single_level(LEVEL, len(changes.names)), changes.rows, changes.dof)
     while is_majority(changes, excluded):
         inside = [i for i in range(m) if i not in excluded]
         fitted = fit(changes, inside)
@@ -92,11 +92,6 @@ def moved(changes: Changes) -> list[int] | None:
             return suspects if is_majority(changes, suspects) else None
         excluded = [*excluded, inside[int(np.argmax(evidence))]]
     return None
-
-
-def _limit(changes: Changes) -> float:
-    """χ² that the largest of all sensors' exceeds by chance with probability `LEVEL`."""
-    return chi2_limit(single_level(LEVEL, len(changes.names)), changes.rows, changes.dof)
 
 
 @cache

@@ -221,7 +221,7 @@ def _outlook(track: Track, prior: Prior, ahead: Array, number_and_level: tuple[i
         rate=rate * track.tolerance,
         rate_sigma=rate_sigma * track.tolerance,
         p_value=detected.p_value,
-        changes=tuple(_placed(change, skipped) for change in detected.changes),
+        changes=tuple(replace(change, gap=change.gap + skipped) for change in detected.changes),
         warmth=detected.warmth,
         chance=chance,
         reach_50=_median(chance),
@@ -252,11 +252,6 @@ def _rate(draws: Draws, along: Array) -> tuple[float, float]:
     rates = (draws.rate + draws.aging * draws.slowed()[:, None]) @ along
     middle = float(draws.mean(rates))
     return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
-
-
-def _placed(change: Change, skipped: int) -> Change:
-    """Counted in all sessions of the track."""
-    return replace(change, gap=change.gap + skipped)
 
 
 def _chances(tracks: Sequence[Track], outlooks: Sequence[Outlook]) -> Array:

@@ -21,7 +21,7 @@ import numpy as np
 
 from estimator.causes.catalogue import CATALOGUE
 from estimator.causes.contract import Cause, RecordCorrection, Setting, Shape, Signature
-from estimator.causes.noise import ExcessNoise
+from estimator.causes.sensor import ExcessNoise
 from estimator.diagnosis.diagnose import initial_state
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals

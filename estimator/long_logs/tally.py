@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.errors import FormatError, Problem
+from estimator.errors import FormatError, problem_at
 from estimator.message import say
 from estimator.rest_noise import block_count, waves_of
 from estimator.rest_tilt import MeanErrors, errors_of_means
@@ -201,5 +201,5 @@ def check_alike(head: CalibrationSession, part: CalibrationSession, at: int) -> 
         if (getattr(head, name) is None) != (getattr(part, name) is None):
             rows = say("rows {first} to {last}", first=at + 1, last=at + len(part.readings))
             raise FormatError(
-                [Problem(name, say("is stated in some parts of the log and not in {rows}, or only there", rows=rows))]
+                [problem_at(name, "is stated in some parts of the log and not in {rows}, or only there", rows=rows)]
             )

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import null_space
 
-from estimator.errors import Problem, ScheduleError
+from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.message import say, say_count
 from estimator.parameters import ELEMENTS
 from estimator.results import Calibration, SensorCalibration
@@ -89,9 +89,8 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
     members = [(k, s) for k, s in enumerate(sensors) if s.kind == kind]
     known = {s.name: s for s in calibration.sensors if s.kind == kind}
     unknown = [
-        Problem(
-            f"sensors[{k + 1}].name",
-            say("{name} is not in the reference calibration; name sensors as there", name=s.name),
+        problem_at(
+            f"sensors[{k + 1}].name", "{name} is not in the reference calibration; name sensors as there", name=s.name
         )
         for k, s in members
         if s.name not in known

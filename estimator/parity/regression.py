@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.arrays import eigh
-from estimator.errors import Problem, ScheduleError
-from estimator.message import say, say_count
+from estimator.errors import ScheduleError, problem_at
+from estimator.message import say_count
 from estimator.parity.blocks import FEWEST_GROUPS, BlockSelection
 from estimator.parity.reference import ParityReference
 from estimator.session import Array
@@ -107,9 +107,8 @@ def regress(
         held = say_count("{n} separate stretch", "{n} separate stretches", groups)
         raise ScheduleError(
             [
-                Problem(
-                    "table",
-                    say("{groups}; {fewest_groups} or more are needed", groups=held, fewest_groups=FEWEST_GROUPS),
+                problem_at(
+                    "table", "{groups}; {fewest_groups} or more are needed", groups=held, fewest_groups=FEWEST_GROUPS
                 )
             ]
         )

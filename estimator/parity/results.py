@@ -18,7 +18,6 @@ class Candidate:
 
     sensor: str
     kind: str
-    """One of `KINDS`."""
     amplitude: tuple[float, ...]
     """bias m/s² (rad/s); scale relative; axis two turns, rad; several: bias, scale, axis."""
     sigma: tuple[float, ...]

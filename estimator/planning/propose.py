@@ -16,17 +16,9 @@ from estimator.diagnosis.explanation.detection_limits import limits
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Limit
 from estimator.diagnosis.selection.start import begin
-from estimator.errors import Problem, ScheduleError
-from estimator.message import say
+from estimator.errors import ScheduleError, problem_at
 from estimator.planning.elevation import conditioning, gyro_errors, optimal_elevation
-from estimator.planning.expected import (
-    expected_sigmas,
-    head_kind,
-    input_noise,
-    over_elevation,
-    over_positions,
-    planned,
-)
+from estimator.planning.expected import expected_sigmas, head_kind, input_noise, over_elevation, over_positions, planned
 from estimator.planning.positions import optimal_positions
 from estimator.planning.results import JudgedParameter, Plan, Request
 from estimator.results import PARAMETERS
@@ -66,11 +58,7 @@ def plan(like: CalibrationSession, request: Request | None = None, *, sigma: Arr
     """
     if like.programme != TWO_AXIS_STAND:
         raise ScheduleError(
-            [
-                Problem(
-                    "programme", say("{programme} has no stand; plan it by its orientations", programme=like.programme)
-                )
-            ]
+            [problem_at("programme", "{programme} has no stand; plan it by its orientations", programme=like.programme)]
         )
     request = request or Request()
     sigma = input_noise(like) if sigma is None else sigma

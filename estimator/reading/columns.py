@@ -108,11 +108,11 @@ def vector(fields: Fields, key: str, advice: str, within: Interval = COMPONENT) 
     value = fields.values.get(key)
     stand_in = np.full(3, np.nan)
     if value is None:
-        fields.add(key, say("missing; {advice}", advice=advice))
+        fields.add(key, "missing; {advice}", advice=advice)
         return stand_in
     components = value.tolist() if isinstance(value, np.ndarray) else value
     if not isinstance(components, list | tuple) or len(components) != 3:
-        fields.add(key, say("is {components}; {advice}", components=shown(components), advice=advice))
+        fields.add(key, "is {components}; {advice}", components=shown(components), advice=advice)
         return stand_in
     read = [number_in(component, within) for component in components]
     for number, (_, fault) in enumerate(read, start=1):

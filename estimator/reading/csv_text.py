@@ -33,7 +33,7 @@ def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict
     metadata = "\n".join(line[1:] for line in leading)
     if not metadata.strip():
         if sidecar is None:
-            raise problems.fail("file", say("is a CSV table without metadata; {advice}", advice=ADVICE))
+            raise problems.fail("file", "is a CSV table without metadata; {advice}", advice=ADVICE)
         metadata = sidecar
     document = parse_json(metadata, problems)
     if "table" in document:
@@ -97,7 +97,7 @@ def _rows(lines: list[str], separator: str, problems: Problems) -> list[list[str
     try:
         rows = list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
-        raise problems.fail("file", say("is not a readable CSV table: {error}", error=error)) from error
+        raise problems.fail("file", "is not a readable CSV table: {error}", error=error) from error
     if len(rows) != len(lines) or lines[-1].count('"') % 2:
         raise problems.fail(
             "table", "a cell contains a line break, or a quote is not closed; keep each row on one line"
@@ -123,11 +123,11 @@ def named_columns(header: list[str], columns: list[Column], problems: Problems) 
     table: dict[str, Column] = {}
     for number, (name, cells) in enumerate(zip(map(str.strip, header), columns, strict=True), start=1):
         if name in table:
-            problems.add(name, say("two columns of the header are named {name}; names must differ", name=shown(name)))
+            problems.add(name, "two columns of the header are named {name}; names must differ", name=shown(name))
         elif name:
             table[name] = cells
         elif any(cell is not None for cell in cells):
-            problems.add("table", say("column {number} has no name in the header; name it", number=number))
+            problems.add("table", "column {number} has no name in the header; name it", number=number)
     return table
 
 

@@ -33,9 +33,9 @@ class Fields:
         """Where a key stands, as people write it: ``site.latitude_deg``."""
         return f"{self.path}.{key}" if self.path else key
 
-    def add(self, key: str, message: str) -> None:
+    def add(self, key: str, message: str, /, **parts: object) -> None:
         """Record a fault of one key."""
-        self.problems.add(self.place(key), message)
+        self.problems.add(self.place(key), message, **parts)
 
     def has(self, key: str) -> bool:
         """Whether the key is given; null is the same as leaving it out."""
@@ -44,11 +44,11 @@ class Fields:
     def required_text(self, key: str, advice: str) -> str:
         """A required name: one line, not empty."""
         if not self.has(key):
-            self.add(key, say("missing; {advice}", advice=advice))
+            self.add(key, "missing; {advice}", advice=advice)
             return ""
         text = self._text(key, LONGEST_NAME)
         if text == "":
-            self.add(key, say("empty; {advice}", advice=advice))
+            self.add(key, "empty; {advice}", advice=advice)
         elif text is not None and not text.isprintable():
             self.add(key, "contains line breaks or non-printable characters; write it as one plain line")
         return text or ""
@@ -63,13 +63,13 @@ class Fields:
         if isinstance(value, str) and value in allowed:
             return value
         problem = say("{value} is unknown", value=shown(value)) if self.has(key) else "missing"
-        self.add(key, say("{problem}; give one of {values}", problem=problem, values=joined(", ", allowed)))
+        self.add(key, "{problem}; give one of {values}", problem=problem, values=joined(", ", allowed))
         return instead or allowed[0]
 
     def number(self, key: str, within: Interval, advice: str) -> float:
         """A required number; NaN stands in for a bad one."""
         if not self.has(key):
-            self.add(key, say("missing; {advice}", advice=advice))
+            self.add(key, "missing; {advice}", advice=advice)
             return math.nan
         value = self.optional_number(key, within)
         return math.nan if value is None else value
@@ -89,20 +89,19 @@ class Fields:
         if isinstance(value, Mapping):
             return Fields(value, self.place(key), self.problems)
         if value is not None:
-            self.add(key, say("is {value}; must be an object in braces", value=shown(value)))
+            self.add(key, "is {value}; must be an object in braces", value=shown(value))
         return None
 
     def _text(self, key: str, longest: int) -> str | None:
         value = self.values[key]
         if not isinstance(value, str):
-            self.add(key, say("is {value}; must be text in quotes", value=shown(value)))
+            self.add(key, "is {value}; must be text in quotes", value=shown(value))
             return None
         if UNSTORABLE.search(value) or len(value) > longest:
             self.add(
                 key,
-                say(
-                    "must be at most {longest} characters of ordinary text, without control characters", longest=longest
-                ),
+                "must be at most {longest} characters of ordinary text, without control characters",
+                longest=longest,
             )
             return None
         return value.strip()

@@ -30,7 +30,7 @@ def parse_json(text: str, problems: Problems) -> dict[str, object]:
     except json.JSONDecodeError as error:
         place = say("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno)
         raise problems.fail(
-            "file", say("is not valid JSON at {place}: {msg}; it may be cut short", place=place, msg=error.msg)
+            "file", "is not valid JSON at {place}: {msg}; it may be cut short", place=place, msg=error.msg
         ) from error
     except RecursionError as error:
         raise problems.fail("file", "is nested far deeper than any session; check the file") from error
@@ -49,7 +49,7 @@ def _check_extent(text: str, problems: Problems) -> None:
     """Raises FormatError where the text would become too much in memory, before it becomes that."""
     most = problems.most
     if text.count(",") > most.cells + FURTHER:
-        raise problems.fail("table", say("has more than {cells} cells; average or split it", cells=most.cells))
+        raise problems.fail("table", "has more than {cells} cells; average or split it", cells=most.cells)
     depth = lists = 0
     for match in STRUCTURE.finditer(text):
         start = text[match.start()]
@@ -59,12 +59,11 @@ def _check_extent(text: str, problems: Problems) -> None:
             depth, lists = depth + 1, lists + 1
             if depth > most.nesting:
                 raise problems.fail(
-                    "file", say("is nested deeper than {nesting} levels; check the file", nesting=most.nesting)
+                    "file", "is nested deeper than {nesting} levels; check the file", nesting=most.nesting
                 )
             if lists > MOST_LISTS:
                 raise problems.fail(
-                    "file",
-                    say("contains more than {most_lists} lists; give each column as one list", most_lists=MOST_LISTS),
+                    "file", "contains more than {most_lists} lists; give each column as one list", most_lists=MOST_LISTS
                 )
 
 

@@ -56,11 +56,9 @@ def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
     """Record unknown keys that look like known ones."""
     for key in islice((str(key) for key in fields.values if key not in known), UNKNOWN_LOOKED_AT):
         if meant := meant_key(key, known):
-            fields.add(
-                key, say("is not a key of {path}; {suggestion}", path=fields.path or "the file", suggestion=meant)
-            )
+            fields.add(key, "is not a key of {path}; {suggestion}", path=fields.path or "the file", suggestion=meant)
         elif key in HOME and HOME[key] != fields.path:
-            fields.add(key, say("is in the wrong place; it belongs in {home}", home=HOME[key]))
+            fields.add(key, "is in the wrong place; it belongs in {home}", home=HOME[key])
 
 
 def meant_key(key: str, known: Iterable[str]) -> str | None:

@@ -47,14 +47,14 @@ class Problems:
         self._unsaid = 0
         self._only_schedule = True
 
-    def add(self, field: str, message: str, row: int | None = None) -> None:
-        """Record one fault; ``row`` counts from 1."""
+    def add(self, field: str, message: str, row: int | None = None, /, **parts: object) -> None:
+        """Record one fault, a sentence or the template of one with its ``parts``; ``row`` counts from 1."""
         self._only_schedule = False
-        self._record(field, message, row)
+        self._record(field, say(message, **parts) if parts else message, row)
 
-    def add_to_schedule(self, field: str, message: str) -> None:
+    def add_to_schedule(self, field: str, message: str, /, **parts: object) -> None:
         """Record that the rows, though well formed, cannot support the programme."""
-        self._record(field, message, None)
+        self._record(field, say(message, **parts) if parts else message, None)
 
     def add_rows(
         self, field: str, rows: Iterable[int], message: Callable[[int], str], *, count: int | None = None
@@ -77,9 +77,9 @@ class Problems:
                 ),
             )
 
-    def fail(self, field: str, message: str) -> FormatError:
+    def fail(self, field: str, message: str, /, **parts: object) -> FormatError:
         """The error to raise when nothing more can be read; holds what was found before, too."""
-        self.add(field, message)
+        self.add(field, message, **parts)
         return FormatError(self._all(), self.source)
 
     def raise_if_any(self) -> None:

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from estimator.message import say
 from estimator.reading.problems import Problems
 from estimator.reading.table import Table
 from estimator.session import (
@@ -40,11 +39,12 @@ def _check_turning(programme: str, table: Rows, kinds: set[str], raw: bool, prob
     """A time series on a turntable: it needs times, and the sensors that the programme works with."""
     for kind in NEEDED_KINDS[programme]:
         if kind not in kinds:
-            problems.add("sensors", say("none of kind {kind}; {programme} needs them", kind=kind, programme=programme))
+            problems.add("sensors", "none of kind {kind}; {programme} needs them", kind=kind, programme=programme)
     if table.time is None and not raw:
         problems.add(
             "time_s",
-            say("the column is missing; {programme} needs it, or sample_rate_hz for a raw log", programme=programme),
+            "the column is missing; {programme} needs it, or sample_rate_hz for a raw log",
+            programme=programme,
         )
 
 
@@ -63,10 +63,10 @@ def _check_positions(table: Rows, raw: bool, problems: Problems) -> None:
         if labels.size < FEWEST_POSITIONS:
             problem = "a single position" if labels.size else "no position"
             problems.add_to_schedule(
-                "position", say("the rows belong to {problem}; a calibration needs several", problem=problem)
+                "position", "the rows belong to {problem}; a calibration needs several", problem=problem
             )
     elif len(table.readings) < FEWEST_POSITIONS:
         needs = "the samples of a whole log" if raw else "several orientations"
         problems.add_to_schedule(
-            "table", say("has a single row, a single position; a calibration needs {needs}", needs=needs)
+            "table", "has a single row, a single position; a calibration needs {needs}", needs=needs
         )

@@ -32,21 +32,17 @@ def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:
     entries = document.values.get("sensors")
     if not isinstance(entries, list | tuple):
         problem = "missing" if entries is None else say("is {entries}", entries=shown(entries))
-        document.add("sensors", say("{problem}; give a list with one object per sensor", problem=problem))
+        document.add("sensors", "{problem}; give a list with one object per sensor", problem=problem)
         return ()
     if len(entries) > MOST:
-        document.add(
-            "sensors", say("has {entries} sensors; a block has at most {most}", entries=len(entries), most=MOST)
-        )
+        document.add("sensors", "has {entries} sensors; a block has at most {most}", entries=len(entries), most=MOST)
         return ()
     sensors = []
     for number, entry in enumerate(entries, start=1):
         if isinstance(entry, dict):
             sensors.append(_read_sensor(Fields(entry, f"sensors[{number}]", document.problems), block))
         else:
-            document.problems.add(
-                f"sensors[{number}]", say("is {entry}; must be an object in braces", entry=shown(entry))
-            )
+            document.problems.add(f"sensors[{number}]", "is {entry}; must be an object in braces", entry=shown(entry))
     _check_names(sensors, document.problems)
     _check_axes(sensors, block, document.problems)
     return tuple(sensors)
@@ -89,7 +85,8 @@ def _read_axis(entry: Fields) -> Array:
     elif abs(length - 1) > LENGTH_TOLERANCE:
         entry.add(
             "nominal_axis",
-            say("has length {length}; must be a unit vector: divide it by its length", length=f"{length:.6g}"),
+            "has length {length}; must be a unit vector: divide it by its length",
+            length=f"{length:.6g}",
         )
     return axis / length if length else axis
 
@@ -126,13 +123,13 @@ def _check_names(sensors: list[Sensor], problems: Problems) -> None:
         if name and name in seen:
             problems.add(
                 field,
-                say(
-                    "{name} is also the name of sensors[{index}]; names must differ", name=shown(name), index=seen[name]
-                ),
+                "{name} is also the name of sensors[{index}]; names must differ",
+                name=shown(name),
+                index=seen[name],
             )
         elif name in taken:
             problems.add(
-                field, say("{name} is the name of another column of the table; rename the sensor", name=shown(name))
+                field, "{name} is the name of another column of the table; rename the sensor", name=shown(name)
             )
         seen.setdefault(name, number)
 
@@ -143,12 +140,13 @@ def _check_axes(sensors: list[Sensor], block: str, problems: Problems) -> None:
         if len(axes) < FEWEST:
             problems.add(
                 "sensors",
-                say("{axes} of kind {kind}; a block needs at least {fewest}", axes=len(axes), kind=kind, fewest=FEWEST),
+                "{axes} of kind {kind}; a block needs at least {fewest}",
+                axes=len(axes),
+                kind=kind,
+                fewest=FEWEST,
             )
         elif np.isfinite(axes).all() and _flatness(axes) < FLATTEST:
-            problems.add(
-                "sensors", say("the nominal axes of kind {kind} lie in one plane; they must span space", kind=kind)
-            )
+            problems.add("sensors", "the nominal axes of kind {kind} lie in one plane; they must span space", kind=kind)
 
 
 def _flatness(axes: Array) -> float:

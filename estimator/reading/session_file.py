@@ -101,4 +101,4 @@ def _check_format(document: Fields) -> None:
     declared = document.values.get("format")
     if not (isinstance(declared, str) and declared == FORMAT):
         stated = "missing" if declared is None else say("is {declared}", declared=shown(declared))
-        document.add("format", say('{stated}; must be "{format}"', stated=stated, format=FORMAT))
+        document.add("format", '{stated}; must be "{format}"', stated=stated, format=FORMAT)

@@ -6,7 +6,6 @@ from datetime import datetime
 
 import numpy as np
 
-from estimator.message import say
 from estimator.moments import DAY, moment, written
 from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import vector
@@ -64,7 +63,7 @@ def read_stand(document: Fields, programme: str, kinds: set[str]) -> Stand | Non
     stand = document.child("stand")
     if stand is None:
         if programme == TWO_AXIS_STAND and not document.has("stand"):
-            document.add("stand", say("missing; {programme} needs id and alpha_deg or chi_deg", programme=programme))
+            document.add("stand", "missing; {programme} needs id and alpha_deg or chi_deg", programme=programme)
         return None
     check_keys(stand, STAND)
     needed = kinds if programme == TWO_AXIS_STAND else set()
@@ -83,7 +82,7 @@ def read_mounting(document: Fields) -> Array:
         return np.eye(3)
     rows = value.tolist() if isinstance(value, np.ndarray) else value
     if not isinstance(rows, list | tuple) or len(rows) != 3:
-        document.add("mounting", say("is {rows}; must be three rows of three numbers", rows=shown(rows)))
+        document.add("mounting", "is {rows}; must be three rows of three numbers", rows=shown(rows))
         return np.eye(3)
     row_fields = Fields({f"[{i}]": row for i, row in enumerate(rows, 1)}, "", document.problems)
     matrix = np.array([_mounting_row(row_fields, f"[{i}]", document.problems) for i in (1, 2, 3)])
@@ -100,14 +99,12 @@ def read_moment(document: Fields, key: str) -> str | None:
     try:
         at = datetime.fromisoformat(text)
     except ValueError:
-        document.add(key, say("is {value}; write it like 2026-03-01T09:00:00Z", value=shown(text)))
+        document.add(key, "is {value}; write it like 2026-03-01T09:00:00Z", value=shown(text))
         return None
     if at.tzinfo is None:
-        document.add(
-            key, say("{value} has no offset; end it with Z for UTC or with one like +03:00", value=shown(text))
-        )
+        document.add(key, "{value} has no offset; end it with Z for UTC or with one like +03:00", value=shown(text))
     elif at.year not in YEARS:
-        document.add(key, say("is in the year {year}; must be {years}", year=at.year, years=YEARS))
+        document.add(key, "is in the year {year}; must be {years}", year=at.year, years=YEARS)
     else:
         return written(at)
     return None
@@ -120,11 +117,11 @@ def read_time_since_power_on(document: Fields, started_at: str | None) -> float 
     if at is None:
         return passed
     if document.has(SINCE_POWER_ON):
-        document.add(POWERED_ON, say("is given beside {other}; give one of the two", other=SINCE_POWER_ON))
+        document.add(POWERED_ON, "is given beside {other}; give one of the two", other=SINCE_POWER_ON)
     elif started_at is not None:
         return _between(document, moment(at), moment(started_at))
     elif not document.has("started_at"):
-        document.add(POWERED_ON, say("needs started_at; give that too, or {other} instead", other=SINCE_POWER_ON))
+        document.add(POWERED_ON, "needs started_at; give that too, or {other} instead", other=SINCE_POWER_ON)
     return None
 
 
@@ -135,7 +132,7 @@ def _between(document: Fields, on: datetime, start: datetime) -> float | None:
         document.add(POWERED_ON, "is later than started_at; the unit was on when its first row was measured")
     elif passed not in within:
         most = within.high / DAY
-        document.add(POWERED_ON, say("is more than {most} days before started_at; check both", most=f"{most:.0f}"))
+        document.add(POWERED_ON, "is more than {most} days before started_at; check both", most=f"{most:.0f}")
     else:
         return passed
     return None
@@ -154,10 +151,8 @@ def _read_elevation(stand: Fields, key: str, required: bool, programme: str) -> 
     if programme == TWO_AXIS_STAND and not FLATTEST <= abs(degrees) <= 90 - FLATTEST:
         stand.add(
             key,
-            say(
-                "is {degrees}; must be strictly between 0 and 90 degrees, else parameters cannot be separated",
-                degrees=f"{degrees:g}",
-            ),
+            "is {degrees}; must be strictly between 0 and 90 degrees, else parameters cannot be separated",
+            degrees=f"{degrees:g}",
         )
     return math.radians(degrees)
 

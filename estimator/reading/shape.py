@@ -24,15 +24,13 @@ def read_columns(document: Fields) -> Columns | None:
     table = document.values.get("table")
     if not isinstance(table, Mapping):
         problem = "missing" if table is None else say("is {table}", table=shown(table))
-        document.add(
-            "table", say("{problem}; give the columns of readings, each with one value per row", problem=problem)
-        )
+        document.add("table", "{problem}; give the columns of readings, each with one value per row", problem=problem)
         return None
     check_extent(0, len(table), problems)
     given = {str(name): cells for name, cells in table.items() if cells is not None}
     lists = {name: cells for name, cells in given.items() if _is_column(cells)}
     for name in (name for name in given if name not in lists):
-        problems.add(name, say("is {value}; must be a list with one value per row", value=shown(given[name])))
+        problems.add(name, "is {value}; must be a list with one value per row", value=shown(given[name]))
     rows = _row_count(lists, problems)
     if rows == 0:
         return None
@@ -45,23 +43,20 @@ def check_extent(rows: int, columns: int, problems: Problems) -> None:
     most, advice = problems.most, "can be read: average or split it"
     if rows > most.rows:
         raise problems.fail(
-            "table", say("has {rows} rows; at most {limit} {advice}", rows=rows, limit=most.rows, advice=advice)
+            "table", "has {rows} rows; at most {limit} {advice}", rows=rows, limit=most.rows, advice=advice
         )
     if columns > most.columns:
         raise problems.fail(
-            "table",
-            say("has {columns} columns; at most {limit} can be read", columns=columns, limit=most.columns),
+            "table", "has {columns} columns; at most {limit} can be read", columns=columns, limit=most.columns
         )
     if rows * columns > most.cells:
         raise problems.fail(
             "table",
-            say(
-                "has {rows} rows × {columns} columns; at most {cells} cells {advice}",
-                rows=rows,
-                columns=columns,
-                cells=most.cells,
-                advice=advice,
-            ),
+            "has {rows} rows × {columns} columns; at most {cells} cells {advice}",
+            rows=rows,
+            columns=columns,
+            cells=most.cells,
+            advice=advice,
         )
 
 
@@ -74,7 +69,7 @@ def check_unknown(columns: Columns, names: list[str]) -> None:
         if _pattern(name.removesuffix("_se")) in patterns or SENSOR_LIKE.fullmatch(name) or name.endswith("_se"):
             columns.problems.add(name, "belongs to no declared sensor; declare it in sensors or remove the column")
         elif meant := meant_key(name, COLUMNS):
-            columns.problems.add(name, say("is not a column of the table; {suggestion}", suggestion=meant))
+            columns.problems.add(name, "is not a column of the table; {suggestion}", suggestion=meant)
 
 
 def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
@@ -90,7 +85,7 @@ def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
         if len(cells) != rows:
             held = counted(len(cells), "value")
             problems.add(
-                name, say("has {values} where the other columns have {rows}; give one per row", values=held, rows=rows)
+                name, "has {values} where the other columns have {rows}; give one per row", values=held, rows=rows
             )
     return rows
 

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from estimator.message import say
 from estimator.reading.csv_text import ADVICE, SEPARATORS, parse_csv
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
@@ -26,7 +25,7 @@ def load(source: object, problems: Problems) -> Mapping[str, object]:
     if isinstance(source, str | Path):
         return _load_path(source, problems)
     raise problems.fail(
-        "file", say("a session is read from a path, a dict or bytes, not from {name}", name=type(source).__name__)
+        "file", "a session is read from a path, a dict or bytes, not from {name}", name=type(source).__name__
     )
 
 
@@ -53,7 +52,7 @@ def _parse(text: str, problems: Problems, sidecar: str | None) -> dict[str, obje
         return parse_csv(text, problems, sidecar)
     first_line = text.lstrip().partition("\n")[0]
     if any(separator in first_line for separator in SEPARATORS):
-        raise problems.fail("file", say("is a CSV table without metadata; {advice}", advice=ADVICE))
+        raise problems.fail("file", "is a CSV table without metadata; {advice}", advice=ADVICE)
     raise problems.fail("file", "is neither JSON (starting with a brace) nor CSV with metadata (starting with #)")
 
 
@@ -63,7 +62,7 @@ def _read(path: Path, problems: Problems) -> bytes:
             content = file.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise problems.fail("file", say("cannot be read: {reason}", reason=reason)) from error
+        raise problems.fail("file", "cannot be read: {reason}", reason=reason) from error
     return content
 
 
@@ -77,12 +76,12 @@ def _exists(path: Path) -> bool:
 def _decode(content: bytes, problems: Problems) -> str:
     if len(content) > LARGEST_FILE:
         limit = LARGEST_FILE // 1024**2
-        raise problems.fail("file", say("is larger than {limit} MiB; average or split the log", limit=limit))
+        raise problems.fail("file", "is larger than {limit} MiB; average or split the log", limit=limit)
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise problems.fail("file", "is UTF-16 text; save it as UTF-8")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise problems.fail(
-            "file", say("is not UTF-8 text (byte {position}); save it as UTF-8", position=error.start + 1)
+            "file", "is not UTF-8 text (byte {position}); save it as UTF-8", position=error.start + 1
         ) from error

@@ -175,9 +175,7 @@ def _direction_sigma(document: Fields, columns: Columns) -> float | None:
     if document.has(key):
         document.add(
             key,
-            say(
-                "is given without directions; add the columns {directions} or remove it",
-                directions=joined(", ", DIRECTIONS),
-            ),
+            "is given without directions; add the columns {directions} or remove it",
+            directions=joined(", ", DIRECTIONS),
         )
     return None

@@ -11,9 +11,8 @@ from urllib.parse import quote
 
 import httpx
 
-from service.client.answers import Diagnosis, Flag, Point, Receipt, Session, Unit, Usable
+from service.client.answers import Diagnosis, Flag, Point, Receipt, Session, Unit, Usable, read
 from service.client.connection import Connection
-from service.client.reading import read
 from service.errors import ServiceError
 
 T = TypeVar("T")

@@ -9,7 +9,6 @@ import httpx
 
 from estimator.errors import Problem
 from estimator.json_object import Json
-from estimator.message import say
 from service.errors import AwayError, RefusedError, ServiceError
 
 MAX_POLLS = 10
@@ -62,7 +61,7 @@ class Connection:
         try:
             response = self.http.request(method, path, **request)
         except httpx.HTTPError as fault:
-            raise ServiceError(say("{server} does not answer: {fault}", server=self.server, fault=fault)) from fault
+            raise ServiceError("{server} does not answer: {fault}", server=self.server, fault=fault) from fault
         if response.is_success:
             return response
         raise _error(response)
@@ -72,7 +71,7 @@ def _error(response: httpx.Response) -> ServiceError:
     """The service's problem+json as its original error; any other answer by its status."""
     if not response.headers.get("content-type", "").startswith(MEDIA_TYPE):
         status = f"{response.status_code} {response.reason_phrase}"
-        return ServiceError(say("{url} answered {status}", url=response.url, status=status))
+        return ServiceError("{url} answered {status}", url=response.url, status=status)
     problem = response.json()
     if response.status_code == RefusedError.status:
         problems = (Problem(p["field"], p["message"], p.get("row")) for p in problem.get("problems") or ())
@@ -86,4 +85,3 @@ def _error(response: httpx.Response) -> ServiceError:
 _KINDS: dict[int, type[ServiceError]] = {
     kind.status: kind for kind in ServiceError.__subclasses__() if kind.status != ServiceError.status
 }
-"""Errors by their status."""

@@ -6,15 +6,17 @@ import webbrowser
 from datetime import datetime
 from http import HTTPStatus
 from itertools import takewhile
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
 
 from estimator.on_demand import function_on_demand
+from estimator.reading.setting import ARCSEC
 from service.client import Client, connect
-from service.commands.calls import Answer, Call, ListColumns, Row, app_of, in_address
-from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, ListOutput, Server, screen
+from service.commands.calls import Answer, Call, ListColumns, Row, in_address
+from service.commands.console import DEFAULT_SERVER, AsLines, Files, FormOf, ListOutput, Server, screen, usable
 from service.commands.speech import output_language, translated
 from service.errors import ServiceError
 from service.flags.records import FlagState
@@ -39,7 +41,6 @@ SessionId = Annotated[str, typer.Argument(metavar="SESSION", help="The session's
 FlagId = Annotated[int, typer.Argument(metavar="FLAG", help="Number of the flag.")]
 At = Annotated[datetime | None, typer.Option(help="When, UTC.", show_default="now")]
 DAYS = ["%Y-%m-%d"]
-"""Format of a day."""
 
 
 def is_session(client: Client, name: str) -> bool:
@@ -143,6 +144,27 @@ def write_note(
             _show_event(client.post(f"/sessions/{unit}/notes", note))
         else:
             raise typer.BadParameter("a note on a session has the date of the session", param_hint="--at")
+
+
+def stand_dcc(
+    stand: Annotated[str, typer.Argument(metavar="STAND", help="Its name, as session files give it.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The certificate, XML.")],
+    by: By,
+    valid_until: Annotated[
+        datetime | None, typer.Option(formats=DAYS, help="The last day, where the document does not state it.")
+    ] = None,
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Record a stand's certificate from its document."""
+    query = {"by": by} | ({} if valid_until is None else {"valid_until": valid_until.date().isoformat()})
+    with usable(file), connect(server, language=output_language()) as client:
+        address = in_address("/stands/{stand}/certificate-document", {"stand": stand})
+        sent = {"content": file.read_bytes(), "headers": {"Content-Type": "application/xml"}, "params": query}
+        read = client.answer("PUT", address, **sent).json()
+    kept = read["certificate"]
+    screen().print(f"[bold]{escape(kept['number'])}[/]  {escape(kept['issued_by'])}  {kept['valid_until']}")
+    for error in read["errors"]:
+        screen().print(f"  {error['name']}  {error['sigma'] / ARCSEC:.3g} arcsec")
 
 
 def list_flags(
@@ -331,6 +353,7 @@ COMMANDS: dict[str, Row] = {
     "flags assign": assign_flags,
     "customer": Call("PUT /units/{unit}/customer", CUSTOMER, _show_customer),
     "stand-certificate": Call("PUT /stands/{stand}/certificate", STAND_CERTIFICATE, _show_stand),
+    "stand-dcc": stand_dcc,
     "stand-affected": Call("GET /stands/{stand}/resting-certificates", RESTING, AFFECTED),
     "usable": Call(
         "GET /units/{unit}/usable",
@@ -342,8 +365,3 @@ COMMANDS: dict[str, Row] = {
     "views": Call("GET /views", {}, VIEWS),
     "open": open_page,
 }
-
-
-def command_of(name: str) -> typer.Typer:
-    """The command or the group of commands of a name."""
-    return app_of(name, COMMANDS)

@@ -6,7 +6,6 @@ Names in braces in the address are taken from the command's parameters; the othe
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from datetime import datetime
 from string import Formatter
 from typing import Any
 from urllib.parse import quote
@@ -17,7 +16,17 @@ from rich.table import Table
 from estimator.json_object import Json
 from service.client import Client, connect
 from service.commands.catalogue import CATALOGUE
-from service.commands.console import DEFAULT_SERVER, AsJson, AsLines, FormOf, ListOutput, Server, print_json, table_of
+from service.commands.console import (
+    DEFAULT_SERVER,
+    AsJson,
+    AsLines,
+    FormOf,
+    ListOutput,
+    Server,
+    plain,
+    print_json,
+    table_of,
+)
 from service.commands.speech import FAILED, output_language, translated
 from service.languages.language import Language
 
@@ -31,7 +40,6 @@ class ListColumns:
     entries: str
     """Field of the answer with the list."""
     empty: str
-    """Printed for an empty list."""
     cells: Mapping[str, Callable[[Answer], str]]
     """CellKind under each heading, as Rich markup."""
     is_paged: bool = False
@@ -159,15 +167,10 @@ def in_address(template: str, names: Mapping[str, Any]) -> str:
 
 
 def _request(request: str, sent: Json) -> tuple[str, str, Json]:
-    """Method, address, and the remaining parameters."""
     method, template = request.split()
     in_path = {name for _, name, _, _ in Formatter().parse(template) if name}
-    rest = {name: _plain(value) for name, value in sent.items() if name not in in_path and value is not None}
+    rest = {name: plain(value) for name, value in sent.items() if name not in in_path and value is not None}
     return method, in_address(template, {name: sent[name] for name in in_path}), rest
-
-
-def _plain(value: Any) -> Any:
-    return value.isoformat() if isinstance(value, datetime) else value
 
 
 def _parameter(name: str, declaration: Any) -> inspect.Parameter:

@@ -87,10 +87,10 @@ CATALOGUE = {
         "Compute a certificate's every number again from the session's file: 0 agrees, 1 differs, 2 cannot be checked.",
     ),
     "sign": CommandEntry(
-        "sign.sign",
+        "documents.sign",
         "Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password.",
     ),
-    "seal": CommandEntry("sign.seal", "The laboratory's electronic seal."),
+    "seal": CommandEntry("documents.seal", "The laboratory's electronic seal."),
     "customer": CommandEntry("api", "Record for whom a unit is calibrated; its certificates name them."),
     "stand-certificate": CommandEntry(
         "api",
@@ -99,10 +99,7 @@ CATALOGUE = {
     "stand-affected": CommandEntry(
         "api", "List every certificate whose numbers rest on a stand, for when it was found bad."
     ),
-    "stand-dcc": CommandEntry(
-        "stands.stand_dcc",
-        "Record a stand's certificate from its document.",
-    ),
+    "stand-dcc": CommandEntry("api", "Record a stand's certificate from its document."),
     "correction": CommandEntry(
         "documents.correction", "Write the correction that firmware applies to readings, as JSON."
     ),

@@ -181,10 +181,11 @@ class ListOutput:
 
 def rows_of(records: Sequence[Any]) -> list[dict[str, Any]]:
     """Records as JSON, times in ISO 8601."""
-    return [{name: _plain(value) for name, value in asdict(record).items()} for record in records]
+    return [{name: plain(value) for name, value in asdict(record).items()} for record in records]
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """As JSON has it: times in ISO 8601."""
     return value.isoformat() if isinstance(value, datetime) else value
 
 

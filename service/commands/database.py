@@ -78,7 +78,6 @@ def _write_backup(settings: Settings, target: Path | None) -> None:
 
 
 def _lost_rows(loss: Loss) -> str:
-    """Rows of a table that would be deleted."""
     parts = [many(loss.rows, "row")] if loss.rows else []
     parts += [f"{column} of {many(rows, 'row')}" for column, rows in loss.values]
     return f"Will be deleted from {loss.table}: {', '.join(parts)}"

@@ -9,7 +9,7 @@ import typer
 from service.app import utc_now
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.commands.speech import many, say
-from service.demo.many import fill_many, opened, plan
+from service.demo.fill import fill_many, opened, plan
 from service.errors import ConflictError
 from service.storage.folders import require_writable
 from service.storage.schema import upgrade

@@ -11,7 +11,7 @@ from estimator.errors import Problem
 from estimator.wording import counted
 from service.client import connect
 from service.commands.api import By, WhyHandled
-from service.commands.calls import Answer, Call, ListColumns, Row, app_of, in_address
+from service.commands.calls import Answer, Call, ListColumns, Row, in_address
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.speech import FAILED, output_language, problems_in_words, say, translated
 from service.commands.upload import followed
@@ -219,8 +219,3 @@ COMMANDS: dict[str, Row] = {
         has_json=True,
     ),
 }
-
-
-def command_of(name: str) -> typer.Typer:
-    """The command or the group of commands of a name."""
-    return app_of(name, COMMANDS)

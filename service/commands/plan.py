@@ -82,12 +82,10 @@ def plan_session(
         float | None, typer.Option(help="One sigma of a reading, µg (°/h).", show_default="as SESSION states or shows")
     ] = None,
     orientations: Annotated[
-        int | None,
-        typer.Option(help="Propose this many still orientations instead of a stand.", show_default=False),
+        int | None, typer.Option(help="Propose this many still orientations instead of a stand.", show_default=False)
     ] = None,
     temperatures: Annotated[
-        str | None,
-        typer.Option(help="Soaks of a thermal session in order, °C: 20,-40,70,20.", show_default=False),
+        str | None, typer.Option(help="Soaks of a thermal session in order, °C: 20,-40,70,20.", show_default=False)
     ] = None,
     as_json: AsJson = False,
 ) -> None:

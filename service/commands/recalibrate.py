@@ -73,7 +73,6 @@ def recalibrate_units(
 def _outcomes(
     storage: Storage, settings: Settings, units: list[str] | None, processes: Processes
 ) -> Iterator[UnitOutcome]:
-    """Outcomes unit by unit."""
     with storage.database.reading() as store:
         count = len(units) if units else Models(store).count_behind()
     serials: Iterable[str] = units or units_behind(storage)
@@ -98,8 +97,6 @@ def _run(storage: Storage, settings: Settings, count: int, processes: Processes)
 
 
 class _Totals:
-    """Totals of all units."""
-
     def __init__(self) -> None:
         self.units = self.failed = self.recomputed = self.left = self.moved = 0
 

@@ -8,7 +8,7 @@ from rich.markup import escape
 
 from service.client import connect
 from service.commands.api import At, By, Unit
-from service.commands.calls import Answer, Call, ListColumns, Row, app_of
+from service.commands.calls import Answer, Call, ListColumns, Row
 from service.commands.console import DEFAULT_SERVER, Out, Server, deliver, screen, usable
 from service.commands.speech import output_language, translated
 
@@ -120,8 +120,3 @@ COMMANDS: dict[str, Row] = {
     "units import": import_register,
     "units export": export_register,
 }  # fmt: skip
-
-
-def command_of(name: str) -> typer.Typer:
-    """The command or the group of commands of a name."""
-    return app_of(name, COMMANDS)

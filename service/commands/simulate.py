@@ -236,7 +236,6 @@ def back_from_future(sessions: int, programme: str, now: datetime) -> timedelta:
 
 
 def _earlier(simulated: Simulated, back: timedelta) -> Simulated:
-    """The same, measured earlier."""
     assert simulated.session.started_at is not None
     at = datetime.fromisoformat(simulated.session.started_at) - back
     return replace(simulated, session=_dated(simulated.session, at))
@@ -278,7 +277,6 @@ def _turned(
     *,
     levers: Array | None,
 ) -> Iterator[Simulated]:
-    """Sessions on a turntable in order."""
     make = alignment if programme == ROTATION_ALIGNMENT else rate_table
     start, drifts = 20.0 * rng.standard_normal(2), 0.01 * rng.standard_normal(3)
     moved = step_of(changes, 2, ACCELEROMETER)

@@ -129,9 +129,8 @@ def _alignments(member: DemoMember, rng: np.random.Generator) -> Iterator[DemoFi
 
 
 def _file(session: CalibrationSession, at: datetime) -> DemoFile:
-    """As it would be uploaded."""
     dated = replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", origin=SIMULATED)
-    return DemoFile(f"{session.unit}-{at:%Y-%m-%d}.json", _content(dated), at)
+    return DemoFile(f"{session.unit}-{at:%Y-%m-%d}.json", json.dumps(session_document(dated)).encode(), at)
 
 
 def _dates(member: DemoMember, rng: np.random.Generator) -> list[datetime]:
@@ -219,7 +218,3 @@ def _bent(session: CalibrationSession, truth: SensorParameters) -> Array:
 def _turned(truth: SensorParameters) -> SensorParameters:
     """The block on the stand whose seat has turned."""
     return replace(truth, axis=unit(truth.axis + np.cross(TURN, truth.axis)))
-
-
-def _content(session: CalibrationSession) -> bytes:
-    return json.dumps(session_document(session)).encode()

@@ -6,25 +6,20 @@ from functools import cache
 
 import numpy as np
 
-from estimator.diagnosis.results import Course
+from estimator.diagnosis.results import Course, Shared
 from estimator.json_object import Json
 from estimator.message import say
 from estimator.results import Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER
 from service.diagnosis.words.findings import SIZE, component_in_words
 from service.kit.libraries import alt
-from service.kit.measures import THIN, Measure, decimals, deviation_measure, number
+from service.kit.measures import COVERAGE, THIN, Measure, decimals, deviation_measure, number
 from service.sessions.charts import (
     BETA,
     BETA_RANGE,
     DATA_FORM,
     HEIGHT,
-    HIGH,
-    LEFT,
-    LOW,
-    RIGHT,
     RUNS,
-    UNIT,
     Across,
     ChartSet,
     Noise,
@@ -32,6 +27,7 @@ from service.sessions.charts import (
     by_angle,
     edges,
     filled,
+    hints,
     in_order,
     largest_edge,
     padded,
@@ -39,6 +35,9 @@ from service.sessions.charts import (
     shapes,
     specification,
     ticks,
+    x_scale,
+    y_axis,
+    y_scale,
     zero_line,
 )
 
@@ -104,7 +103,6 @@ def _panel(sides: Sides, column: int, across: Across, measure: Measure) -> Panel
         description=say(
             "rms {values}{thin_space}{label}", values=" → ".join(shown), thin_space=THIN, label=measure.label
         ),
-        condition=None,
         datasets={DATA_FORM: _points(sides, column, across, measure)},
     )
 
@@ -134,27 +132,23 @@ def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list
 
 
 def _spec_of(across: Across, measure: Measure, largest: float, *, wider: bool) -> Json:
-    left, right = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
-    low, high = padded(-largest, largest)
-    ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
-    texts = {UNIT: measure.label, CHANGE: say("measured − simulated, {label}", label=measure.label)}
-    found: Json = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
-    return found
+    x = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
+    texts = {CHANGE: say("measured − simulated, {label}", label=measure.label)}
+    return filled(_spec(across.name, across.title, wider=wider), x, padded(-largest, largest), measure.label, texts)
 
 
 @cache
 def _spec(name: str, title: str, *, wider: bool) -> Json:
     """With blanks for the unit and the ranges."""
-    axis, scale = alt.Axis(**ticks(name)), alt.Scale(domain=[LEFT, RIGHT], nice=False, zero=False)
-    x = alt.X("x:Q", title=title, axis=axis, scale=scale)
-    y_scale = alt.Scale(domain=[LOW, HIGH])
-    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
+    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=x_scale(nice=False, zero=False))
+    scale = y_scale()
+    y = y_axis(scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--muted)", opacity=0.1)
     return specification(
         [
-            band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
-            *(edges(base, y_scale, "var(--muted)") if wider else ()),
+            band.encode(y=alt.Y("low:Q", scale=scale), y2="band:Q", detail="run:N"),
+            *(edges(base, scale, "var(--muted)") if wider else ()),
             zero_line(),
             _marks(base, y, MODELS[0]),
             _marks(base, y, MODELS[1]),
@@ -175,12 +169,7 @@ def _marks(base: "alt.Chart", y: "alt.Y", model: str) -> "alt.Chart":
         .encode(
             y=y,
             shape=alt.Shape("run:N", legend=None, scale=shapes()),
-            tooltip=[
-                alt.Tooltip("row:Q", title="row"),
-                alt.Tooltip("run:N", title="run"),
-                alt.Tooltip("model:N", title="model"),
-                alt.Tooltip("y:Q", title=CHANGE),
-            ],
+            tooltip=hints({"row:Q": "row", "run:N": "run", "model:N": "model", "y:Q": CHANGE}),
         )
     )
     return chart
@@ -238,7 +227,6 @@ def _course_panel(component: str, value: np.ndarray, residuals: Residuals, acros
             thin_space=THIN,
             label=measure.label,
         ),
-        condition=None,
         datasets={DATA_FORM: _course_points(value, residuals, across)},
     )
 
@@ -258,32 +246,72 @@ def _course_points(value: np.ndarray, residuals: Residuals, across: Across) -> l
 
 
 def _filled(across: Across, measure: Measure, largest: float, *, is_joined: bool) -> Json:
-    left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
-    low, high = padded(-largest, largest)
-    blanks = {LEFT: left, RIGHT: right, LOW: low, HIGH: high, UNIT: measure.label}
+    x = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
+    texts = {CHANGE: say("off by, {label}", label=measure.label)}
     spec = _course_spec(across.name, across.title, is_joined=is_joined)
-    found: Json = filled(spec, {**blanks, CHANGE: say("off by, {label}", label=measure.label)})
-    return found
+    return filled(spec, x, padded(-largest, largest), measure.label, texts)
 
 
 @cache
 def _course_spec(name: str, title: str, *, is_joined: bool) -> Json:
     """With blanks for the unit and the ranges; ``is_joined``: neighbours are joined by a line."""
-    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
-    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LOW, HIGH]))
+    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=x_scale(nice=False))
     colour = alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"]))
-    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x, y=y, color=colour)
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x, y=y_axis(y_scale()), color=colour)
     lines = [base.mark_line(strokeWidth=1, opacity=0.6)] if is_joined else []
-    return specification([zero_line(), *lines, _course_marks(base)], HEIGHT)
-
-
-def _course_marks(base: "alt.Chart") -> "alt.Chart":
-    chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
+    marks = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
         shape=alt.Shape("run:N", legend=None, scale=shapes()),
-        tooltip=[
-            alt.Tooltip("row:Q", title="row"),
-            alt.Tooltip("run:N", title="run"),
-            alt.Tooltip("y:Q", title=CHANGE),
-        ],
+        tooltip=hints({"row:Q": "row", "run:N": "run", "y:Q": CHANGE}),
     )
-    return chart
+    return specification([zero_line(), *lines, marks], HEIGHT)
+
+
+def shared_chart(shared: Shared, kind: str, residuals: Residuals, name: str) -> ChartSet:
+    """One panel: the course as the sensor that shows it most has it, of a ``kind``, and the others scaled onto it."""
+    time = residuals.time
+    across = in_order(residuals) if time is None else Across("time", "By time", "h", np.asarray(time) / 3600)
+    course, measured, band = (np.array(x) for x in (shared.course, shared.measured, shared.band))
+    reach = float(np.max(np.abs(np.concatenate([course, measured])) + COVERAGE * np.concatenate([band, band])))
+    measure = deviation_measure(kind, "bias", reach)
+    swing = float(np.ptp(course)) * measure.factor
+    points = [
+        {
+            "x": float(f"{across.values[row]:.6g}"),
+            "y": float(f"{measured[row] * measure.factor:.5g}"),
+            "course": float(f"{course[row] * measure.factor:.5g}"),
+            "low": float(f"{(measured[row] - COVERAGE * band[row]) * measure.factor:.5g}"),
+            "high": float(f"{(measured[row] + COVERAGE * band[row]) * measure.factor:.5g}"),
+            "row": row + 1,
+        }
+        for row in range(min(len(course), len(across.values)))
+    ]
+    return ChartSet(
+        name=name,
+        heading=across.heading,
+        spec=_shared_spec(across, measure.label, reach * measure.factor),
+        panels=(
+            Panel(
+                title=shared.drawn_for,
+                description=say(
+                    "moves by {swing} in the session",
+                    swing=f"{number(swing, decimals(swing / 10))}{THIN}{measure.label}",
+                ),
+                datasets={DATA_FORM: points},
+            ),
+        ),
+    )
+
+
+def _shared_spec(across: Across, unit: str, reach: float) -> Json:
+    domain = padded(float(np.min(across.values)), float(np.max(across.values)))
+    scale = alt.Scale(domain=domain, nice=False, zero=False)
+    x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks(across.name)), scale=scale)
+    y_scale = alt.Scale(domain=padded(-reach, reach))
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    band = base.mark_area(color="var(--muted)", opacity=0.2).encode(y=alt.Y("low:Q", scale=y_scale), y2="high:Q")
+    line = base.mark_line(color="var(--accent)").encode(y=alt.Y("course:Q", scale=y_scale))
+    marks = base.mark_point(color="var(--second)", filled=True, opacity=1, size=30).encode(
+        y=alt.Y("y:Q", title=unit, axis=alt.Axis(tickCount=5), scale=y_scale),
+        tooltip=hints({"row:Q": "row", "y:Q": say("all sensors together, {unit}", unit=unit)}),
+    )
+    return specification([band, line, marks], HEIGHT)

@@ -99,7 +99,6 @@ def _is_same(before: Score, after: Score) -> bool:
 
 
 def _numbers(score: Score) -> tuple[float, ...]:
-    """All that a score states."""
     return score.rms, score.chi2_per_dof, score.log_score, *score.rms_by_kind.values()
 
 

@@ -72,7 +72,6 @@ class RevisionView:
     state: str
     """What it is to this session's calibration."""
     withdrawn: ModelRevision | None
-    """The revision that withdrew it."""
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,7 @@ from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Course, Shared, Structure
 from estimator.message import say
 from estimator.results import Calibration, Residuals
-from service.diagnosis.charts import course_charts, measure_of
-from service.diagnosis.shared_charts import shared_chart
+from service.diagnosis.charts import course_charts, measure_of, shared_chart
 from service.diagnosis.words.findings import course_in_words
 from service.kit.failure import session_failed
 from service.kit.measures import COVERAGE, deviation_measure

@@ -14,7 +14,7 @@ from service.kit.copying import copied
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservation
 from service.sessions.records import DiagnosisState, DiagnosisSummary
-from service.sessions.reservation_document import reservations_from_list, reservations_to_list
+from service.sessions.store import reservations_from_list, reservations_to_list
 from service.sessions.tables import SessionRow
 from service.storage.queries import Queries
 

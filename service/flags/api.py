@@ -1,23 +1,25 @@
-"""Flags over HTTP."""
+"""Flags over HTTP, and the webhooks of programs that are told of them."""
 
 from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, StringConstraints
 
-from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, resolve_flag
-from service.flags.records import Flag, FlagState
+from service.flags.changes import Assignment, acknowledge_flag, assign_flag, assign_flags, remove_webhook, resolve_flag
+from service.flags.changes import register_webhook as register
+from service.flags.records import Delivery, Flag, FlagState, Webhook
 from service.flags.store import FlagQuery, Flags
 from service.flags.view import assignee_meant
+from service.flags.webhooks_store import Webhooks
 from service.languages.catalogue import said_in
 from service.languages.language import Language, asked
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.storage.queries import Store
 from service.units.store import Units
-from service.web.dependencies import Now, Reading
-from service.web.fields import Body, LongText, Name, Number, Paged, Reason, Text, Window, WindowOf
+from service.web.dependencies import Now, Reading, SettingsOf
+from service.web.fields import Body, Limit, LongText, Name, Number, Paged, Reason, Text, Window, WindowOf
 from service.web.problem_document import errors
 
 FlagNumber = Annotated[int, Field(ge=1, le=2_000_000_000)]
@@ -119,3 +121,71 @@ def resolve(request: Request, id: Number, handling: Handling, storage: StorageOf
     """Say that the matter is settled, and how."""
     flag = resolve_flag(storage, id, person.signs(handling.by), handling.why, now)
     return said_in(flag, asked(request.scope))
+
+
+Url = Annotated[str, StringConstraints(pattern=r"^[!-~]+$", max_length=2000)]
+Secret = Annotated[str, StringConstraints(pattern=r"^[ -~]+$", min_length=16, max_length=200)]
+
+
+class NewWebhook(
+    Body,
+    json_schema_extra={
+        "example": {"url": "https://example.org/hook", "secret": "sixteen or more letters", "by": "K. Ito"}
+    },
+):
+    """An address to notify."""
+
+    url: Url = Field(
+        description="Where messages are sent; its host must be among those that the operator allows.",
+        json_schema_extra={
+            "pattern": r"^(https?://([A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?(/[!-~]*)?|mailto:[!-~]+@[A-Za-z0-9.-]+)$"
+        },
+    )
+    secret: Secret | None = Field(
+        default=None, description="What messages to a host are signed with, 16 characters or more; never shown again."
+    )
+    by: Name = Field(description="Who registers it.")
+
+
+class WebhookList(BaseModel):
+    """All addresses that are notified."""
+
+    webhooks: tuple[Webhook, ...] = Field(description="In the order in which they were registered.")
+
+
+class DeliveryList(BaseModel):
+    """The latest messages to one address."""
+
+    deliveries: tuple[Delivery, ...] = Field(description="Newest first.")
+
+
+webhooks_router = APIRouter(prefix="/webhooks", tags=["webhooks"])
+
+
+@webhooks_router.get("", responses=errors())
+def list_webhooks(store: Reading) -> WebhookList:
+    """Every address that is notified; secrets are not shown."""
+    return WebhookList(webhooks=Webhooks(store).every())
+
+
+@webhooks_router.post("", status_code=201, responses=errors(400, 422))
+def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf) -> Webhook:
+    """Tell an address of flags and verdicts from now on. Its host must be among those that the operator allows;
+    `mailto:crew@example.org` is sent e-mail, where the operator named a mail server."""
+    who, has_mail = person.signs(new.by), bool(settings.mail_host and settings.mail_from)
+    return register(storage, settings.webhook_hosts, new.url, new.secret or "", who=who, now=now, has_mail=has_mail)
+
+
+@webhooks_router.get("/{id}/deliveries", responses=errors(404, 422))
+def list_deliveries(id: Number, store: Reading, limit: Limit = 100) -> DeliveryList:
+    """The latest messages to an address, and what became of them."""
+    found = Webhooks(store).deliveries(Webhooks(store).get(id).id, limit)
+    return DeliveryList(deliveries=found)
+
+
+@webhooks_router.delete("/{id}", status_code=204, responses=errors(404, 422))
+def delete_webhook(
+    id: Number, storage: StorageOf, now: Now, by: Annotated[Name, Query(description="Who removes it.")]
+) -> None:
+    """Tell an address no more; what was on its way to it is given up."""
+    remove_webhook(storage, id, by, now)

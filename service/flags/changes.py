@@ -40,7 +40,7 @@ def assign_flag(storage: Storage, id: int, said: Assignment, now: datetime) -> F
         unit, assignee = Units(store).hold(Flags(store).unit_of(id)), assignee_of(store, said.to)
         flag = Flags(store).get(id)
         if flag.state is FlagState.RESOLVED:
-            raise ConflictError(say("Flag {id} is already resolved: it cannot be assigned.", id=id))
+            raise ConflictError("Flag {id} is already resolved: it cannot be assigned.", id=id)
         _put(store, flag, unit, assignee, said=said, now=now)
         return Flags(store).get(id)
 
@@ -140,7 +140,7 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
         flag = Flags(store).get(id)
         if flag.state not in POSSIBLE[state]:
             parts = {"id": id, "state": flag.state.value, "new_state": state.value}
-            raise ConflictError(say("Flag {id} is already {state}: it cannot be {new_state} now.", **parts))
+            raise ConflictError("Flag {id} is already {state}: it cannot be {new_state} now.", **parts)
         return _keep(store, FlagHandling(id, unit, state, who=who, why=why, at=now))
 
 

@@ -21,7 +21,6 @@ from sqlalchemy import (
 )
 from sqlalchemy.orm import aliased
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.flags.records import AT_FAULT, Assignee, Concern, Flag, FlagState, Matter, Notice, NoticeKind
 from service.flags.tables import DeliveryRow, FlagRow, NoticeRow, WebhookRow
@@ -96,7 +95,6 @@ class FlagQuery(ListQuery):
 IS_OF_UNIT = FlagRow.scope == Scope.UNIT
 """About the unit itself, not about its type or a stand."""
 IS_OF_RETIRED = exists().where(UnitRow.id == FlagRow.unit_id, UnitRow.retired_at.is_not(None))
-"""On a unit that is retired."""
 IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
 """A number that orders open flags before those that are resolved."""
 
@@ -178,7 +176,7 @@ class Flags(Queries):
         query = select(UnitRow.serial).join(FlagRow, FlagRow.unit_id == UnitRow.id).where(FlagRow.id == id)
         serial = self._session.scalar(query)
         if serial is None:
-            raise NotFoundError(say("There is no flag {id}.", id=id))
+            raise NotFoundError("There is no flag {id}.", id=id)
         return serial
 
     def get(self, id: int) -> Flag:
@@ -192,7 +190,7 @@ class Flags(Queries):
         )
         found = _with_lives(self._session.execute(query))
         if not found:
-            raise NotFoundError(say("There is no flag {id}.", id=id))
+            raise NotFoundError("There is no flag {id}.", id=id)
         return found[0]
 
     def page(self, wanted: FlagQuery) -> tuple[Flag, ...]:

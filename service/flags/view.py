@@ -24,7 +24,10 @@ def assignee_meant(store: Store, asked: str, person: Person) -> Assignee | None:
     if not asked:
         return None
     if asked == ME:
-        return _me(person)
+        if not person.login:
+            fault = "`me` is whoever signs in, and nobody did; give a name"
+            raise RefusedError("It is not known whose flags are meant.", (Problem("assigned", fault),))
+        return Assignee(person.name, person.login)
     known = (assignee for assignee in Flags(store).assignees() if asked in (assignee.login, assignee.name))
     return NOBODY if asked == OF_NOBODY else next(known, Assignee(asked))
 
@@ -36,13 +39,6 @@ def active_names(store: Store) -> tuple[str, ...]:
     return tuple(account.name if account.name and often[account.name] == 1 else account.login for account in active)
 
 
-def _me(person: Person) -> Assignee:
-    if not person.login:
-        fault = "`me` is whoever signs in, and nobody did; give a name"
-        raise RefusedError("It is not known whose flags are meant.", (Problem("assigned", fault),))
-    return Assignee(person.name, person.login)
-
-
 STATES = {FlagState.RAISED.value: "Not acknowledged", FlagState.ACKNOWLEDGED.value: "Acknowledged"}
 """Choices, in words."""
 NEWEST, OLDEST = "newest", "oldest"
@@ -50,7 +46,6 @@ MINE, NOBODYS = "Assigned to me", "Assigned to nobody"
 
 
 def _number(asked: str) -> str:
-    """A flag's number; empty where it is none."""
     return asked if asked.isascii() and asked.isdecimal() and 0 < int(asked) <= 2_000_000_000 else ""
 
 

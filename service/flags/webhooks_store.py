@@ -6,7 +6,6 @@ from datetime import datetime
 
 from sqlalchemy import ColumnElement, func, select, update
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.flags.records import Delivery, DeliveryState, Matter, Outgoing, Webhook
 from service.flags.store import notice_of
@@ -36,7 +35,7 @@ class Webhooks(Queries):
         """One address that was not removed."""
         row = self._session.scalar(select(WebhookRow).where(WebhookRow.id == id, WebhookRow.removed_at.is_(None)))
         if row is None:
-            raise NotFoundError(say("There is no webhook {id}.", id=id))
+            raise NotFoundError("There is no webhook {id}.", id=id)
         return _webhook(row)
 
     def every(self) -> tuple[Webhook, ...]:

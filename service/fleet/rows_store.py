@@ -36,8 +36,7 @@ class FleetRows(Queries):
             .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
             .join(SessionRow, SessionRow.id == ConditionRow.last_session)
             .join(
-                DecisionRow,
-                (DecisionRow.session_id == SessionRow.id) & (DecisionRow.revision == SessionRow.revision),
+                DecisionRow, (DecisionRow.session_id == SessionRow.id) & (DecisionRow.revision == SessionRow.revision)
             )
             .where(UnitRow.serial.in_(serials))
             .order_by(UnitRow.serial, DecisionRow.position)
@@ -119,11 +118,7 @@ def _points() -> Select[*tuple[Any, ...]]:
         .outerjoin(DecisionRow, DECIDED)
         .where(ParameterRow.revision == SessionRow.revision, IS_ACCEPTED, IS_JUDGED)
         .order_by(
-            UnitRow.serial,
-            ParameterRow.at,
-            ParameterRow.session_id,
-            ParameterRow.sensor_index,
-            ParameterRow.parameter,
+            UnitRow.serial, ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter
         )
     )
 

@@ -22,6 +22,7 @@ from sqlalchemy.orm import InstrumentedAttribute, aliased, join, load_only
 
 from estimator.session import PROGRAMMES
 from service.diagnosis.tables import DiagnosisRow
+from service.errors import NotFoundError
 from service.flags.tables import FlagRow
 from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
 from service.fleet.records import UNCALIBRATED, FleetChoices, FleetQuery, Tally
@@ -35,10 +36,9 @@ from service.queue.tables import WorkRow
 from service.sessions.decision import Verdict
 from service.sessions.doubt import Reservations
 from service.sessions.records import DiagnosisState, StoredSession
-from service.sessions.reservation_document import reservations_from_list
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED
-from service.sessions.store import is_waiting, reference_query, session_record, session_rows
+from service.sessions.store import is_waiting, reference_query, reservations_from_list, session_record, session_rows
 from service.sessions.tables import DecisionRow, SessionRow
 from service.stands.tables import StandRow
 from service.storage.columns import RESOLVED
@@ -46,7 +46,7 @@ from service.storage.queries import Queries
 from service.types.store import unit_type_of
 from service.types.tables import ToleranceRow, UnitTypeRow
 from service.units.records import Customer
-from service.units.register_store import register_entry
+from service.units.store import register_entry
 from service.units.tables import UnitRow
 
 Other = aliased(SessionRow)
@@ -157,6 +157,13 @@ class Fleet(Queries):
         row = self._session.execute(_summaries().where(UnitRow.serial == serial)).one_or_none()
         return None if row is None else _summary(row)
 
+    def get(self, serial: str) -> UnitSummary:
+        """One unit; NotFoundError where there is none of that serial number."""
+        unit = self.unit(serial)
+        if unit is None:
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
+        return unit
+
     def unit_known(self, serial: str, now: datetime) -> UnitKnown | None:
         """One unit with what its page begins with, in one query."""
         in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
@@ -212,7 +219,6 @@ def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
 
 
 def _held(name: str, column: InstrumentedAttribute[str]) -> Select[str, str]:
-    """What the register says of units in use."""
     return select(literal(name), column).where(column != "", UnitRow.retired_at.is_(None)).distinct()
 
 
@@ -349,7 +355,6 @@ def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
 
 
 def _held_by(unit: UnitRow) -> dict[str, Any]:
-    """What the register says of it."""
     return {name: getattr(unit, name) for name in ("owner", "location", "custodian", "retired_at")}
 
 

@@ -112,7 +112,6 @@ _STOOD_AND_STANDS: CompoundSelect[*tuple[Any, ...]] = union_all(
 
 
 def _severity(severity: int | None, registered_at: datetime | None, retired_at: datetime | None) -> int:
-    """By which a unit is counted."""
     if retired_at is not None:
         return RETIRED
     if severity is None:
@@ -121,7 +120,6 @@ def _severity(severity: int | None, registered_at: datetime | None, retired_at: 
 
 
 def _counted(come: Iterable[Mapping[str, Any]], gone: Iterable[Mapping[str, Any]]) -> dict[Key, dict[str, int]]:
-    """Differences by key."""
     counts: dict[Key, Counter[str]] = {}
     for sign, rows in ((1, come), (-1, gone)):
         for row in rows:
@@ -132,7 +130,6 @@ def _counted(come: Iterable[Mapping[str, Any]], gone: Iterable[Mapping[str, Any]
 
 
 def _add(session: Session, table: type[Base], key: tuple[str, ...], counts: Mapping[Key, Mapping[str, int]]) -> None:
-    """Adds differences to counts, in the order of their keys."""
     rows = list(_rows(key, counts))
     if not rows:
         return
@@ -144,7 +141,6 @@ def _add(session: Session, table: type[Base], key: tuple[str, ...], counts: Mapp
 
 
 def _put(session: Session, table: type[Base], key: tuple[str, ...], rows: Sequence[Mapping[str, Any]]) -> None:
-    """Rows in place of those of their keys."""
     if not rows:
         return
     insertion = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert

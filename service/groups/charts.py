@@ -22,17 +22,16 @@ from service.kit.measures import ARCSEC, COVERAGE, Measure, day_of, deviation_me
 from service.sessions.charts import (
     BETA,
     DATA_FORM,
-    HIGH,
-    LEFT,
-    LOW,
-    RIGHT,
-    UNIT,
     ChartSet,
     Panel,
     filled,
+    hints,
     padded,
     specification,
     ticks,
+    x_scale,
+    y_axis,
+    y_scale,
     zero_line,
 )
 
@@ -86,13 +85,12 @@ def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
         return None
     span = [_iso(min(times)), _iso(max(times))]
     reach = max(_reach(finding, element) for element in elements)
-    low, high = padded(-reach, reach)
     air = (max(times) - min(times)) * AIR
-    ranges = {LEFT: _iso(min(times) - air), RIGHT: _iso(max(times) + air), LOW: low, HIGH: high}
+    x = (_iso(min(times) - air), _iso(max(times) + air))
     return ChartSet(
         name=f"{name}-forest",
         heading="In each session",
-        spec=filled(_forest_spec(), {**ranges, UNIT: elements[0].measure.label}),
+        spec=filled(_forest_spec(), x, padded(-reach, reach), elements[0].measure.label),
         panels=tuple(_forest_panel(finding, element, span) for element in elements),
     )
 
@@ -124,7 +122,6 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
         description=say(
             "{value} together{omitted_rows}", value=measured(value, spread, element.measure), omitted_rows=left
         ),
-        condition=None,
         datasets={
             DATA_FORM: list(_session_points(finding, element)),
             POOLED: [
@@ -154,21 +151,13 @@ def _session_points(finding: GroupFinding, element: Element) -> Iterator[Json]:
 
 @cache
 def _forest_spec() -> Json:
-    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
-    y_scale = alt.Scale(domain=[LOW, HIGH])
-    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
+    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=x_scale(type="utc"))
+    y = y_axis(y_scale())
     pooled = alt.Chart(alt.NamedData(name=POOLED)).encode(x=x)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     marks = base.mark_point(
         filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)", clip=True
-    ).encode(
-        y=y,
-        tooltip=[
-            alt.Tooltip("date:N", title="session"),
-            alt.Tooltip("unit:N", title="unit"),
-            alt.Tooltip("value:N", title="alone"),
-        ],
-    )
+    ).encode(y=y, tooltip=hints({"date:N": "session", "unit:N": "unit", "value:N": "alone"}))
     return specification(
         [
             pooled.mark_area(color="var(--second)", opacity=0.25).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
@@ -184,22 +173,13 @@ def _forest_spec() -> Json:
 def picture_chart(picture: Picture, kind: str, name: str) -> ChartSet:
     """The pooled residual against its variable, without the effect and with it."""
     measure, at, largest = _measure_of(picture, kind), _places(picture), _largest(picture)
-    low, high = padded(-largest * measure.factor, largest * measure.factor)
-    by_angle = picture.variable == BY_ANGLE
-    left, right = (0.0, 360.0) if by_angle else padded(min(at), max(at))
-    title = _title(picture)
-    blanks = {
-        LEFT: left,
-        RIGHT: right,
-        LOW: low,
-        HIGH: high,
-        UNIT: measure.label,
-        VALUE: say("mean, {label}", label=measure.label),
-    }
+    reach, by_angle, title = largest * measure.factor, picture.variable == BY_ANGLE, _title(picture)
+    x = (0.0, 360.0) if by_angle else padded(min(at), max(at))
+    texts = {VALUE: say("mean, {label}", label=measure.label)}
     return ChartSet(
         name=f"{name}-picture",
         heading="Residuals common to all sessions",
-        spec=filled(_picture_spec(title, by_angle=by_angle), blanks),
+        spec=filled(_picture_spec(title, by_angle=by_angle), x, padded(-reach, reach), measure.label, texts),
         panels=tuple(_picture_panel(picture, side, at, measure) for side in SIDES),
     )
 
@@ -241,7 +221,6 @@ def _picture_panel(picture: Picture, side: str, at: Sequence[float], measure: Me
     return Panel(
         title=say("{quantity} {direction}", quantity=WHAT.get(picture.of, picture.of), direction=side),
         description=say("{outside} of {values} outside ±2σ", outside=outside, values=len(values)),
-        condition=None,
         datasets={
             DATA_FORM: [
                 {"x": _short(x), "y": _short(v * measure.factor), "band": _short(COVERAGE * s * measure.factor)}
@@ -254,15 +233,14 @@ def _picture_panel(picture: Picture, side: str, at: Sequence[float], measure: Me
 @cache
 def _picture_spec(title: str, *, by_angle: bool) -> Json:
     axis = alt.Axis(**ticks(BETA)) if by_angle else alt.Axis(tickCount=5)
-    x = alt.X("x:Q", title=title, axis=axis, scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
-    y_scale = alt.Scale(domain=[LOW, HIGH])
+    x = alt.X("x:Q", title=title, axis=axis, scale=x_scale(nice=False))
+    scale = y_scale()
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=0.13)
     marks = base.mark_point(filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)").encode(
-        y=alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale),
-        tooltip=[alt.Tooltip("x:Q", title=title), alt.Tooltip("y:Q", title=VALUE)],
+        y=y_axis(scale), tooltip=hints({"x:Q": title, "y:Q": VALUE})
     )
-    return specification([band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q"), zero_line(), marks], HEIGHT)
+    return specification([band.encode(y=alt.Y("low:Q", scale=scale), y2="band:Q"), zero_line(), marks], HEIGHT)
 
 
 def _iso(at: datetime) -> str:

@@ -27,7 +27,6 @@ from sqlalchemy.orm import aliased
 from estimator.groups import GroupDiagnosis, SessionStatistics
 from estimator.groups.statistics import FORMAT
 from estimator.json_object import Json
-from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.groups.records import Group, GroupAnswer, GroupShown, Level, Member, Members
@@ -80,7 +79,7 @@ class Groups(Queries):
         """A unit by its serial number, a unit type or stand by its name."""
         key = self._session.scalar(select(KEYS[level]).where(CALLED[level] == name))
         if key is None:
-            raise NotFoundError(say("There is no {level} {name}.", level=WORDS[level], name=repr(name)))
+            raise NotFoundError("There is no {level} {name}.", level=WORDS[level], name=repr(name))
         return Group(level, key, name)
 
     def at(self, place: str) -> Group:
@@ -142,7 +141,7 @@ class Groups(Queries):
         query = select(number, row, again, failed.scalar_subquery()).select_from(number.class_).outerjoin(row, stored)
         found = self._session.execute(query.where(CALLED[level] == name)).one_or_none()
         if found is None:
-            raise NotFoundError(say("There is no {level} {name}.", level=WORDS[level], name=repr(name)))
+            raise NotFoundError("There is no {level} {name}.", level=WORDS[level], name=repr(name))
         return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2], found[3] or ""
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
@@ -200,7 +199,6 @@ def _belongs(group: Group) -> ColumnElement[bool]:
 
 
 def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:
-    """As the fields of `Member`."""
     has = and_(SessionStatisticsRow.format == FORMAT, SessionStatisticsRow.document.is_not(None))
     return (
         select(

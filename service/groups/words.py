@@ -171,12 +171,7 @@ def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
         spread = COVERAGE * sigma
         measure = amplitude_measure("", unit, max(abs(value), spread))
         found.setdefault(target, []).append(
-            say(
-                "({size}){nbsp}·{nbsp}{factor}",
-                size=measured(value, spread, measure),
-                nbsp=HARD,
-                factor=factor,
-            )
+            say("({size}){nbsp}·{nbsp}{factor}", size=measured(value, spread, measure), nbsp=HARD, factor=factor)
         )
     for target, parts in found.items():
         yield TURNS.get(target, say(READS, sensor=joined(", ", term.sensors))), joined(" + ", parts)
@@ -219,10 +214,7 @@ def gain_in_words(gain: GroupGain | None) -> str:
     )
 
 
-FORMS = {
-    "same": "in all of these sessions",
-    "varying": "on average in these sessions, with a different size each time",
-}
+FORMS = {"same": "in all of these sessions", "varying": "on average in these sessions, with a different size each time"}
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
 """A moment as files state it, ISO 8601."""
 BLIND = "–"

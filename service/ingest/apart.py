@@ -25,7 +25,6 @@ from typing import Any
 from estimator.codec import KEPT
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from estimator.json_object import Json
-from estimator.message import say
 from service.errors import BusyError
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
 from service.kit import limits
@@ -83,8 +82,6 @@ class ProgressReporter:
 
 
 class _Reporter:
-    """The reporter of this process."""
-
     progress_reporter = ProgressReporter()
 
 
@@ -168,12 +165,10 @@ def _refused_if_process_ended(filename: str, most: Limits) -> Iterator[None]:
             raise
         raise refusal(
             filename,
-            say(
-                "cannot be read with {memory} MiB of memory in {seconds} s: it is damaged, or expands too much; "
-                "write it again, or average or split it",
-                memory=most.memory // 1024**2,
-                seconds=most.seconds,
-            ),
+            "cannot be read with {memory} MiB of memory in {seconds} s: it is damaged, or expands too much; "
+            "write it again, or average or split it",
+            memory=most.memory // 1024**2,
+            seconds=most.seconds,
         ) from error
 
 

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from functools import cached_property
 from pathlib import Path
 
-from estimator.errors import FormatError, Problem
+from estimator.errors import FormatError, Problem, problem_at
 from estimator.message import say
 from estimator.moments import moment, written
 from estimator.session import CalibrationSession
@@ -91,10 +91,7 @@ def _described(session: CalibrationSession) -> str:
 
 
 def _text_problems(session: CalibrationSession) -> list[Problem]:
-    names = {
-        "unit_type": session.unit_type or "",
-        "stand.id": session.stand.id if session.stand else "",
-    }
+    names = {"unit_type": session.unit_type or "", "stand.id": session.stand.id if session.stand else ""}
     names |= {f"sensors[{i}].name": sensor.name for i, sensor in enumerate(session.sensors)}
     names |= {f"sensors[{i}].reading_unit": sensor.reading_unit for i, sensor in enumerate(session.sensors)}
     texts = {"operator": session.operator, "notes": session.notes}
@@ -119,12 +116,10 @@ def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:
         return [Problem("started_at", "is not a date and time; write it like 2026-03-01T09:00:00Z")]
     if measured_at > now + CLOCK_LEEWAY:
         return [
-            Problem(
+            problem_at(
                 "started_at",
-                say(
-                    "is in the future ({date}); check the date or the clock of the recorder",
-                    date=f"{measured_at:%Y-%m-%d}",
-                ),
+                "is in the future ({date}); check the date or the clock of the recorder",
+                date=f"{measured_at:%Y-%m-%d}",
             )
         ]
     return []

@@ -37,7 +37,6 @@ def readings_digest(session: CalibrationSession) -> str:
 
 
 def _parts(name: str, value: object) -> Iterator[bytes]:
-    """Every value with its name, in a fixed order; what is not stated is left out."""
     if value is None:
         return
     if is_dataclass(value):

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
 
 CLASSES = {cls.__name__: cls for cls in (CalibrationSession, Sensor, Site, Stand, StandErrors)}
-"""Classes a session consists of."""
 DTYPE_KINDS = "fiubU"
 """Numbers, truth values and texts of a fixed width."""
 DAMAGED = (ValueError, TypeError, LookupError, RecursionError)

@@ -11,7 +11,6 @@ from io import BytesIO
 import h5py
 import numpy as np
 
-from estimator.message import say
 from service.ingest.metadata import KEY, with_metadata
 from service.kit.limits import check_table, refusal
 
@@ -30,7 +29,7 @@ def read_hdf5(content: bytes, filename: str) -> dict[str, object]:
         metadata = file.attrs.get(KEY)
         if not isinstance(metadata, str):
             raise refusal(
-                filename, say("has no text attribute {key}; put the session's JSON without its table there", key=KEY)
+                filename, "has no text attribute {key}; put the session's JSON without its table there", key=KEY
             )
         columns = _columns(file, filename)
     return with_metadata(metadata, columns, filename)
@@ -50,7 +49,7 @@ def table_of(content: bytes, filename: str) -> dict[str, object]:
 
 def _columns(file: h5py.File, filename: str) -> dict[str, object]:
     if not isinstance(file.get(GROUP, getlink=True), h5py.HardLink) or not isinstance(file[GROUP], h5py.Group):
-        raise refusal(filename, say("has no group {group}; put one dataset per column there", group=GROUP))
+        raise refusal(filename, "has no group {group}; put one dataset per column there", group=GROUP)
     return _datasets(file[GROUP], filename)
 
 
@@ -74,27 +73,24 @@ def _damage_refused(filename: str) -> Iterator[None]:
 def _dataset(group: h5py.Group, name: str, filename: str) -> h5py.Dataset:
     """The column of this name; only plain datasets."""
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-        raise refusal(filename, say("is a link; {advice}", advice=PLAIN), name)
+        raise refusal(filename, "is a link; {advice}", name, advice=PLAIN)
     item = group[name]
     if not isinstance(item, h5py.Dataset) or item.ndim != 1 or item.is_virtual or item.external:
-        raise refusal(filename, say("is not a plain column; {advice}", advice=PLAIN), name)
+        raise refusal(filename, "is not a plain column; {advice}", name, advice=PLAIN)
     return item
 
 
 def _values(name: str, column: h5py.Dataset, filename: str) -> object:
-    """The cells; None where a text is empty, NaN where a number is missing."""
     if column.dtype.kind in "fiu":
         return np.asarray(column[()])
     if h5py.check_string_dtype(column.dtype) is None:
-        raise refusal(filename, say("is of type {dtype}; {advice}", dtype=column.dtype, advice=PLAIN), name)
+        raise refusal(filename, "is of type {dtype}; {advice}", name, dtype=column.dtype, advice=PLAIN)
     if column.size > MOST_LABELS:
         raise refusal(
             filename,
-            say(
-                "has {size} texts; at most {most_labels}, so use whole numbers",
-                size=column.size,
-                most_labels=MOST_LABELS,
-            ),
+            "has {size} texts; at most {most_labels}, so use whole numbers",
             name,
+            size=column.size,
+            most_labels=MOST_LABELS,
         )
     return [column[row].decode("utf-8") or None for row in range(column.size)]

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import polars as pl
 
-from estimator.message import say
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
 from service.ingest import hdf5, mat, parquet, xlsx
@@ -41,27 +40,24 @@ def _head(rows: TableScan, filename: str) -> CalibrationSession:
     try:
         frame = next(rows.stretches(rows.names), pl.DataFrame()).head(HEAD)
     except UNREADABLE as error:
-        raise refusal(filename, say("cannot be read as a table: {error}", error=str(error)[:200]), "table") from error
+        raise refusal(filename, "cannot be read as a table: {error}", "table", error=str(error)[:200]) from error
     frame = frame.with_columns(numbers(column) for column in frame if column.dtype == pl.String)
     document = with_metadata(rows.metadata, columns_of(frame, filename), filename)
     return read_session(document, name=filename, part=True)
 
 
 def _frames(rows: TableScan, names: list[str], filename: str) -> Iterator[pl.DataFrame]:
-    """Readings alone."""
     columns, limit, rows_read = len(rows.names), in_force().log_cells, 0
     try:
         for frame in rows.stretches(names):
             rows_read += len(frame)
             if rows_read * columns > limit:
                 raise refusal(
-                    filename,
-                    say("has more than {limit} cells, the limit for a recording; split it", limit=limit),
-                    "table",
+                    filename, "has more than {limit} cells, the limit for a recording; split it", "table", limit=limit
                 )
             yield frame.cast(pl.Float64)
     except UNREADABLE as error:
-        raise refusal(filename, say("cannot be read to its end: {error}", error=str(error)[:200]), "table") from error
+        raise refusal(filename, "cannot be read to its end: {error}", "table", error=str(error)[:200]) from error
 
 
 Content = bytes | Path
@@ -117,11 +113,9 @@ def _whole(path: Path, filename: str) -> bytes:
     if size > limit:
         raise refusal(
             filename,
-            say(
-                "has {size} bytes; but for raw logs (sample_rate_hz) at most {limit} can be read",
-                size=f"{size:,}",
-                limit=f"{limit:,}",
-            ),
+            "has {size} bytes; but for raw logs (sample_rate_hz) at most {limit} can be read",
+            size=f"{size:,}",
+            limit=f"{limit:,}",
         )
     return path.read_bytes()
 

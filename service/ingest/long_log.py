@@ -13,7 +13,6 @@ import polars as pl
 from estimator.calibration.free import residual_per_freedom, tilt_response
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from estimator.long_logs import LongLog, average_long
-from estimator.message import say
 from estimator.reading import Extent, read_session
 from estimator.reading.csv_text import cell_of
 from estimator.reading.keys import COLUMNS
@@ -99,9 +98,7 @@ def parquet_rows(path: Path, filename: str) -> ParquetRows:
     except UNREADABLE as error:
         raise refusal(filename, PARQUET_DAMAGED) from error
     if metadata is None:
-        raise refusal(
-            filename, say("has no key-value entry {key}; put the session's JSON without its table there", key=KEY)
-        )
+        raise refusal(filename, "has no key-value entry {key}; put the session's JSON without its table there", key=KEY)
     return ParquetRows(path, filename, metadata, names)
 
 
@@ -172,7 +169,7 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
         names = [name.strip().strip('"') for name in header.decode().split(separator)]
     except UnicodeDecodeError as error:
         raise refusal(
-            filename, say("is not UTF-8 text (byte {position}); save it as UTF-8", position=error.start + 1)
+            filename, "is not UTF-8 text (byte {position}); save it as UTF-8", position=error.start + 1
         ) from error
     if len(set(names)) < len(names) or not all(names):
         raise refusal(filename, "has columns without a name or of the same name; names must differ", "table")
@@ -181,7 +178,7 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
     try:
         sample = next(rows.stretches(names), pl.DataFrame()).head(SAMPLE_ROWS)
     except UNREADABLE as error:
-        raise refusal(filename, say("cannot be read as a table: {error}", error=error), "table") from error
+        raise refusal(filename, "cannot be read as a table: {error}", "table", error=error) from error
     texts = frozenset(name for name in sample.columns if numbers(sample[name]).dtype == pl.String)
     return CsvRows(path, metadata, names, separator, begins, texts)
 
@@ -292,14 +289,15 @@ class _Scan:
                 if rows_read * columns > limit:
                     raise refusal(
                         self.filename,
-                        say("has more than {most} cells, the limit for a raw log; split it", most=limit),
+                        "has more than {most} cells, the limit for a raw log; split it",
                         "table",
+                        most=limit,
                     )
                 if len(frame):
                     yield frame
         except UNREADABLE as error:
             raise refusal(
-                self.filename, say("cannot be read to its end: {error}", error=str(error)[:200]), "table"
+                self.filename, "cannot be read to its end: {error}", "table", error=str(error)[:200]
             ) from error
 
     def _checked(self, table: Mapping[str, object], offset: int) -> CalibrationSession:

@@ -14,7 +14,6 @@ from scipy.io import loadmat, whosmat
 from scipy.io.matlab import MatReadError, matfile_version
 
 from estimator.errors import FormatError
-from estimator.message import say
 from service.ingest.metadata import with_metadata
 from service.kit.limits import check_table, in_force, refusal
 
@@ -50,7 +49,8 @@ def read_mat(content: bytes, filename: str) -> dict[str, object]:
     if text is None or metadata is None or metadata.dtype.kind != "U" or len(text) != 1 or not text[0].strip():
         raise refusal(
             filename,
-            say("has no text variable {variable}; put the session's JSON without its table there", variable=VARIABLE),
+            "has no text variable {variable}; put the session's JSON without its table there",
+            variable=VARIABLE,
         )
     return with_metadata(text[0].strip(), {name: cells(column) for name, column in columns.items()}, filename)
 
@@ -64,9 +64,7 @@ def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.
         raise refusal(filename, "is of a MATLAB version that is not read; save it with save(…, '-v7')")
     limit = in_force().unpacked
     if _unpacked_size(content, limit) > limit:
-        raise refusal(
-            filename, say("unpacks to more than {limit} MiB; average or split the log", limit=limit // 1024**2)
-        )
+        raise refusal(filename, "unpacks to more than {limit} MiB; average or split the log", limit=limit // 1024**2)
     try:
         declared = _declared(content)
         _check_declared(declared, filename, most_rows)
@@ -91,23 +89,21 @@ def _check_declared(declared: list[Declared], filename: str, most_rows: int) -> 
     for name, shape, kind in declared:
         if kind not in PLAIN or names.count(name) > 1:
             raise refusal(
-                filename,
-                say("is of kind {kind}; give each column once, as numbers or as a char matrix", kind=kind),
-                name,
+                filename, "is of kind {kind}; give each column once, as numbers or as a char matrix", name, kind=kind
             )
         if len(shape) != 2 or (kind != "char" and min(shape) > most_rows):
             raise refusal(
-                filename, say("has the shape {shape}; a column is a vector, or a char matrix", shape=tuple(shape)), name
+                filename, "has the shape {shape}; a column is a vector, or a char matrix", name, shape=tuple(shape)
             )
     check_table(filename, 0, len(declared))
     cell_count, limit = sum(prod(shape) for _, shape, _ in declared), in_force().cells
     if cell_count > limit + MOST_TEXT:
         raise refusal(
             filename,
-            say(
-                "has {cells} cells; at most {limit} can be read, so average or split it", cells=cell_count, limit=limit
-            ),
+            "has {cells} cells; at most {limit} can be read, so average or split it",
             "table",
+            cells=cell_count,
+            limit=limit,
         )
 
 

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from estimator.json_object import Json
-from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems, cut
 from service.kit.limits import in_force, refusal
@@ -19,9 +18,7 @@ def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> di
     document = parse_json(text, problems)
     problems.raise_if_any()
     if "table" in document:
-        raise refusal(
-            filename, say("is in the {key} metadata; keep the readings in the columns only", key=KEY), "table"
-        )
+        raise refusal(filename, "is in the {key} metadata; keep the readings in the columns only", "table", key=KEY)
     return document | {"table": dict(columns)}
 
 

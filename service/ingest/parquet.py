@@ -4,7 +4,6 @@ from io import BytesIO
 
 import polars as pl
 
-from estimator.message import say
 from service.ingest.metadata import KEY, with_metadata
 from service.kit.limits import check_table, refusal
 
@@ -17,9 +16,7 @@ def read_parquet(content: bytes, filename: str) -> dict[str, object]:
     columns = table_of(content, filename)
     metadata = pl.read_parquet_metadata(BytesIO(content)).get(KEY)
     if metadata is None:
-        raise refusal(
-            filename, say("has no key-value entry {key}; put the session's JSON without its table there", key=KEY)
-        )
+        raise refusal(filename, "has no key-value entry {key}; put the session's JSON without its table there", key=KEY)
     return with_metadata(metadata, columns, filename)
 
 
@@ -54,7 +51,7 @@ def _check_type(name: str, dtype: pl.DataType, filename: str) -> None:
     """Raises for a type that is no column of a table, before it is unpacked."""
     labels = (pl.String, pl.Categorical, pl.Enum, pl.Boolean)
     if not (dtype.is_numeric() or dtype in labels or isinstance(dtype, pl.Enum | pl.Categorical)):
-        raise refusal(filename, say("is of type {dtype}; a column contains numbers or text", dtype=dtype), name)
+        raise refusal(filename, "is of type {dtype}; a column contains numbers or text", name, dtype=dtype)
 
 
 def _cells(series: pl.Series, filename: str) -> object:

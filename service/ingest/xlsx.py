@@ -50,7 +50,7 @@ def check_workbook(content: bytes, filename: str) -> None:
     try:
         _check_members(content, filename, lengths, shared, extents)
     except TooMuchError as error:
-        raise refusal(filename, say("{error}; average or split it", error=error)) from error
+        raise refusal(filename, "{error}; average or split it", error=error) from error
     except FormatError:
         raise  # it is another kind of archive
     except DAMAGED as error:
@@ -77,7 +77,6 @@ def _check_members(
 
 
 def _streamed(archive: ZipFile, member: ZipInfo, part: "_XmlPart", limit: int) -> int:
-    """Bytes that the member unpacks to."""
     is_xml = PurePosixPath(member.filename.lower()).suffix not in PICTURES
     total = 0
     with archive.open(member) as stream:
@@ -294,7 +293,6 @@ def _column(name: str, numbers: pl.Series, texts: pl.Series) -> Column:
 
 
 def _load(book: fastexcel.ExcelReader, sheet: str, dtype: DType) -> pl.DataFrame:
-    """The cells of a sheet, each as this type or null."""
     return book.load_sheet(sheet, header_row=None, dtypes=dtype).to_polars()
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.errors import Problem
+from estimator.errors import problem_at
 from estimator.message import say
 from service.errors import BusyError, ConflictError, ForbiddenError, RefusedError
 from service.jobs.records import Job, JobKind, NewJob
@@ -44,7 +44,7 @@ def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:
 def require_room(store: Store) -> None:
     """BusyError where too many jobs wait."""
     if Jobs(store).open_count() >= MOST_OPEN:
-        raise BusyError(say("{most_open} jobs wait already. Cancel one, or ask again later.", most_open=MOST_OPEN))
+        raise BusyError("{most_open} jobs wait already. Cancel one, or ask again later.", most_open=MOST_OPEN)
 
 
 def add_model_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
@@ -57,14 +57,13 @@ def add_model_job(store: Store, changed: ModelRevision, units: int, now: datetim
 
 
 def _pieces(store: Store, new: NewJob) -> int:
-    """Number of pieces."""
     if new.kind is JobKind.REPORT:
         return 1
     units = Jobs(store).units(new.scope, new.subject)
     if new.scope is not None and not units:
         raise RefusedError(
             "There is nothing to compute again.",
-            (Problem("subject", say("no unit is {subject}'s", subject=repr(new.subject))),),
+            (problem_at("subject", "no unit is {subject}'s", subject=repr(new.subject)),),
         )
     return units
 
@@ -97,7 +96,7 @@ def file_of(files: Files, job: Job) -> bytes:
     """The file made by a job; ConflictError where there is none any more."""
     if job.made is None:
         raise ConflictError(
-            say("Job {id} has no file to give out: it is {state}, or its time is over.", id=job.id, state=job.state)
+            "Job {id} has no file to give out: it is {state}, or its time is over.", id=job.id, state=job.state
         )
     return read_made(files, job.id, job.made.sha256)
 

@@ -8,7 +8,6 @@ from sqlalchemy import ColumnElement, Select, String, cast, delete, func, litera
 from sqlalchemy.orm import InstrumentedAttribute
 
 from estimator.json_object import Json
-from estimator.message import say
 from service.diagnosis.tables import DiagnosisRow
 from service.diagnosis.words.diagnosis import CANNOT
 from service.errors import NotFoundError
@@ -89,7 +88,7 @@ class Jobs(Queries):
         """One job; NotFoundError."""
         jobs = self._found(_JOBS.where(JobRow.id == id))
         if not jobs:
-            raise NotFoundError(say("There is no job {id}.", id=id))
+            raise NotFoundError("There is no job {id}.", id=id)
         return jobs[0]
 
     def page(self, most: int, *, before: int | None = None, account: str = "", subject: str = "") -> tuple[Job, ...]:

@@ -173,7 +173,6 @@ def _slope(residuals: Residuals) -> NDArray[np.float64] | None:
 
 
 def _span(column: NDArray[np.float64] | None) -> float:
-    """From end to end; zero of what was not recorded."""
     return 0.0 if column is None else float(np.ptp(column))
 
 

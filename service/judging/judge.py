@@ -126,6 +126,5 @@ def _change(was: ParameterValue, now: ParameterValue) -> float | None:
 
 
 def _uncertainty(was: ParameterValue) -> float:
-    """In the unit of its change."""
     assert was.u is not None
     return was.u / abs(was.value) if was.parameter == "scale" and was.value else was.u

@@ -10,7 +10,7 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from scipy.special import gammainc
 
-from estimator.errors import FormatError, Problem
+from estimator.errors import FormatError, problem_at
 from estimator.health.population import spread
 from estimator.message import say
 from estimator.results import SensorCalibration
@@ -46,9 +46,9 @@ def require_one_origin(store: Store, session: CalibrationSession) -> bool:
     if known is None or known == session.is_simulated:
         return False
     if session.is_simulated:
-        raise FormatError([Problem("origin", say(OTHERS_MEASURED, unit=session.unit))])
+        raise FormatError([problem_at("origin", OTHERS_MEASURED, unit=session.unit)])
     if Sessions(store).any_stands(session.unit):
-        raise FormatError([Problem("origin", say(OTHERS_SIMULATED, unit=session.unit))])
+        raise FormatError([problem_at("origin", OTHERS_SIMULATED, unit=session.unit)])
     return True
 
 

@@ -58,7 +58,6 @@ def _warnings(result: ParityResult) -> Iterator[str]:
 
 
 def _suspicion(result: ParityResult) -> str:
-    """What would be said if nothing moved, and how to know."""
     suspects = list(dict.fromkeys(c.sensor for c in result.suspects))[:MOST_CANDIDATES]
     act = stillness(result)
     return say(

@@ -234,7 +234,6 @@ class Derivations(Queries):
 
 
 def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Update:
-    """An update of columns by parameters of their names."""
     core_table = table.__table__
     assert isinstance(core_table, Table)
     return update(core_table).values({name: bindparam(f"new_{name}") for name in names})

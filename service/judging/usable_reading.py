@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from datetime import datetime
 
-from estimator.message import say
-from service.errors import NotFoundError
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
 from service.judging.records import Usable
@@ -27,7 +25,5 @@ def usable_of(store: Store, units: Sequence[UnitSummary], now: datetime) -> dict
 
 def usable_unit(store: Store, serial: str, now: datetime) -> Usable:
     """Of one; NotFoundError when there is none of that serial number."""
-    unit = Fleet(store).unit(serial)
-    if unit is None:
-        raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+    unit = Fleet(store).get(serial)
     return usable_of(store, (unit,), now)[serial]

@@ -86,7 +86,6 @@ def _facts(now: datetime) -> Select[*tuple[Any, ...]]:
 
 
 def _serviced(now: datetime) -> ScalarSelect[datetime]:
-    """When a unit was last serviced, up to now."""
     conditions = (ServiceRow.unit_id == UnitRow.id, IS_BREAK, ServiceRow.at <= now)
     return select(func.max(ServiceRow.at)).where(*conditions).correlate(UnitRow).scalar_subquery()
 

@@ -22,7 +22,6 @@ def copied(kind: type[T], row: object, /, **others: Any) -> T:
 
 @cache
 def _fields(kind: type) -> dict[str, Callable[[Any], Any]]:
-    """The fields of a record, and what is made of each."""
     hints = get_type_hints(kind)
     return {field.name: _enumeration(hints[field.name]) for field in fields(kind)}
 

@@ -76,8 +76,6 @@ LARGE = replace(SMALL, **{name: TIMES * getattr(SMALL, name) for name in SCALED}
 
 
 class _InForce:
-    """The one set of this process."""
-
     limits: Limits | None = None
 
 
@@ -98,9 +96,9 @@ def use(limits: Limits) -> None:
     _InForce.limits = limits
 
 
-def refusal(filename: str, message: str, field: str = "file") -> FormatError:
-    """The error for a file that cannot be read at all."""
-    return FormatError([Problem(field, message)], filename)
+def refusal(filename: str, message: str, field: str = "file", /, **parts: object) -> FormatError:
+    """The error for a file that cannot be read at all: a sentence, or the template of one with its parts."""
+    return FormatError([Problem(field, say(message, **parts) if parts else message)], filename)
 
 
 def check_table(filename: str, rows: int, columns: int) -> None:
@@ -109,14 +107,14 @@ def check_table(filename: str, rows: int, columns: int) -> None:
     if rows > most.rows:
         raise refusal(
             filename,
-            say("has {rows} rows; at most {limit} can be read, so average or split it", rows=rows, limit=most.rows),
+            "has {rows} rows; at most {limit} can be read, so average or split it",
             "table",
+            rows=rows,
+            limit=most.rows,
         )
     if columns > most.columns:
         raise refusal(
-            filename,
-            say("has {columns} columns; at most {limit} can be read", columns=columns, limit=most.columns),
-            "table",
+            filename, "has {columns} columns; at most {limit} can be read", "table", columns=columns, limit=most.columns
         )
     if rows * columns > most.cells:
         parts = {"rows": rows, "columns": columns, "cells": most.cells}

@@ -1,6 +1,7 @@
 """The catalogue of a language, read once from its gettext file."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import lru_cache
 from gettext import c2py
@@ -12,11 +13,9 @@ from babel.messages import Message as Stored
 from babel.messages.pofile import read_po
 
 from estimator.message import Message, filled
-from service.languages.charts import chart_in
+from service.languages.charts import LOCALE, chart_in
 from service.languages.entry import MessageEntry
 from service.languages.language import Language
-from service.languages.locale import LOCALE
-from service.languages.values import value_in
 
 T = TypeVar("T")
 SENTENCES = frozenset(
@@ -93,7 +92,6 @@ def forms_of(stored: Stored) -> tuple[str, ...]:
 
 
 def _texts(text: object) -> tuple[str, ...]:
-    """Of one message, or of its forms; empty for the header of the file."""
     texts = text if isinstance(text, tuple | list) else (text,)
     return tuple(str(form) for form in texts) if texts != ("",) else ()
 
@@ -108,3 +106,20 @@ def catalogue_of(language: Language) -> Catalogue:
     """The catalogue of a language that is not English."""
     with path_of(language).open("rb") as file:
         return Catalogue(language, read_po(file, locale=language.value, abort_invalid=True))
+
+
+_NUMBER = r"\d+(?:,\d{3})*(?:\.\d+)?"
+VALUE = re.compile(rf"([+−±]?{_NUMBER}(?:(?:\s±\s|–|…){_NUMBER})?)(\s?)([^\s\d.,:;]*)(\s*)")
+"""A text that is one number, or a range, and at most one measure."""
+NARROW = "\u202f"
+"""Between thousands."""
+
+
+def value_in(text: str, say: Callable[[str], str]) -> str:
+    """A number with its measure; any other text as it is."""
+    found = VALUE.fullmatch(text)
+    if found is None:
+        return text
+    number, gap, label, rest = found.groups()
+    measure = "/".join(map(say, label.split("/")))
+    return f"{number.replace(',', NARROW).replace('.', ',')}{gap}{measure}{rest}"

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from service.languages.language import Language
+
 READ = frozenset(("title", "text", "description", "subtitle"))
 """Keys of texts in Vega-Lite."""
 
@@ -16,7 +18,6 @@ def chart_in(data: Any, say: Callable[[str], str], locale: Mapping[str, Any]) ->
 
 
 def _part_in(data: Any, say: Callable[[str], str]) -> Any:
-    """A part of a definition with translated texts."""
     if isinstance(data, dict):
         return {k: _text_in(v, say) if k in READ else _part_in(v, say) for k, v in data.items()}
     if isinstance(data, list | tuple):
@@ -30,3 +31,25 @@ def _text_in(value: Any, say: Callable[[str], str]) -> Any:
     if isinstance(value, list | tuple) and all(isinstance(line, str) for line in value):
         return [say(line) for line in value]
     return _part_in(value, say)
+
+
+MONTHS = (
+    *("январь", "февраль", "март", "апрель", "май", "июнь"),
+    *("июль", "август", "сентябрь", "октябрь", "ноябрь", "декабрь"),
+)
+DAYS = ("вс", "пн", "вт", "ср", "чт", "пт", "сб")
+LOCALE: Mapping[Language, Mapping[str, Mapping[str, object]]] = {
+    Language.RUSSIAN: {
+        "time": {
+            "dateTime": "%d.%m.%Y %H:%M:%S",
+            "date": "%d.%m.%Y",
+            "time": "%H:%M:%S",
+            "periods": ["", ""],
+            "days": DAYS,
+            "shortDays": DAYS,
+            "months": MONTHS,
+            "shortMonths": [name[:3] for name in MONTHS],
+        },
+        "number": {"decimal": ",", "thousands": "\u202f", "grouping": [3], "currency": ["", ""]},
+    }
+}

@@ -22,7 +22,6 @@ class MessageEntry:
     many: str = ""
     """The plural; empty where nothing is counted."""
     place: str = ""
-    """The file with the message."""
 
     @property
     def id(self) -> str | tuple[str, str]:

@@ -41,7 +41,6 @@ class Piece:
         return name
 
     def _named(self, source: str, name: str) -> str:
-        """A name that is not taken yet, or has this source."""
         free, k = name, 1
         while free in self.sources and self.sources[free] != source:
             k += 1

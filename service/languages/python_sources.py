@@ -27,6 +27,10 @@ SENTENCE = re.compile(r"(\S+ ){4}.*[.:]$|(\S+ ){8}")
 """Words all the same: ``with the coverage factor k = 2.``"""
 TEMPLATES = {"say": 1, "say_count": 2, "translated": 1}
 """Functions of `estimator.message` that take templates, with the number of templates."""
+ERRORS = re.compile(r"[A-Z]\w+Error$")
+"""Errors of the service take the parts of their sentence."""
+OF_A_FIELD = ("add", "add_to_schedule", "fail", "problem_at", "refusal", "_refused")
+"""Functions that take a place, then a template, and its parts."""
 HELPERS = {
     "counted": ("{n} @", "{n} @s"),
     "few": ("{n} @ is too few", "{n} @s are too few"),
@@ -47,7 +51,11 @@ def messages(source: str, name: str, *, headings: bool, described: bool = False)
 def said(source: str, name: str) -> Iterator[MessageEntry]:
     """The messages of a command: the templates of calls, since its help stays English."""
     calls = (node for node in _texts_in(ast.parse(source), described=False) if isinstance(node, ast.Call))
-    return (replace(_of_call(call), place=name) for call in calls if _name(call.func) in TEMPLATES)
+    return (
+        replace(_of_call(call), place=name)
+        for call in calls
+        if _name(call.func) in TEMPLATES or ERRORS.match(_name(call.func))
+    )
 
 
 def finished(source: str) -> Iterator[str]:
@@ -101,9 +109,12 @@ def _name(node: ast.expr) -> str:
 
 
 def _templates(call: ast.Call) -> list[str]:
-    """The literal templates of a call."""
     name = _name(call.func)
-    arguments = call.args[-1:] if name in HELPERS else call.args[: TEMPLATES.get(name, 0)]
+    count = int(bool(call.keywords)) if ERRORS.match(name) else TEMPLATES.get(name, 0)
+    if name in HELPERS:
+        arguments = call.args[-1:]
+    else:
+        arguments = call.args[1:2] if name in OF_A_FIELD and call.keywords else call.args[:count]
     return [a.value for a in arguments if isinstance(a, ast.Constant) and isinstance(a.value, str)]
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from estimator.causes import CATALOGUE, OF_SEVERAL, ON_TURNTABLE, Cause
 from estimator.message import PLACE
-from service.languages import python_sources, typst_sources
+from service.languages import python_sources
 from service.languages.entry import LETTERS, MessageEntry
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
 from service.languages.template import Template
-from service.languages.templates import literals
+from service.languages.templates import SAY_CALL, literals
 
 ROOT = Path(__file__).parents[2]
 TEMPLATES = "service/*/templates/*.html"
@@ -36,7 +36,6 @@ IGNORED = (
     "service/outlook/api.py",
     "service/flags/mail.py",
     "service/flags/messages.py",
-    "service/ingest/convert",
     "service/ingest/fork_server.py",
     "service/ingest/layout/vocabulary.py",
     "service/kit/bell.py",
@@ -103,7 +102,7 @@ def _all() -> Iterator[MessageEntry]:
         yield from (found.message for found in template.messages())
         yield from (MessageEntry(text, place=path.name) for text in literals(template))
     for path in sorted((ROOT / PAPERS).glob("*.typ")):
-        yield from typst_sources.messages(path.read_text("utf-8"), path.name)
+        yield from (MessageEntry(text, place=path.name) for text in SAY_CALL.findall(path.read_text("utf-8")))
     for path in sorted(path for pattern in COMMANDS for path in ROOT.glob(pattern)):
         yield from python_sources.said(path.read_text("utf-8"), path.relative_to(ROOT).as_posix())
     for path in modules():
@@ -114,7 +113,6 @@ def _all() -> Iterator[MessageEntry]:
 
 
 def _names_of(cause: Cause) -> Iterator[str]:
-    """Names of a cause and its amplitudes."""
     yield from filter(re.compile(r"[a-z]{2}").search, (cause.name, cause.shape_words, *cause.amplitude_words))
 
 

@@ -15,9 +15,7 @@ from service.languages.pieces import Piece
 INLINE = frozenset(("a", "abbr", "b", "em", "i", "small", "strong", "sub", "sup", "span", "time"))
 """Tags that may stand inside a sentence."""
 TEXT_ATTRIBUTES = frozenset(("alt", "aria-label", "data-label", "label", "placeholder", "title"))
-"""Attributes with text for people."""
 SCRIPT_TEXT_PREFIX = "data-said-"
-"""Prefix of attributes with texts of scripts."""
 ENGLISH = ' lang="en"'
 """Marks an element that is not translated, such as the description of the API."""
 SILENT = re.compile(r"<(script|style|svg)\b.*?</\1>", re.DOTALL)
@@ -91,7 +89,6 @@ class Template:
         return frozenset(k for tag in self._tags if ENGLISH in tag.group() for k in range(tag.start(), self._end(tag)))
 
     def _end(self, first: re.Match[str]) -> int:
-        """End of an element."""
         depth = 0
         for tag in self._tags:
             if tag.start() >= first.start() and tag[2] == first[2]:

@@ -1,6 +1,5 @@
 """Model revisions over HTTP."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Any
@@ -124,11 +123,6 @@ def model_document(revision: ModelRevision) -> ModelDocument:
     return ModelDocument(**_fields(revision))
 
 
-def moved_by(revision: ModelRevision, recomputations: Iterable[Recomputation]) -> ModelAndRecomputations:
-    """A revision with its consequences."""
-    return ModelAndRecomputations(**_fields(revision), recomputations=tuple(recomputations))
-
-
 def _fields(revision: ModelRevision) -> dict[str, Any]:
     return {**vars(revision), "evidence": evidence_to_dict(revision.evidence)}
 
@@ -154,7 +148,7 @@ def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: 
 @router.get("/{id}", responses=errors(404, 422))
 def read_model(id: Number, store: Reading) -> ModelAndRecomputations:
     """One revision, with what it moved in the sessions that it concerns."""
-    return moved_by(Models(store).get(id), Recomputations(store).of(id))
+    return ModelAndRecomputations(**_fields(Models(store).get(id)), recomputations=tuple(Recomputations(store).of(id)))
 
 
 @router.get("", responses=errors(422))

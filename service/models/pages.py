@@ -70,7 +70,6 @@ class ModelView:
     gain: str
     """What it gained for its sensors, in one sentence."""
     withdrawn: ModelRevision | None
-    """The revision that withdrew it."""
     holds: bool
     progress: str
     verdicts: tuple[MovedRow, ...]

@@ -6,7 +6,6 @@ from datetime import datetime
 from sqlalchemy import ColumnElement, String, and_, bindparam, cast, func, or_, select, update
 
 from estimator.json_object import Json
-from estimator.message import say
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
 from service.kit.copying import copied
@@ -79,7 +78,7 @@ class Models(Queries):
         """One revision; NotFoundError."""
         row = self._session.get(ModelRow, id)
         if row is None:
-            raise NotFoundError(say("There is no model revision {id}.", id=id))
+            raise NotFoundError("There is no model revision {id}.", id=id)
         return _revision(row)
 
     def of_subject(self, scope: Scope, subject: str) -> tuple[ModelRevision, ...]:
@@ -273,7 +272,6 @@ def _of(task: Task) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
 
 
 def _read(document: Json) -> Recomputed:
-    """Reads a document of `settle`."""
     furthest = document["furthest"]
     return Recomputed(
         sessions=document["sessions"],

@@ -14,16 +14,15 @@ from service.outlook.rules.histories import MeasuredChange, changes_of
 from service.outlook.rules.thinned import kept
 from service.sessions.charts import (
     DATA_FORM,
-    HIGH,
-    LEFT,
-    LOW,
-    RIGHT,
-    UNIT,
     ChartSet,
     Panel,
     filled,
+    hints,
     padded,
     specification,
+    x_scale,
+    y_axis,
+    y_scale,
 )
 from service.sessions.records import ALL_PARAMETERS, HistoryPoint
 from service.sessions.words.conditions import CONDITIONS, FIT, NOT_JUDGED, REFERENCE, Condition, condition_of
@@ -158,11 +157,6 @@ ROOM = 1.5
 """The fan may widen a chart to this many tolerances, not further."""
 
 
-def trends_by_place(trends: Sequence[ParameterTrend]) -> Trends:
-    """As the charts look them up."""
-    return {(trend.sensor, trend.kind, trend.parameter): trend for trend in trends}
-
-
 def trend_of(track: ParameterCourse, trends: Trends) -> ParameterTrend | None:
     """The trend of a track."""
     return trends.get((track.sensor, track.name.rpartition("-")[2], track.parameter))
@@ -228,8 +222,8 @@ HEIGHT = 150
 def history_spec() -> Json:
     """With blanks for the unit and the ranges."""
     points, limits, services, notes = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services", "notes"))
-    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
-    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LOW, HIGH], zero=False))
+    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=x_scale(type="utc"))
+    y = y_axis(y_scale(zero=False))
     base = alt.Chart(points).encode(x=x)
     bounds = alt.Chart(limits).encode(x=alt.X("from:T"), x2="to:T")
     return specification(
@@ -257,7 +251,7 @@ def _breaks(services: "alt.NamedData") -> "alt.Chart":
         .mark_rule(color="var(--ink)", strokeWidth=2, strokeDash=[2, 2])
         .encode(
             x=alt.X("t:T"),
-            tooltip=[alt.Tooltip("what:N", title="service"), alt.Tooltip("note:N", title="note")],
+            tooltip=hints({"what:N": "service", "note:N": "note"}),
         )
     )
     return chart
@@ -271,7 +265,7 @@ def _remarks(notes: "alt.NamedData") -> "alt.Chart":
         .encode(
             x=alt.X("t:T"),
             y=alt.value(6),
-            tooltip=[alt.Tooltip("date:N", title="note"), alt.Tooltip("note:N", title="text")],
+            tooltip=hints({"date:N": "note", "note:N": "text"}),
         )
     )
     return chart
@@ -289,11 +283,7 @@ def _marks(base: "alt.Chart", y: "alt.Y") -> "alt.Chart":
         color=alt.Color("verdict:N", **by_verdict([f"var(--{c.key})" for c in shown])),
         shape=alt.Shape("verdict:N", **by_verdict([c.shape for c in shown])),
         size=alt.Size("verdict:O", **by_verdict([45 if c is FIT else 95 for c in shown])),
-        tooltip=[
-            alt.Tooltip("date:N", title="date"),
-            alt.Tooltip("value:N", title="value"),
-            alt.Tooltip("verdict:N", title="verdict"),
-        ],
+        tooltip=hints({"date:N": "date", "value:N": "value", "verdict:N": "verdict"}),
     )
     return chart
 
@@ -309,12 +299,12 @@ def history_charts(
     trends: Sequence[ParameterTrend] = (),
 ) -> ChartSet:
     """The panels of one parameter; every track has the same parameter and unit."""
-    known = trends_by_place(trends)
+    known = {(trend.sensor, trend.kind, trend.parameter): trend for trend in trends}
     span = _span(tracks, known, [*(s.at for s in services), *(n.at for n in notes)])
     return ChartSet(
         name=tracks[0].name,
         heading=tracks[0].parameter,
-        spec=_filled(tracks, span, known),
+        spec=filled(history_spec(), span, _range(tracks, known), tracks[0].unit.label),
         panels=tuple(_panel(track, services, notes, span, known) for track in tracks),
     )
 
@@ -350,7 +340,6 @@ def _point(point: TrackPoint) -> Json:
 
 
 def _limits(track: ParameterCourse, span: list[str]) -> list[Json]:
-    """Tolerance and reference, each stretch until the next one begins, from edge to edge of the chart."""
     starts = [_iso(point.at) for point in track.limits]
     return [
         {"from": start, "to": end, "ref": 0, "hi": _short(point.limit_upper), "lo": _short(point.limit_lower)}
@@ -365,13 +354,6 @@ def _iso(at: datetime) -> str:
 def _short(value: float | None) -> float | None:
     """Six digits are more than a screen can show."""
     return None if value is None else float(f"{value:.6g}")
-
-
-def _filled(tracks: Sequence[ParameterCourse], span: list[str], trends: Trends) -> Json:
-    low, high = _range(tracks, trends)
-    values = {UNIT: tracks[0].unit.label, LEFT: span[0], RIGHT: span[1], LOW: low, HIGH: high}
-    found: Json = filled(history_spec(), values)
-    return found
 
 
 def _span(tracks: Sequence[ParameterCourse], trends: Trends, events: Sequence[datetime]) -> list[str]:

@@ -274,13 +274,11 @@ def overdue_count(now: datetime) -> Select[int]:
 
 
 def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
-    """Sessions of a unit from a time on."""
     conditions = [SessionRow.unit_id == unit, IS_ACCEPTED]
     return conditions if since is None else [*conditions, SessionRow.started_at >= since]
 
 
 def _newest(unit: int) -> Select[str, datetime]:
-    """The latest session of a unit, and when."""
     sessions = select(SessionRow.id, SessionRow.started_at).where(*_within(unit, None))
     return sessions.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(1)
 

@@ -147,7 +147,6 @@ def reason_of(basis: DueBasis, due: datetime | None) -> str:
 
 
 def _since(basis: DueBasis, day: str) -> str:
-    """By a rule that names the day it starts from."""
     interval = say(
         "calibrate at least every {interval_days}", interval_days=counted(round(basis.interval_days or 0), "day")
     )

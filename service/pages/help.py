@@ -21,11 +21,7 @@ from service.web.render import render
 
 HIDDEN = "set, not shown"
 NONE = "none"
-ORIGINS = {
-    Origin.DEFAULT: "default",
-    Origin.ENVIRONMENT: "environment",
-    Origin.START: "option at the start",
-}
+ORIGINS = {Origin.DEFAULT: "default", Origin.ENVIRONMENT: "environment", Origin.START: "option at the start"}
 FILES = "_file"
 """End of the names of settings that say where a secret lies: the place is shown, what lies there is not."""
 
@@ -78,7 +74,6 @@ def _value(settings: Settings, name: str, value: Any) -> str:
 
 
 def _plain(value: Any) -> str:
-    """As people write it."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if value is None or value == "" or value == ():
@@ -271,7 +266,6 @@ WORDS = (
     ("risk", "the probability that any parameter of the unit is out of tolerance by a date"),
     ("due", "the date of the next calibration"),
 )  # fmt: skip
-"""Term and meaning."""
 MEASURES = (
     ("µg, mg", "of accelerometers' bias: a millionth and a thousandth of standard gravity, 9.80665 m/s²"),
     ("ppm, %", "of scale factors: parts in a million, in a hundred"),
@@ -281,7 +275,6 @@ MEASURES = (
     ("per g, per °/s", "of scale factors: reading units (V, counts, pulses) for one g, for one degree a second"),
     ("± U", "expanded uncertainty: the true value lies within it in about 95 of 100 cases"),
 )
-"""Measure, and what is read in it."""
 WHEN = (
     ("A unit is to be measured",
      "Ask on the page Ready whether it is warm and still enough; while it is measured, the page Missing says which "
@@ -317,7 +310,6 @@ WHEN = (
      "An engineer acknowledges it with a name and a reason, does what it asks for, and resolves it. The unit's page "
      "shows its history."),
 )  # fmt: skip
-"""What one meets, and what to do."""
 
 KEYS = (
     (("/",), "to the field that searches the list"),
@@ -327,7 +319,6 @@ KEYS = (
     (("?",), "this page"),
     (("Ctrl",), "with the mouse wheel zooms a chart; then drag it; a double click shows all of it again"),
 )
-"""Keys, and what each does."""
 
 
 def plainly(meaning: str) -> str:
@@ -348,7 +339,6 @@ class HelpPage:
     measures: tuple[tuple[str, str], ...]
     words: tuple[tuple[str, str], ...]
     keys: tuple[tuple[tuple[str, ...], str], ...]
-    """Keys, and what they do."""
 
 
 def help_page() -> HelpPage:

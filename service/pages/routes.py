@@ -6,7 +6,6 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
 from estimator.allan.results import TERMS
-from estimator.message import say
 from service.diagnosis.store import Diagnoses
 from service.errors import NotFoundError
 from service.flags.store import FlagQuery, Flags
@@ -33,9 +32,8 @@ from service.pages.unit.pages import unit_page
 from service.pages.unit.parameters import parameter_heads, parameter_page
 from service.pages.unit.remarks import remarks
 from service.pages.unit.report import covered_now, unit_report
-from service.papers.certified import traceability_of
+from service.papers.certified import recent_history, session_report, traceability_of
 from service.papers.found_and_left import found_and_left
-from service.papers.session_report import recent_history, session_report
 from service.people.admission import PersonOf
 from service.people.dependencies import Key, StorageOf
 from service.people.view_store import SavedViews
@@ -50,9 +48,8 @@ from service.sessions.doubt import Remedies
 from service.sessions.history_store import History, HistoryQuery
 from service.sessions.states import RecordState
 from service.sessions.store import Sessions
-from service.units.register_store import Register
 from service.units.remarks_store import SaidOf
-from service.units.store import Units
+from service.units.store import Register, Units
 from service.uploads.correct import remedies_of
 from service.uploads.layout.form import carried
 from service.uploads.pages import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
@@ -76,11 +73,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 @router.get("/")
 def show_fleet(
-    request: Request,
-    store: ReadingFleet,
-    now: Now,
-    person: PersonOf,
-    view: Annotated[FleetView, Query()],
+    request: Request, store: ReadingFleet, now: Now, person: PersonOf, view: Annotated[FleetView, Query()]
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
     filling = application_of(request).find(Filling)
@@ -111,7 +104,7 @@ def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw
     heads = parameter_heads(History(store).latest(Units(store).key(serial)), None)
     head = next((head for head in heads if head.anchor == name), None)
     if head is None:
-        raise NotFoundError(say("Unit {serial} has no history of {name}.", serial=serial, name=repr(name)))
+        raise NotFoundError("Unit {serial} has no history of {name}.", serial=serial, name=repr(name))
     wanted = HistoryQuery(parameter=head.parameter, kind=head.kind, raw=raw)
     points = recent_history(store, serial, HISTORY_LIMIT, wanted)
     outlook = Outlooks(store).of_unit(serial)
@@ -121,12 +114,7 @@ def show_parameter(request: Request, store: Reading, serial: Key, name: Key, raw
 
 @router.get("/units/{serial:path}")
 def show_unit(
-    request: Request,
-    store: Reading,
-    settings: SettingsOf,
-    now: Now,
-    serial: Key,
-    raw: bool = False,
+    request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key, raw: bool = False
 ) -> HTMLResponse:
     """One unit; ``raw``: histories of its parameters with what the whole block did left in."""
     report = unit_report(store, serial, now)
@@ -175,13 +163,7 @@ def show_session(
         model=model_as_of(Models(store).of_session(id), report.session.revision),
         computed=Calibrations(store).revisions(id),
         retired=retired_in_words(Register(store).get(report.session.unit)),
-        said=remarks(
-            report.session.unit,
-            id,
-            said.notes,
-            said.files,
-            in_force().attached,
-        ),
+        said=remarks(report.session.unit, id, said.notes, said.files, in_force().attached),
         temperatures=covered_at(store, report.session),
     )
     return render(request, "session.html", page)

@@ -7,8 +7,6 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
 from estimator.json_object import Json
-from estimator.message import say
-from service.errors import NotFoundError
 from service.fleet.store import Fleet
 from service.judging.usable_reading import usable_of
 from service.papers.changes import Signing
@@ -51,11 +49,7 @@ CertificateNumber = Annotated[
 ]
 
 
-@router.get(
-    "/{id}/certificate",
-    responses={**FILES, **errors(404, 409, 422, 507)},
-    response_class=Response,
-)
+@router.get("/{id}/certificate", responses={**FILES, **errors(404, 409, 422, 507)}, response_class=Response)
 def read_certificate(
     id: SessionId,
     desk: DeskOf,
@@ -161,9 +155,7 @@ class Labels:
 
     def of(self, serial: str, *, due: bool) -> Label:
         """The label of a unit; its address is the public one, or the one that the request was sent to."""
-        unit = Fleet(self.store).unit(serial)
-        if unit is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+        unit = Fleet(self.store).get(serial)
         base = self.settings.public_url or str(self.request.base_url)
         use = usable_of(self.store, (unit,), self.now)[serial]
         return label_of(unit, use, base, with_due=due)
@@ -190,9 +182,7 @@ def read_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: D
 
 
 @labels_router.get(
-    "/{serial:path}/status.pdf",
-    responses={200: {"content": {PDF: BYTES}}, **errors(404, 422)},
-    response_class=Response,
+    "/{serial:path}/status.pdf", responses={200: {"content": {PDF: BYTES}}, **errors(404, 422)}, response_class=Response
 )
 def read_status(serial: Serial, store: Reading, now: Now, language: LanguageOf) -> Response:
     """One page to hand over with the unit: may it be used, next calibration, reservations, what is closest to its
@@ -201,9 +191,7 @@ def read_status(serial: Serial, store: Reading, now: Now, language: LanguageOf) 
 
 
 @labels_router.get(
-    "/{serial:path}/label.svg",
-    responses={200: {"content": {SVG: BYTES}}, **errors(404, 422)},
-    response_class=Response,
+    "/{serial:path}/label.svg", responses={200: {"content": {SVG: BYTES}}, **errors(404, 422)}, response_class=Response
 )
 def draw_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
     """The same label as a drawing."""

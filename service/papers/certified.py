@@ -1,11 +1,11 @@
-"""Everything stated in a certificate of a session, read from the store."""
+"""Everything that is known of one session, and that its certificate states, read from the store."""
 
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 import numpy as np
 
-from estimator.message import say
+from estimator.health.common_motion import CommonMotion
 from estimator.results import Calibration, Residuals
 from estimator.session import AS_LEFT, CalibrationSession
 from service.diagnosis.records import StoredDiagnosis
@@ -19,13 +19,13 @@ from service.models.rules import in_force, model_of
 from service.models.store import Models
 from service.papers.found_and_left import FoundAndLeft, found_and_left
 from service.papers.records import Laboratory, Traceability
-from service.papers.session_report import SessionReport, recent_history, session_report
 from service.papers.words import traceability
 from service.sessions.calibrations_store import Calibrations
-from service.sessions.decision import nominal_factor_of
-from service.sessions.history_store import HistoryQuery
-from service.sessions.records import HistoryPoint, StoredSession
-from service.sessions.states import RecordState
+from service.sessions.decision import Decision, nominal_factor_of
+from service.sessions.history_store import History, HistoryQuery
+from service.sessions.records import DiagnosisSummary, HistoryPoint, StoredSession
+from service.sessions.states import RecordKind, RecordState, StateChange
+from service.sessions.states_store import States
 from service.sessions.store import Sessions
 from service.sessions.words.conditions import condition_of
 from service.settings import VERSION, Settings
@@ -37,6 +37,41 @@ from service.types.records import UnitType
 from service.types.store import UnitTypes
 from service.units.records import Customer, Service
 from service.units.store import Services, Units
+
+
+@dataclass(frozen=True)
+class SessionReport:
+    """Everything a session's page or answer shows."""
+
+    session: StoredSession
+    calibration: Calibration
+    """As computed at upload; `storage` rebuilds it from what it kept."""
+    decisions: tuple[Decision, ...]
+    motions: tuple[CommonMotion, ...] = ()
+    """What all sensors did together since the reference."""
+    states: tuple[StateChange, ...] = ()
+    """What became of it since it was received, oldest first; empty where it was accepted and remained so."""
+    diagnosis: DiagnosisSummary | None = None
+    """In one line; None while it is still to be made."""
+    failed: str = ""
+    """Why the last try to make it failed; empty where none did."""
+
+
+def session_report(store: Store, id: str) -> SessionReport:
+    """The session, its calibration and its decisions."""
+    session, diagnosis, failed, calibration = Calibrations(store).with_session(id)
+    decisions, motions = Sessions(store).judged(id)
+    states = States(store).of(RecordKind.SESSION, id)
+    return SessionReport(session, calibration, decisions, motions, states, diagnosis, failed)
+
+
+def recent_history(store: Store, serial: str, most: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
+    """The newest sessions of the wanted part of a unit's history, whole, with at most so many points; oldest first."""
+    unit = Units(store).key(serial)
+    found = History(store).points(unit, replace(wanted, limit=most + 1, newest=True))
+    if len(found) <= most:
+        return found
+    return tuple(point for point in found if point.session != found[0].session)
 
 
 def traceability_of(store: Store, session: StoredSession) -> Traceability:
@@ -95,7 +130,6 @@ class StatedSession:
     customer: Customer
     traceability: Traceability
     software: str
-    """Version."""
     temperatures: CoveredTemperatures | None
     """That the unit's calibrations up to the session cover; None where nothing says them."""
 
@@ -136,7 +170,7 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
         report = session_report(store, id)
         stored = report.session
         if stored.state is not RecordState.ACCEPTED:
-            raise ConflictError(say(NOT_ACCEPTED, state=stored.state))
+            raise ConflictError(NOT_ACCEPTED, state=stored.state)
         until = stored.started_at + JUST_AFTER
         revisions, unit_type = _revisions(store, stored), UnitTypes(store).of_unit(stored.unit)
         return CertifiedSession(
@@ -168,12 +202,10 @@ def _revisions(store: Store, stored: StoredSession) -> tuple[ModelRevision, ...]
 
 
 def _model(revisions: tuple[ModelRevision, ...], stored: StoredSession) -> Model:
-    """That its calibration was made under."""
     return replace(model_of(revisions, stored.started_at), revision=stored.revision)
 
 
 def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
-    """The reference of the session."""
     if stored.is_reference:
         return None
     unit, block = Units(store).key(stored.unit), UnitTypes(store).of_unit(stored.unit).block

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, SignInError
 from service.kit.person import Role
 from service.papers.records import CertificateFile, Issue, Meaning, Signature
@@ -106,7 +105,7 @@ def require_signer(storage: Storage, signing: Signing) -> str:
         raise SignInError(WRONG)
     if not account.role.may(NEEDED_ROLE):
         parts = {"needed_role": NEEDED_ROLE, "login": account.login, "role": account.role}
-        raise ForbiddenError(say("Signing a certificate needs the role {needed_role}; {login} is {role}.", **parts))
+        raise ForbiddenError("Signing a certificate needs the role {needed_role}; {login} is {role}.", **parts)
     return account.name
 
 
@@ -116,11 +115,11 @@ def signature_of(store: Store, signing: Signing, statement: Statement, rules: Si
         raise ConflictError(IS_SPECIMEN)
     issue = _latest(store, signing)
     if issue.content_hash != statement.content_hash:
-        raise ConflictError(say(CHANGED, number=issue.number))
+        raise ConflictError(CHANGED, number=issue.number)
     before = {signature.meaning: signature for signature in Signatures(store).of_certificate(issue.number)}
     if signing.meaning in before:
         existing = before[signing.meaning]
-        raise ConflictError(say(ALREADY, number=issue.number, meaning=existing.meaning, name=existing.name))
+        raise ConflictError(ALREADY, number=issue.number, meaning=existing.meaning, name=existing.name)
     account = Accounts(store).get(signing.login)
     if signing.meaning is Meaning.APPROVED:
         _require_review(before.get(Meaning.REVIEWED), issue, account.login, rules)
@@ -132,15 +131,15 @@ def _latest(store: Store, signing: Signing) -> Issue:
     if not issued:
         raise ConflictError(NOT_ISSUED)
     if issued[-1].number != signing.number:
-        raise ConflictError(say(REPLACED, number=signing.number, latest=issued[-1].number))
+        raise ConflictError(REPLACED, number=signing.number, latest=issued[-1].number)
     return issued[-1]
 
 
 def _require_review(review: Signature | None, issue: Issue, login: str, rules: SigningRules) -> None:
     if review is None:
-        raise ConflictError(say(NOT_REVIEWED, number=issue.number))
+        raise ConflictError(NOT_REVIEWED, number=issue.number)
     if rules.four_eyes and review.login == login:
-        raise ConflictError(say(SAME_PERSON, number=issue.number))
+        raise ConflictError(SAME_PERSON, number=issue.number)
 
 
 def sign_certificate(
@@ -157,7 +156,7 @@ def sign_certificate(
         Units(store).hold(statement.unit)
         current = signature_of(store, signing, statement, rules, signature.signed_at)
         if current != signature:
-            raise ConflictError(say(CHANGED, number=signature.certificate))
+            raise ConflictError(CHANGED, number=signature.certificate)
         Signatures(store).add(signature, Accounts(store).get(signature.login).id)
         Signatures(store).keep(signature.certificate, files)
         details = {

@@ -127,7 +127,7 @@ def hand_out_approved(desk: Desk, id: str, number: str, format: str) -> Certific
         of_session = any(issue.number == number for issue in Certificates(store).of_session(id))
         approved = Signatures(store).kept(number, format) if of_session else None
     if approved is None:
-        raise NotFoundError(say(NOT_KEPT, number=repr(number)))
+        raise NotFoundError(NOT_KEPT, number=repr(number))
     return CertificateDocument(_name(unit, number), _intact(approved, number))
 
 
@@ -147,7 +147,6 @@ def sign(desk: Desk, signing: Signing, attempt: SignInAttempt, now: datetime) ->
 def _files(
     desk: Desk, found: CertifiedSession, issue: Issue, signatures: tuple[Signature, ...]
 ) -> tuple[CertificateFile, ...]:
-    """An approved certificate in every format, sealed where the laboratory has a key."""
     seal, sealed_by = desk.seal, ""
     if seal is not None:
         seal.require_valid(signatures[-1].signed_at)
@@ -164,7 +163,7 @@ def _files(
 
 def _intact(file: CertificateFile, number: str) -> bytes:
     if sha256(file.content).hexdigest() != file.sha256:
-        raise DamagedError(say(DAMAGED, number=number))
+        raise DamagedError(DAMAGED, number=number)
     return file.content
 
 

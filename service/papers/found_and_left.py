@@ -59,10 +59,7 @@ class FoundAndLeft:
 
 
 def found_and_left(
-    store: Store,
-    unit_type: UnitType,
-    sessions: Sequence[StoredSession],
-    coverage_factor: float,
+    store: Store, unit_type: UnitType, sessions: Sequence[StoredSession], coverage_factor: float
 ) -> FoundAndLeft | None:
     """The latest as-found session among some, and the first as-left one after it; None without an as-found session."""
     sessions = [s for s in sessions if s.state is RecordState.ACCEPTED]

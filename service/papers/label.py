@@ -49,7 +49,7 @@ def label_of(unit: UnitSummary, use: Usable, base: str, *, with_due: bool) -> La
     return Label(
         serial=unit.serial,
         unit_type=unit.unit_type,
-        use=_use(use) if with_due else "",
+        use=("" if use.use is Use.YES else in_words(use.use, "")) if with_due else "",
         is_usable=use.usable,
         due=_due(use) if with_due else "",
         why=_why(use) if with_due else "",
@@ -58,10 +58,6 @@ def label_of(unit: UnitSummary, use: Usable, base: str, *, with_due: bool) -> La
         code=segno.make_qr(address, error="l").svg_inline(border=QUIET, omitsize=True),
         simulated=unit.simulated,
     )
-
-
-def _use(use: Usable) -> str:
-    return "" if use.use is Use.YES else in_words(use.use, "")
 
 
 def _due(use: Usable) -> str:

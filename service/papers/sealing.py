@@ -10,7 +10,6 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-from estimator.message import say
 from service.errors import ServiceError
 
 ROOM = "service.papers.seal"
@@ -36,7 +35,7 @@ def seal_room(part: str) -> ModuleType:
     try:
         return import_module(f"{ROOM}.{part}")
     except ModuleNotFoundError as fault:
-        raise ServiceError(say(WITHOUT, fault=fault)) from fault
+        raise ServiceError(WITHOUT, fault=fault) from fault
 
 
 def seal_of(key_file: Path | None, password_file: Path | None) -> Seal | None:

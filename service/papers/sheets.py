@@ -96,7 +96,6 @@ class Workbook:
         self._colour(sheet, columns, last)
 
     def _write(self, sheet: Worksheet, place: tuple[int, int], column: Column, cell: Cell) -> None:
-        """One cell, by the kind of its value; nothing of an empty one."""
         say = str if column.is_named else self._say
         look = self._formats[column.kind]
         match cell:

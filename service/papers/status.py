@@ -4,8 +4,6 @@ which parameters are closest to their tolerances."""
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.message import say
-from service.errors import NotFoundError
 from service.fleet.condition import UnitSummary
 from service.fleet.store import Fleet
 from service.judging.records import Usable
@@ -66,9 +64,7 @@ class StatusPaper:
 
 def status_paper(store: Store, serial: str, now: datetime) -> StatusPaper:
     """The page of a unit; NotFoundError when there is none."""
-    unit = Fleet(store).unit(serial)
-    if unit is None:
-        raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+    unit = Fleet(store).get(serial)
     use = usable_of(store, (unit,), now)[serial]
     session = None if unit.last_session is None else Sessions(store).get(unit.last_session)
     decisions = () if session is None or session.is_reference else Sessions(store).decisions(session.id)

@@ -6,7 +6,6 @@ from datetime import UTC, date, datetime, time, timedelta
 from sqlalchemy import Select, exists, func, or_, select
 from sqlalchemy.orm import aliased
 
-from estimator.message import say
 from service.errors import ConflictError, NotFoundError
 from service.papers.records import CertificateFile, Issue, Meaning, RestingCertificate, Signature
 from service.papers.tables import CertificateFileRow, CertificateRow, SignatureRow
@@ -102,7 +101,7 @@ class Signatures(Queries):
         }
         if not self.insert_once(SignatureRow, **values):
             parts = {"certificate": signature.certificate, "meaning": signature.meaning}
-            raise ConflictError(say("Certificate {certificate} is {meaning} already.", **parts))
+            raise ConflictError("Certificate {certificate} is {meaning} already.", **parts)
 
     def keep(self, number: str, files: Sequence[CertificateFile]) -> None:
         """Stores the files of an approved issue."""
@@ -118,7 +117,7 @@ class Signatures(Queries):
     def _key(self, number: str) -> int:
         key = self._session.scalar(select(CertificateRow.id).where(CertificateRow.number == number))
         if key is None:
-            raise NotFoundError(say("There is no certificate {number}.", number=repr(number)))
+            raise NotFoundError("There is no certificate {number}.", number=repr(number))
         return key
 
 

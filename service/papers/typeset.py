@@ -11,10 +11,11 @@ from typing import Any
 from estimator.json_object import Json
 from service.kit.libraries import typst, vl_convert
 from service.kit.printable import printable_data
-from service.languages import typst_sources
 from service.languages.catalogue import catalogue_of
 from service.languages.documents import document_in
+from service.languages.entry import MessageEntry
 from service.languages.language import Language
+from service.languages.templates import SAY_CALL
 from service.sessions.charts import ChartSet, Panel
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -53,9 +54,8 @@ def _words(language: Language) -> Mapping[str, str]:
     """Translations of the templates' texts; English is in the templates."""
     if language is ENGLISH:
         return {}
-    sources = (path.read_text("utf-8") for path in sorted(TEMPLATES.glob("*.typ")))
-    entries = [entry for source in sources for entry in typst_sources.messages(source, "")]
-    return {entry.text: forms[0] for entry in entries if (forms := catalogue_of(language).forms(entry))}
+    texts = (text for path in sorted(TEMPLATES.glob("*.typ")) for text in SAY_CALL.findall(path.read_text("utf-8")))
+    return {text: forms[0] for text in texts if (forms := catalogue_of(language).forms(MessageEntry(text)))}
 
 
 PALETTE = {

@@ -196,9 +196,7 @@ def take_token(
     """A new token; its secret is on this page and nowhere else."""
     require_no_token(person)
     if not person.login or not person.may(role):
-        raise ForbiddenError(
-            say("{account} cannot make a token for {role}.", account=person.account or "Nobody", role=role)
-        )
+        raise ForbiddenError("{account} cannot make a token for {role}.", account=person.account or "Nobody", role=role)
     _, secret = make_token(storage, person.login, label, role, now, lifetime=timedelta(days=days), who=person.name)
     with storage.database.reading() as store:
         return render(request, "account.html", account_page(Tokens(store).every(person.login), now, secret))
@@ -214,7 +212,6 @@ def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> Red
 
 
 def _provider(request: Request) -> str:
-    """Name of the sign-in provider."""
     provider = application_of(request).part(Gate).provider
     return provider.name if provider else ""
 

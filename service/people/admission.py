@@ -183,7 +183,7 @@ async def _admitted(request: Request, person: PersonOf) -> None:
     route = route_of(request.scope)
     SENDER.set(person.login or (request.client.host if request.client else ""))
     if route not in NEEDED:
-        raise ForbiddenError(say("Nobody may {method} {path}: it has no rule.", method=route[0], path=route[1]))
+        raise ForbiddenError("Nobody may {method} {path}: it has no rule.", method=route[0], path=route[1])
     needed_role = NEEDED[route]
     if needed_role is None:
         return

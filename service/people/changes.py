@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from hashlib import sha256
 
-from estimator.errors import Problem
-from estimator.message import say
+from estimator.errors import Problem, problem_at
 from service.errors import ConflictError, ForbiddenError, RefusedError, SignInError, TooOftenError
 from service.kit.person import Account, Person, Role, Token
 from service.people.secret import TOKEN_PREFIX, fault_of, hashed, is_password, new_secret, stored_hash
@@ -58,7 +57,7 @@ def add_account(storage: Storage, login: str, name: str, role: Role, now: dateti
             raise ConflictError("The first account must be an admin: from then on everybody has to sign in.")
         shown_name = name.strip() or lower
         if not Accounts(store).add(lower, shown_name, role, now):
-            raise ConflictError(say("There is an account {small} already.", small=repr(lower)))
+            raise ConflictError("There is an account {small} already.", small=repr(lower))
         Audit(store).write(now, who, "add account", lower, {"name": shown_name, "role": role})
         return Accounts(store).get(lower)
 
@@ -140,15 +139,12 @@ class SignInAttempt:
 
     login: str
     address: str
-    """Address of the client."""
     browser: str = ""
     """Identifier of a browser that has signed in to this account before; empty for any other."""
 
 
 @dataclass(frozen=True)
 class _Limit:
-    """A limit of wrong attempts within a time."""
-
     key: str
     """A hash, since people also type passwords as logins."""
     most: int
@@ -339,14 +335,14 @@ def make_token(
 ) -> tuple[Token, str]:
     """A token for an account with its secret, which is not stored; its role is at most that of its account."""
     if not timedelta(0) < lifetime <= LONGEST:
-        fault = Problem("days", say("must be from 1 to {days}", days=LONGEST.days))
+        fault = problem_at("days", "must be from 1 to {days}", days=LONGEST.days)
         raise RefusedError("The token cannot be made.", (fault,))
     secret = TOKEN_PREFIX + new_secret()
     with storage.database.writing() as store:
         account = Accounts(store).get(login)
         if not account.is_active or not account.role.may(role):
             parts = {"login": account.login, "role": account.role, "wanted_role": role}
-            raise ConflictError(say("{login} is {role} and cannot have a token for {wanted_role}.", **parts))
+            raise ConflictError("{login} is {role} and cannot have a token for {wanted_role}.", **parts)
         new = Token(0, account.login, label.strip() or "token", role, now, now + lifetime, None, None)
         token = Tokens(store).add(account, new, stored_hash(secret))
         details = {"token": token.id, "label": token.label, "role": role, "until": token.expires_at.isoformat()}

@@ -42,5 +42,4 @@ def _by(person: PersonOf, by: Annotated[str, Form(max_length=200, pattern=NOT_BL
 By = Annotated[str, Depends(_by)]
 """A name: the account's, or as written where there are no accounts."""
 OptionalText = Annotated[str, Form(max_length=2000, pattern=NO_NUL)]
-"""An optional text."""
 Why = Annotated[str, Form(max_length=2000, pattern=NOT_BLANK)]

@@ -2,7 +2,6 @@
 
 from datetime import datetime
 
-from estimator.message import say
 from service.errors import ConflictError, ForbiddenError, NotFoundError
 from service.kit.person import Person, Role
 from service.people.view_store import SavedViews
@@ -35,7 +34,7 @@ def save_view(storage: Storage, new: NewView, person: Person, who: str, now: dat
         existing = SavedViews(store).named(new.page, owner, new.name)
         if existing is None and SavedViews(store).count(new.page, owner) >= MAX_VIEWS:
             raise ConflictError(
-                say("There are {number} saved views of this list already. Remove one first.", number=MAX_VIEWS)
+                "There are {number} saved views of this list already. Remove one first.", number=MAX_VIEWS
             )
         view = SavedViews(store).put(new.page, owner, new.name, query=new.query, who=who, at=now)
         details = {"view": view.id, "page": view.page, "query": view.query, "shared": view.shared}
@@ -50,7 +49,7 @@ def remove_view(storage: Storage, id: int, person: Person, who: str, now: dateti
         if not may_remove(view, person):
             if view.shared:
                 raise ForbiddenError("Only people who may upload can remove views that everybody has.")
-            raise NotFoundError(say("There is no saved view {id}.", id=id))
+            raise NotFoundError("There is no saved view {id}.", id=id)
         SavedViews(store).remove(id)
         details = {"view": id, "page": view.page, "query": view.query, "shared": view.shared}
         Audit(store).write(now, who, "remove view", view.name, details)

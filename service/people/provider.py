@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Protocol
 from urllib.parse import urlsplit
 
-from estimator.message import say
 from service.errors import ServiceError
 from service.kit.person import Role
 from service.settings import Settings
@@ -137,7 +136,7 @@ def provider_of(settings: Settings) -> Provider | None:
     parts = urlsplit(settings.oidc_issuer)
     if parts.scheme != "https" and parts.hostname not in LOOPBACK:
         raise ServiceError(
-            say("The sign-in provider, {oidc_issuer}, must be reached by https.", oidc_issuer=settings.oidc_issuer)
+            "The sign-in provider, {oidc_issuer}, must be reached by https.", oidc_issuer=settings.oidc_issuer
         )
     if not settings.oidc_client_id:
         raise ServiceError("A sign-in provider is set, but no IMU_HEALTH_OIDC_CLIENT_ID.")
@@ -151,7 +150,7 @@ def provider_of(settings: Settings) -> Provider | None:
     try:
         module = import_module(MODULE)
     except ModuleNotFoundError as fault:
-        raise ServiceError(say(WITHOUT, fault=fault)) from fault
+        raise ServiceError(WITHOUT, fault=fault) from fault
     provider: Provider = module.OpenIdProvider(provider_settings, str(parts.hostname))
     return provider
 
@@ -160,4 +159,4 @@ def _read(file: Path | None) -> str:
     try:
         return "" if file is None else file.read_text("utf-8").strip()
     except OSError as fault:
-        raise ServiceError(say("The secret for the sign-in provider cannot be read: {fault}.", fault=fault)) from fault
+        raise ServiceError("The secret for the sign-in provider cannot be read: {fault}.", fault=fault) from fault

@@ -57,7 +57,6 @@ def connect(storage: Storage, login: str, issuer: str, subject: str, now: dateti
 
 
 def _made(store: Store, claims: Claims, joining: Joining, role: Role | None, now: datetime) -> Account:
-    """A new account."""
     new_role = role or joining.everybody
     if new_role is None:
         raise ForbiddenError(NOT_INVITED)

@@ -5,7 +5,6 @@ from datetime import datetime, timedelta
 from sqlalchemy import ColumnElement, Select, case, delete, exists, func, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.kit.copying import copied
 from service.kit.person import Account, Role, Token
@@ -63,7 +62,7 @@ class Accounts(Queries):
     def _row(self, login: str) -> AccountRow:
         row = self._session.scalar(select(AccountRow).where(AccountRow.login == login.lower()))
         if row is None:
-            raise NotFoundError(say("There is no account {login}.", login=repr(login)))
+            raise NotFoundError("There is no account {login}.", login=repr(login))
         return row
 
 
@@ -204,7 +203,7 @@ class Tokens(Queries):
         """One token."""
         row = self._session.execute(_tokens().where(TokenRow.id == id)).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no token {id}.", id=id))
+            raise NotFoundError("There is no token {id}.", id=id)
         return _token(row[0], row[1].login)
 
     def shown(self, hashed: str, now: datetime) -> tuple[Token, Account] | None:

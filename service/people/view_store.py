@@ -4,7 +4,6 @@ from datetime import datetime
 
 from sqlalchemy import delete, func, select
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.people.tables import SavedViewRow
 from service.people.views import ListPage, SavedView
@@ -25,7 +24,7 @@ class SavedViews(Queries):
         """One view."""
         row = self._session.get(SavedViewRow, id)
         if row is None:
-            raise NotFoundError(say("There is no saved view {id}.", id=id))
+            raise NotFoundError("There is no saved view {id}.", id=id)
         return _view(row)
 
     def named(self, page: ListPage, owner: str, name: str) -> SavedView | None:

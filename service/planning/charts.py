@@ -12,7 +12,7 @@ from estimator.results import PARAMETERS
 from estimator.session import Array
 from service.kit.libraries import alt
 from service.kit.measures import MEASURES, THIN, Measure, deviation_measure, heading, number
-from service.sessions.charts import DATA_FORM, ChartSet, Panel, specification
+from service.sessions.charts import DATA_FORM, ChartSet, Panel, hints, specification
 
 HEIGHT = 150
 """Pixels: two rows of panels fit on a screen."""
@@ -56,12 +56,7 @@ def _panel(title: str, measure: Measure, points: list[Json], chosen: float) -> P
         if measure.label
         else "largest over smallest eigenvalue"
     )
-    return Panel(
-        title=title,
-        description=words,
-        condition=None,
-        datasets={DATA_FORM: points, "chosen": [{"x": round(chosen, 2)}]},
-    )
+    return Panel(title=title, description=words, datasets={DATA_FORM: points, "chosen": [{"x": round(chosen, 2)}]})
 
 
 def _points(series: str, at: Array, values: Array) -> list[Json]:
@@ -90,14 +85,14 @@ def _spec(across: str) -> Json:
     colour = alt.Color("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=COLOURS))
     dash = alt.StrokeDash("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=DASHES))
     base = alt.Chart(points).encode(x=x, y=y, color=colour)
-    hints = [alt.Tooltip("x:Q", title=across), alt.Tooltip("y:Q", title="value"), alt.Tooltip("series:N", title="part")]
+    told = hints({"x:Q": across, "y:Q": "value", "series:N": "part"})
     return specification(
         [
             alt.Chart(chosen).mark_rule(color="var(--ink)", strokeDash=[2, 2]).encode(x="x:Q"),
             base.mark_line(strokeWidth=1.5).encode(strokeDash=dash),
             base.transform_filter("datum.series != 'tolerance'")
             .mark_point(filled=True, opacity=1, size=20)
-            .encode(tooltip=hints),
+            .encode(tooltip=told),
         ],
         HEIGHT,
     )
@@ -128,7 +123,7 @@ def _drift_panel(found: Readiness, column: int, kind: str, allowed: float | None
     limits = [] if allowed is None else [{"y": float(f"{side * allowed * measure.factor:.4g}")} for side in (-1, 1)]
     low, high = (number(float(f"{edge * measure.factor:.2g}")) for edge in (change.min(), change.max()))
     words = say("from {low} to {high}{thin_space}{label}", low=low, high=high, thin_space=THIN, label=measure.label)
-    return Panel(found.names[column], words, None, {DATA_FORM: points, "allowed": limits})
+    return Panel(found.names[column], words, {DATA_FORM: points, "allowed": limits})
 
 
 @cache
@@ -136,11 +131,11 @@ def _drift_spec() -> Json:
     points, limits = (alt.NamedData(name=name) for name in (DATA_FORM, "allowed"))
     x = alt.X("x:Q", title="minutes", axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
     y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=False))
-    hints = [alt.Tooltip("x:Q", title="minutes"), alt.Tooltip("y:Q", title="change")]
+    told = hints({"x:Q": "minutes", "y:Q": "change"})
     line = alt.Chart(limits).mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y=y)
     dots = (
         alt.Chart(points)
         .mark_point(filled=True, opacity=1, size=14, color="var(--accent)")
-        .encode(x=x, y=y, tooltip=hints)
+        .encode(x=x, y=y, tooltip=told)
     )
     return specification([line, dots], READINESS_HEIGHT)

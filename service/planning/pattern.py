@@ -7,8 +7,7 @@ import numpy as np
 
 from estimator.arrays import unit
 from estimator.calibration.calibrate import averaged
-from estimator.errors import Problem
-from estimator.message import say
+from estimator.errors import Problem, problem_at
 from estimator.parameters import nominal
 from estimator.session import CalibrationSession, Sensor
 from estimator.simulate import simulate, stand_schedule
@@ -31,25 +30,22 @@ def why_not(unit_type: UnitType) -> tuple[Problem, ...]:
     """Why units of a type cannot be planned on a two-axis stand."""
     if unit_type.gyro_tolerances is not None or unit_type.block not in ("accelerometer", "gyroscope"):
         return (
-            Problem(
-                "unit_type",
-                say("{name} has accelerometers and gyros; plan from a session file of it", name=unit_type.name),
+            problem_at(
+                "unit_type", "{name} has accelerometers and gyros; plan from a session file of it", name=unit_type.name
             ),
         )
     if not 3 <= len(unit_type.sensors) <= MOST_SENSORS:
         return (
-            Problem(
+            problem_at(
                 "unit_type",
-                say(
-                    "{name} has {sensors} sensors; 3 to {most_sensors} can be planned",
-                    name=unit_type.name,
-                    sensors=len(unit_type.sensors),
-                    most_sensors=MOST_SENSORS,
-                ),
+                "{name} has {sensors} sensors; 3 to {most_sensors} can be planned",
+                name=unit_type.name,
+                sensors=len(unit_type.sensors),
+                most_sensors=MOST_SENSORS,
             ),
         )
     if np.linalg.matrix_rank(np.array(unit_type.nominal_axes), tol=0.05) < 3:
-        return (Problem("unit_type", say("the nominal axes of {name} lie in one plane", name=unit_type.name)),)
+        return (problem_at("unit_type", "the nominal axes of {name} lie in one plane", name=unit_type.name),)
     return ()
 
 

@@ -166,10 +166,7 @@ def missing_page(positions: int | None, runs: str, found: Missing | None = None)
 def _known(expected: tuple[ExpectedSigma, ...]) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
     size = len(PARAMETERS)
     return tuple(
-        (
-            expected[i].sensor,
-            tuple((_spread(e, e.so_far), _spread(e, e.complete)) for e in expected[i : i + size]),
-        )
+        (expected[i].sensor, tuple((_spread(e, e.so_far), _spread(e, e.complete)) for e in expected[i : i + size]))
         for i in range(0, len(expected), size)
     )
 
@@ -248,7 +245,6 @@ def show_missing(request: Request, brought: BroughtOf) -> HTMLResponse:
 
 
 def _read(kind: type[T], brought: Brought) -> T:
-    """The fields; RefusedError that names each that cannot be used."""
     try:
         return kind.model_validate({name: value.strip() for name, value in brought.fields.items()})
     except ValidationError as fault:

@@ -2,8 +2,8 @@
 
 from datetime import datetime
 
-from estimator.errors import Problem
-from estimator.message import joined, say
+from estimator.errors import problem_at
+from estimator.message import joined
 from estimator.session import IN_SERVICE
 from service.diagnosis.records import Diagnosed
 from service.errors import ConflictError, RefusedError
@@ -107,19 +107,17 @@ def accept_session(storage: Storage, context: Deriving, id: str, step: Step) -> 
 
 def _require_possible(store: Store, session: StoredSession) -> None:
     if session.state is RecordState.ACCEPTED:
-        raise ConflictError(say("Session {id} is accepted already.", id=session.id))
+        raise ConflictError("Session {id} is accepted already.", id=session.id)
     if session.simulated and not Units(store).is_simulated(session.unit):
         raise ConflictError(
-            say("Session {id} is simulated, and unit {unit} has been measured since.", id=session.id, unit=session.unit)
+            "Session {id} is simulated, and unit {unit} has been measured since.", id=session.id, unit=session.unit
         )
     if session.superseded_by is None:
         return
     stands_for_it = Sessions(store).get(session.superseded_by)
     if stands_for_it.state in (RecordState.ACCEPTED, RecordState.QUESTIONED):
         parts = {"id": stands_for_it.id, "id2": session.id}
-        raise ConflictError(
-            say("Session {id} replaces session {id2}: withdraw it first, or both would count.", **parts)
-        )
+        raise ConflictError("Session {id} replaces session {id2}: withdraw it first, or both would count.", **parts)
 
 
 POSSIBLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
@@ -132,7 +130,7 @@ def withdraw_session(storage: Storage, context: Deriving, id: str, step: Step) -
         Units(store).hold(Sessions(store).get(id).unit)
         session = Sessions(store).get(id)
         if session.state not in POSSIBLE:
-            raise ConflictError(say("Session {id} is {state} already.", id=id, state=session.state))
+            raise ConflictError("Session {id} is {state} already.", id=id, state=session.state)
         change(store, session, RecordState.WITHDRAWN, step)
         derived = derive_again(store, context, session.unit, session.started_at, (id,))
     follow(storage, context, session.unit, derived)
@@ -157,16 +155,14 @@ def choose_reference(storage: Storage, context: Deriving, id: str, step: Step) -
 def _require_choice(store: Store, session: StoredSession) -> None:
     if session.state is not RecordState.ACCEPTED:
         parts = {"id": session.id, "state": session.state}
-        raise ConflictError(say("Session {id} is {state}: only an accepted session can be a reference.", **parts))
+        raise ConflictError("Session {id} is {state}: only an accepted session can be a reference.", **parts)
     if session.programme == IN_SERVICE:
         raise ConflictError("A recording in service is compared with a calibration and is no reference itself.")
     if blind := too_few(Calibrations(store).get(session.id)):
         raise ConflictError(
-            say(
-                "Session {id} has no uncertainty, so no session can be judged against it. {advice}",
-                id=session.id,
-                advice=blind,
-            )
+            "Session {id} has no uncertainty, so no session can be judged against it. {advice}",
+            id=session.id,
+            advice=blind,
         )
 
 
@@ -229,13 +225,12 @@ def require_possible(store: Store, serial: str, new: NewService, now: datetime) 
     """RefusedError for a service in the future or of an unknown sensor."""
     found = []
     if new.at > now + CLOCK_LEEWAY:
-        found.append(Problem("at", say("is in the future ({at}); record what has been done", at=f"{new.at:%Y-%m-%d}")))
+        found.append(problem_at("at", "is in the future ({at}); record what has been done", at=f"{new.at:%Y-%m-%d}"))
     sensors = UnitTypes(store).of_unit(serial).sensors
     if new.sensor and new.sensor not in sensors:
         found.append(
-            Problem(
-                "sensor",
-                say("is not a sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)),
+            problem_at(
+                "sensor", "is not a sensor of {serial}; it has {sensors}", serial=serial, sensors=joined(", ", sensors)
             )
         )
     if found:
@@ -248,7 +243,7 @@ def withdraw_service(storage: Storage, context: Deriving, number: int, step: Ste
         Units(store).hold(Services(store).get(number).unit)
         service = Services(store).get(number)
         if service.state is RecordState.WITHDRAWN:
-            raise ConflictError(say("Service {number} is withdrawn already.", number=number))
+            raise ConflictError("Service {number} is withdrawn already.", number=number)
         Services(store).put_state(number, RecordState.WITHDRAWN)
         States(store).add(RecordKind.SERVICE, str(number), RecordState.WITHDRAWN, step)
         details = {"service": number, "kind": service.kind, "at": service.at.isoformat(), "why": step.why}

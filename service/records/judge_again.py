@@ -147,7 +147,6 @@ def _is_stale(place: Place, since: datetime, moved: set[tuple[str, datetime | No
 
 
 def _group(session: Counted, breaks: Sequence[datetime]) -> Group:
-    """A recording in service is compared with the calibrations' reference."""
     return session.block, alike(session.programme), bisect_right(breaks, session.at)
 
 

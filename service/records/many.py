@@ -1,6 +1,6 @@
 """Many units computed again, here or by the processes of a Dask cluster.
 
-computing fails is reported and stops no other.
+A unit whose computing fails is reported and stops no other.
 
 What is done is not done again: `units_behind` names the units with sessions of an earlier revision than concerns them.
 So a run that was ended goes on where it was, and a second one beside it does nothing twice.
@@ -177,7 +177,6 @@ def _outcome(future: Future[UnitOutcome], serial: str) -> UnitOutcome:
 
 
 def _work(last: str, serial: str, now: datetime) -> UnitOutcome:
-    """In the worker."""
     storage, coverage_factor = _own(last)
     return recalibrate_one(storage, serial, now, coverage_factor)
 

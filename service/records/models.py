@@ -11,8 +11,7 @@ from math import exp, hypot
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
-from estimator.diagnosis.results import Gain
-from estimator.errors import Problem
+from estimator.errors import problem_at
 from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.results import EmpiricalTerm
@@ -57,7 +56,7 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
             cause=new.cause,
             sensors=finding.sensors,
             session=session.id,
-            evidence=_evidence(finding, diagnosis.found.gain),
+            evidence=copied(AcceptedFinding, finding, gain=diagnosis.found.gain, pooled=None),
             accepted_by=new.by,
             note=new.note,
             accepted_at=now,
@@ -98,11 +97,9 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
     if known is None or not known.can_be_modelled:
         raise _refused(
             "cause",
-            say(
-                "{wanted} concerns this record or a change since earlier sessions and cannot be part of a model; "
-                "correct the record and upload it again, or service the unit",
-                wanted=repr(wanted),
-            ),
+            "{wanted} concerns this record or a change since earlier sessions and cannot be part of a model; "
+            "correct the record and upload it again, or service the unit",
+            wanted=repr(wanted),
         )
     return (*named, *equal)[0]
 
@@ -111,10 +108,6 @@ def _as_alternative(finding: Finding, wanted: str) -> Finding:
     """The finding with the sensors of the alternative; its amplitude is another quantity and is left out."""
     sensors = next((s.sensors for s in finding.separations if s.cause == wanted), finding.sensors)
     return replace(finding, sensors=sensors, amplitude=(), sigma=(), units=(), nonlinear_each=({},))
-
-
-def _evidence(finding: Finding, gain: Gain) -> AcceptedFinding:
-    return copied(AcceptedFinding, finding, gain=gain, pooled=None)
 
 
 def _subject(new: NewModel, session: StoredSession, unit_type: str, sensors: tuple[str, ...]) -> str:
@@ -132,7 +125,8 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
         found = joined(" and ", sensors)
         raise _refused(
             "scope",
-            say("is 'stand', but the cause acts on {sensors}; accept it for the unit or the unit type", sensors=found),
+            "is 'stand', but the cause acts on {sensors}; accept it for the unit or the unit type",
+            sensors=found,
         )
     if session.stand is None:
         raise _refused("scope", "is 'stand', but the session names no stand; accept it for the unit or the unit type")
@@ -142,13 +136,12 @@ def _stand(session: StoredSession, sensors: tuple[str, ...]) -> str:
 def _not_shown(wanted: str, findings: tuple[Finding, ...]) -> RefusedError:
     shown = ", ".join(f.cause for f in findings) or "none"
     return _refused(
-        "cause",
-        say("{cause} is not among the causes that this session shows ({known})", cause=repr(wanted), known=shown),
+        "cause", "{cause} is not among the causes that this session shows ({known})", cause=repr(wanted), known=shown
     )
 
 
-def _refused(field: str, message: str) -> RefusedError:
-    return RefusedError("The cause cannot be accepted.", (Problem(field, message),))
+def _refused(field: str, message: str, /, **parts: object) -> RefusedError:
+    return RefusedError("The cause cannot be accepted.", (problem_at(field, message, **parts),))
 
 
 MOST = 700.0
@@ -175,7 +168,7 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
                 subject=taken.subject,
                 cause=new.cause,
                 sensors=taken.sensors,
-                session=_latest(store, group),
+                session=members_of(store, group).pooled[-1].session,
                 evidence=term_evidence(taken, shown) if isinstance(taken, EmpiricalTerm) else evidence_of(taken, shown),
                 accepted_by=new.by,
                 note=new.note,
@@ -253,7 +246,6 @@ def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> AcceptedFinding:
 
 
 def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
-    """The learned term that is meant."""
     found = [t for t in shown.terms if t.level and t.subject and new.sensors in ((), t.sensors)]
     if len(found) == 1:
         return found[0]
@@ -263,11 +255,10 @@ def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
 
 
 def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
-    """The one that is meant."""
     found = [f for f in shown.findings if f.cause == new.cause and new.sensors in ((), f.sensors)]
     if len(found) == 1 and not found[0].subject:
         raise _refused(
-            "cause", say("{cause} belongs to a stand or a type, and the sessions name none", cause=repr(new.cause))
+            "cause", "{cause} belongs to a stand or a type, and the sessions name none", cause=repr(new.cause)
         )
     if len(found) == 1:
         return found[0]
@@ -275,21 +266,17 @@ def _lasting_finding(shown: GroupShown, new: NewLasting) -> GroupFinding:
         places = joined(" or ", (", ".join(f.sensors) or "none" for f in found))
         raise _refused(
             "sensors",
-            say("must state which one: these sessions show {cause} on {places}", cause=repr(new.cause), places=places),
+            "must state which one: these sessions show {cause} on {places}",
+            cause=repr(new.cause),
+            places=places,
         )
     names = joined(", ", (cause_on(f.cause, f.sensors) for f in shown.findings)) or "none"
     raise _refused(
         "cause",
-        say(
-            "{cause} is not among the causes that these sessions show together ({names})",
-            cause=repr(new.cause),
-            names=names,
-        ),
+        "{cause} is not among the causes that these sessions show together ({names})",
+        cause=repr(new.cause),
+        names=names,
     )
-
-
-def _latest(store: Store, group: Group) -> str:
-    return members_of(store, group).pooled[-1].session
 
 
 def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: datetime) -> ModelRevision:
@@ -297,9 +284,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
     with storage.database.writing() as store:
         known = Models(store).get(revision)
         if known not in in_force(Models(store).of_subject(known.scope, known.subject)):
-            raise ConflictError(
-                say("Revision {id} is not in force: withdrawn before, or a withdrawal itself.", id=known.id)
-            )
+            raise ConflictError("Revision {id} is not in force: withdrawn before, or a withdrawal itself.", id=known.id)
         made = Models(store).add(
             replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
         )

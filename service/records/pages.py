@@ -1,4 +1,4 @@
-"""The forms of records and services."""
+"""The forms of records and services, and of the register: its page, and what enters, moves, retires and puts back."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,12 +7,14 @@ from typing import Annotated, Literal
 from urllib.parse import quote
 
 from fastapi import APIRouter, Form, Request
-from fastapi.responses import RedirectResponse, Response
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from pydantic import AfterValidator
 
+from estimator.errors import Problem
+from service.errors import RefusedError
 from service.kit.moments import in_utc
 from service.pages.unit.events import service_in_words
-from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, Number, StorageOf, Why
+from service.people.dependencies import NOT_BLANK, SEE_OTHER, By, Key, Number, OptionalText, StorageOf, Why
 from service.records.changes import (
     accept_session,
     choose_reference,
@@ -24,15 +26,20 @@ from service.records.changes import (
 )
 from service.records.dependencies import ReceptionOf
 from service.records.preview import preview_service
+from service.records.register import Entered, Entering, enter, move_unit
+from service.records.register_api import import_register
 from service.records.supersede import supersede_session
 from service.records.unit_changes import add_note, withdraw_note
 from service.sessions.records import MARKS
 from service.sessions.sent import Replaced
 from service.sessions.states import Step
-from service.units.records import NewService, ServicePreview
+from service.types.store import UnitTypes
+from service.units.records import CustodyStep, Move, NewEntry, NewService, ServicePreview
+from service.units.register_file import COLUMNS
 from service.uploads.correct import correct_session
 from service.uploads.receive import deriving
-from service.web.dependencies import Now
+from service.uploads.received import SentOf
+from service.web.dependencies import Now, Reading
 from service.web.fields import NO_NUL
 from service.web.render import render
 
@@ -167,3 +174,76 @@ def mark_session(
 
 def _events(serial: str) -> RedirectResponse:
     return RedirectResponse(f"/units/{quote(serial)}#events", SEE_OTHER)
+
+
+MOST_TYPES = 500
+"""Names that the form offers."""
+Short = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+Named = Annotated[str, Form(max_length=200, pattern=NOT_BLANK)]
+
+
+@dataclass(frozen=True)
+class RegisterPage:
+    """The forms of the register, and what became of a list that was imported."""
+
+    types: tuple[str, ...]
+    entered: Entered | None = None
+    refused: str = ""
+    problems: tuple[Problem, ...] = ()
+    columns: tuple[str, ...] = COLUMNS
+
+
+@router.get("/register", response_class=HTMLResponse)
+def show_register(request: Request, store: Reading) -> HTMLResponse:
+    """The forms."""
+    types = tuple(unit_type.name for unit_type in UnitTypes(store).page(0, MOST_TYPES))
+    return render(request, "register.html", RegisterPage(types))
+
+
+@router.post("/register")
+def enter_unit(
+    serial: Named, unit_type: Named, by: By, storage: StorageOf, now: Now,
+    *, owner: Short = "", location: Short = "", custodian: Short = "", note: OptionalText = "",
+) -> RedirectResponse:  # fmt: skip
+    """Enters one unit."""
+    texts = (text.strip() for text in (serial, unit_type, owner, location, custodian, note))
+    entry = NewEntry(*texts)
+    enter(storage, (entry,), Entering(by, now))
+    return RedirectResponse(f"/units/{quote(entry.serial)}#register", SEE_OTHER)
+
+
+@router.post("/register/import", response_class=HTMLResponse)
+def import_units(request: Request, sent: SentOf, storage: StorageOf, now: Now) -> HTMLResponse:
+    """Enters the units of a table; the page again with what became of it."""
+    with storage.database.reading() as store:
+        types = tuple(unit_type.name for unit_type in UnitTypes(store).page(0, MOST_TYPES))
+    try:
+        page = RegisterPage(types, import_register(storage, sent, now))
+    except RefusedError as refusal:
+        page = RegisterPage(types, None, refusal.detail, refusal.problems)
+        return render(request, "register.html", page, refusal.status)
+    return render(request, "register.html", page)
+
+
+@router.post("/units/{serial:path}/moves")
+def move(
+    serial: Key, location: Short, custodian: Short, by: By, storage: StorageOf, now: Now,
+    *, at: At = None, remark: OptionalText = "",
+) -> RedirectResponse:  # fmt: skip
+    """Records where a unit is and who has it."""
+    move_unit(storage, serial, Move(location.strip(), custodian.strip(), remark), by, now, at=at)
+    return RedirectResponse(f"/units/{quote(serial)}#register", SEE_OTHER)
+
+
+@router.post("/units/{serial:path}/retire")
+def retire(serial: Key, by: By, why: Why, storage: StorageOf, now: Now, *, at: At = None) -> RedirectResponse:
+    """Retires a unit."""
+    move_unit(storage, serial, Move(remark=why, step=CustodyStep.RETIRED), by, now, at=at)
+    return RedirectResponse(f"/units/{quote(serial)}", SEE_OTHER)
+
+
+@router.post("/units/{serial:path}/return")
+def put_back(serial: Key, by: By, why: Why, storage: StorageOf, now: Now, *, at: At = None) -> RedirectResponse:
+    """Puts a unit back into use."""
+    move_unit(storage, serial, Move(remark=why, step=CustodyStep.RETURNED), by, now, at=at)
+    return RedirectResponse(f"/units/{quote(serial)}", SEE_OTHER)

@@ -39,8 +39,6 @@ DIAGNOSED_AGAIN = ("open", "resolved until the sessions are diagnosed again")
 
 @dataclass(frozen=True)
 class _State:
-    """What is known of a unit at one time."""
-
     sessions: tuple[StoredSession, ...]
     next: str
     """Its next calibration, in words."""

@@ -120,8 +120,6 @@ def recalibrate(
 
 @dataclass(frozen=True)
 class _Source:
-    """A stored session with what it is computed again by."""
-
     session: StoredSession
     model: Model
     """In force now."""
@@ -137,7 +135,6 @@ class _Source:
 
 
 def _sources(storage: Storage, serial: str, until: int | None) -> list[_Source]:
-    """Every session of a unit, read at once."""
     with storage.database.reading() as store:
         unit, stored = Units(store).key(serial), Sessions(store).of_unit(serial)
         revisions = [r for r in Models(store).of_unit(serial) if until is None or r.id <= until]
@@ -176,8 +173,6 @@ def _report(
 
 @dataclass(frozen=True, eq=False)
 class _Recomputed:
-    """A session computed again."""
-
     session: StoredSession
     model: Model
     made: MadeCalibration

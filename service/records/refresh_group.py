@@ -132,14 +132,9 @@ def _answered(
 def _pooled(group: Group, members: Members, records: dict[str, SessionStatistics]) -> list[Member]:
     """Oldest first; the last one is the group's own, since it says whose the group is."""
     found = [m for m in members.pooled if m.session in records]
-    while found and not _is_own(group, found[-1]):
+    while found and group.level is Level.STAND and found[-1].stand != group.name:
         found.pop()
     return found
-
-
-def _is_own(group: Group, member: Member) -> bool:
-    """Whether it is not a stand's unit elsewhere."""
-    return group.level is not Level.STAND or member.stand == group.name
 
 
 def _named(record: SessionStatistics, member: Member) -> SessionStatistics:

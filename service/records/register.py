@@ -21,8 +21,7 @@ from service.storage.queries import Store
 from service.types.rules import named_only
 from service.types.store import UnitTypes
 from service.units.records import CustodyStep, Move, NewEntry, Registered
-from service.units.register_store import Register
-from service.units.store import Units
+from service.units.store import Register, Units
 
 NO_TYPE = "is missing: say the type of a unit that is not known yet"
 
@@ -89,7 +88,6 @@ def _problems(entry: NewEntry, known: Registered | None, *, is_measured: bool) -
 
 
 def _enter(store: Store, entry: NewEntry, known: Registered | None, entering: Entering) -> bool:
-    """Stores one entry; whether that changed anything."""
     if known is not None and known.registered_at is not None and not _differences(entry, known):
         return False
     if entry.unit_type and (known is None or entry.unit_type != known.unit_type):
@@ -113,7 +111,6 @@ def _enter(store: Store, entry: NewEntry, known: Registered | None, entering: En
 
 
 def _differences(entry: NewEntry, known: Registered) -> tuple[str, ...]:
-    """Fields that the register says otherwise."""
     names = ("unit_type", "owner", "location", "custodian", "note")
     asked = {name: getattr(entry, name) for name in names}
     if not entry.unit_type:
@@ -154,10 +151,10 @@ def retired_in_words(entry: Registered) -> str:
 def _require_change(was: Registered, move: Move) -> None:
     if move.step is CustodyStep.RETIRED and was.retired_at is not None:
         day = day_of(was.retired_at)
-        raise ConflictError(say("{unit} is retired since {day} already.", unit=was.unit, day=day))
+        raise ConflictError("{unit} is retired since {day} already.", unit=was.unit, day=day)
     if move.step is CustodyStep.RETURNED and was.retired_at is None:
-        raise ConflictError(say("{unit} is in use already.", unit=was.unit))
+        raise ConflictError("{unit} is in use already.", unit=was.unit)
     asked = {"location": move.location, "custodian": move.custodian}
     is_same = all(value in (None, getattr(was, name)) for name, value in asked.items())
     if move.step is CustodyStep.MOVED and is_same:
-        raise ConflictError(say("{unit} is there already, with the same custodian.", unit=was.unit))
+        raise ConflictError("{unit} is there already, with the same custodian.", unit=was.unit)

@@ -1,6 +1,5 @@
 """The register of units, over HTTP: entered, moved, retired and put back, as a table in and out."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -11,14 +10,13 @@ from estimator.json_object import Json
 from estimator.message import say
 from service.kit.answer import answer
 from service.kit.arriving_files import held
-from service.kit.libraries import pl
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.records.register import Entered, Entering, enter, move_unit
 from service.storage.queries import Store
 from service.units.records import Custody, CustodyStep, Move, NewEntry, Registered
 from service.units.register_file import read_register
-from service.units.register_store import Register
+from service.units.store import Register
 from service.uploads.received import SentOf
 from service.web.dependencies import Now, Reading
 from service.web.fields import Body, LongText, Moment, Name, Reason, Serial, Text
@@ -102,14 +100,9 @@ def read_all(
     found = Register(store).every()
     form = wanted_form(request, format, FORMS)
     if form == "csv":
-        return as_table(register_table(found), form, "register")
+        return as_table(table_of([_row(unit) for unit in found], COLUMNS), form, "register")
     document = RegisterList(units=found).model_dump_json()
     return Response(document, media_type="application/json", headers=BY_HEADER)
-
-
-def register_table(found: Sequence[Registered]) -> "pl.DataFrame":
-    """One row a unit."""
-    return table_of([_row(unit) for unit in found], COLUMNS)
 
 
 def _row(unit: Registered) -> dict[str, Any]:

@@ -3,7 +3,6 @@
 from datetime import datetime
 
 from estimator.errors import SessionError
-from estimator.message import say
 from service.errors import ConflictError
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
@@ -90,15 +89,13 @@ def give_way(store: Store, at: datetime, replaced: Replaced, successor: StoredSe
     known = Sessions(store).get(replaced.session)
     if known.id == successor.id:
         raise ConflictError(
-            say("Session {id} cannot replace itself: the file contains what is already stored.", id=known.id)
+            "Session {id} cannot replace itself: the file contains what is already stored.", id=known.id
         )
     if known.state not in REPLACEABLE:
-        raise ConflictError(
-            say("Session {id} is already {state}: nothing replaces it.", id=known.id, state=known.state)
-        )
+        raise ConflictError("Session {id} is already {state}: nothing replaces it.", id=known.id, state=known.state)
     if successor.state not in REPLACEABLE:
         raise ConflictError(
-            say("Session {id} is itself {state}: it replaces no other.", id=successor.id, state=successor.state)
+            "Session {id} is itself {state}: it replaces no other.", id=successor.id, state=successor.state
         )
     change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=successor.id)
     return known
@@ -111,11 +108,9 @@ def successor_of(storage: Storage, id: str) -> str:
         found = Sessions(store).corrected(known)
     if len(found) != 1:
         raise ConflictError(
-            say(
-                "It is not clear which session replaces {id}: name it in `superseded_by`. Uploaded later with the "
-                "same unit and date: {number}.",
-                id=id,
-                number=len(found),
-            )
+            "It is not clear which session replaces {id}: name it in `superseded_by`. Uploaded later with the "
+            "same unit and date: {number}.",
+            id=id,
+            number=len(found),
         )
     return found[0]

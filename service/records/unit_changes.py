@@ -1,13 +1,12 @@
 """Notes, files, lot and customer of a unit are recorded and withdrawn; nothing is erased.
 
-but a file to save. One that is taken back stays on record and is given out no more.
+An attached file that is taken back stays on record and is given out no more.
 """
 
 from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import Problem
-from estimator.message import say
 from service.errors import ConflictError, NotFoundError, RefusedError
 from service.fleet.changes import ask_for_summaries
 from service.fleet.condition import UnitSummary
@@ -80,7 +79,7 @@ def withdraw_attachment(storage: Storage, id: int, who: str, why: str, now: date
     with storage.database.writing() as store:
         attachment = Attachments(store).get(id)
         if not Attachments(store).withdraw(id, Withdrawal(now, who, why)):
-            raise ConflictError(say("Attachment {id} was withdrawn before.", id=id))
+            raise ConflictError("Attachment {id} was withdrawn before.", id=id)
         Audit(store).write(now, who, "withdraw attachment", attachment.unit, {"attachment": id, "why": why})
         return Attachments(store).get(id)
 
@@ -90,7 +89,7 @@ def given_out(store: Store, id: int) -> Attachment:
     attachment = Attachments(store).get(id)
     if attachment.withdrawal is not None:
         parts = {"id": id, "who": attachment.withdrawal.who, "reason": attachment.withdrawal.why}
-        raise NotFoundError(say("Attachment {id} was withdrawn by {who}: {reason}", **parts))
+        raise NotFoundError("Attachment {id} was withdrawn by {who}: {reason}", **parts)
     return attachment
 
 
@@ -104,7 +103,6 @@ def _faults(given: Attaching) -> list[Problem]:
 
 
 def _home(store: Store, given: Attaching) -> tuple[str, str | None]:
-    """Unit and session; NotFoundError where there is none."""
     if given.session:
         session = Sessions(store).get(given.session)
         return session.unit, session.id
@@ -120,10 +118,7 @@ def set_lot(storage: Storage, serial: str, lot: str | None, now: datetime, *, wh
         if was != lot:
             ask_for_summaries(store, serial, now)
             Audit(store).write(now, who, "lot", serial, {"before": was, "lot": lot})
-        found = Fleet(store).unit(serial)
-    if found is None:
-        raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
-    return found
+        return Fleet(store).get(serial)
 
 
 def set_customer(storage: Storage, serial: str, new: Customer, now: datetime, *, who: str = "crew") -> Customer:
@@ -142,6 +137,6 @@ def withdraw_note(storage: Storage, id: int, who: str, why: str, now: datetime) 
     with storage.database.writing() as store:
         note = Notes(store).get(id)
         if not Notes(store).withdraw(id, who, why, now):
-            raise ConflictError(say("Note {id} was withdrawn before.", id=id))
+            raise ConflictError("Note {id} was withdrawn before.", id=id)
         Audit(store).write(now, who, "withdraw note", note.unit, {"note": id, "why": why})
         return Notes(store).get(id)

@@ -75,7 +75,7 @@ class Calibrations(Queries):
         if deflated is None:
             under = "" if revision is None else say(" under model revision {revision}", revision=revision)
             raise NotFoundError(
-                say("There is no calibration of session {session}{under}.", session=repr(session), under=under)
+                "There is no calibration of session {session}{under}.", session=repr(session), under=under
             )
         return zlib.decompress(deflated)
 
@@ -88,7 +88,7 @@ class Calibrations(Queries):
         whole = query.outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id))
         row = self._session.execute(whole.where(SessionRow.id == id)).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no session {id}.", id=repr(id)))
+            raise NotFoundError("There is no session {id}.", id=repr(id))
         *session, state, summary, gain, failed, document = row
         made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary, gain or "")
         return session_record(*session), made, failed or "", calibration_of(document)

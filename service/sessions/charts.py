@@ -4,7 +4,7 @@ A page carries the specification and the data as JSON; the browser joins and dra
 own style variables, so that charts follow light, dark and print.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import isfinite, sqrt
@@ -24,6 +24,7 @@ DATA_FORM = "points"
 """Name of the main data set of every specification."""
 UNIT, LEFT, RIGHT, LOW, HIGH = "{unit}", "{left}", "{right}", "{low}", "{high}"
 """Blanks of a specification: the unit of y, and the ranges of x and y."""
+NO_TEXTS: Mapping[str, str] = {}
 
 AIR = 0.06
 """Share of a range that is left empty above and below, so that no mark is cut."""
@@ -56,9 +57,9 @@ class Panel:
 
     title: str
     description: str
-    condition: Condition | None
-    """The verdict to show beside the heading; None where nothing is judged."""
     datasets: dict[str, list[Json]]
+    condition: Condition | None = None
+    """The verdict to show beside the heading; None where nothing is judged."""
 
 
 @dataclass(frozen=True)
@@ -90,12 +91,38 @@ def specification(layers: "list[alt.Chart]", height: int) -> Json:
     return {**chart, "config": CONFIG, "autosize": {"type": "fit-x", "contains": "padding"}}
 
 
-def filled(part: Any, values: Mapping[str, Any]) -> Any:
-    """A specification with its blanks filled in: Altair takes long to make one, so each kind is made once."""
+def hints(titles: Mapping[str, str]) -> "list[alt.Tooltip]":
+    """What pointing at a mark tells: fields with their titles."""
+    return [alt.Tooltip(field, title=title) for field, title in titles.items()]
+
+
+def x_scale(**options: Any) -> "alt.Scale":
+    """Over the range that x is given."""
+    return alt.Scale(domain=[LEFT, RIGHT], **options)
+
+
+def y_scale(**options: Any) -> "alt.Scale":
+    """Over the range that y is given."""
+    return alt.Scale(domain=[LOW, HIGH], **options)
+
+
+def y_axis(scale: "alt.Scale") -> "alt.Y":
+    """The values, in their unit."""
+    return alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=scale)
+
+
+def filled(spec: Json, x: Sequence[Any], y: Sequence[float], unit: str, texts: Mapping[str, str] = NO_TEXTS) -> Json:
+    """A specification with its ranges, unit and texts: Altair takes long to make one, so each kind is made once."""
+    ranges = {LEFT: x[0], RIGHT: x[1], LOW: y[0], HIGH: y[1], UNIT: unit}
+    found: Json = _filled_in(spec, {**ranges, **texts})
+    return found
+
+
+def _filled_in(part: Any, values: Mapping[str, Any]) -> Any:
     if isinstance(part, dict):
-        return {key: filled(value, values) for key, value in part.items()}
+        return {key: _filled_in(value, values) for key, value in part.items()}
     if isinstance(part, list):
-        return [filled(value, values) for value in part]
+        return [_filled_in(value, values) for value in part]
     return values.get(part, part) if isinstance(part, str) else part
 
 
@@ -249,7 +276,6 @@ def residual_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
 
 
 def _columns(calibration: Calibration, kind: str) -> list[int]:
-    """The sensors of a kind that have residuals."""
     value = calibration.residuals.value
     return [i for i, s in enumerate(calibration.sensors) if s.kind == kind and np.isfinite(value[:, i]).any()]
 
@@ -288,7 +314,6 @@ def _panel(calibration: Calibration, column: int, across: Across, unit: Measure)
         description=say(
             "rms {rms}{thin_space}{label}{outside}", rms=rms, thin_space=THIN, label=unit.label, outside=outside
         ),
-        condition=None,
         datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
     )
 
@@ -305,37 +330,28 @@ def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit:
             "row": row,
         }
         for row, (x, y, s, turned) in enumerate(
-            zip(across.values, residuals.value[:, column], noise.stated[:, column], flipped, strict=True),
-            1,
+            zip(across.values, residuals.value[:, column], noise.stated[:, column], flipped, strict=True), 1
         )
         if np.isfinite(y)
     ]
 
 
 def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> Json:
-    left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
-    low, high = padded(-largest, largest)
-    ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
-    texts = {
-        UNIT: unit.label,
-        RESIDUAL: say("residual, {label}", label=unit.label),
-        BAND: say("2σ stated, {label}", label=unit.label),
-    }
-    found: Json = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
-    return found
+    x = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
+    label = unit.label
+    texts = {RESIDUAL: say("residual, {label}", label=label), BAND: say("2σ stated, {label}", label=label)}
+    return filled(_spec(across.name, across.title, wider=wider), x, padded(-largest, largest), label, texts)
 
 
 @cache
 def _spec(name: str, title: str, *, wider: bool) -> Json:
     """With blanks for the unit and the ranges; ``wider``: with the edges of the noise found."""
-    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
-    y_scale = alt.Scale(domain=[LOW, HIGH])
-    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
+    x, scale = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=x_scale(nice=False)), y_scale()
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=SHADES[name])
-    shades = band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N")
-    found = edges(base, y_scale, "var(--accent)") if wider else []
-    return specification([shades, *found, zero_line(), _marks(base, y)], HEIGHT)
+    shades = band.encode(y=alt.Y("low:Q", scale=scale), y2="band:Q", detail="run:N")
+    found = edges(base, scale, "var(--accent)") if wider else []
+    return specification([shades, *found, zero_line(), _marks(base, y_axis(scale))], HEIGHT)
 
 
 def _marks(base: "alt.Chart", y: "alt.Y") -> "alt.Chart":
@@ -343,11 +359,6 @@ def _marks(base: "alt.Chart", y: "alt.Y") -> "alt.Chart":
         y=y,
         color=alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"])),
         shape=alt.Shape("run:N", legend=None, scale=shapes()),
-        tooltip=[
-            alt.Tooltip("row:Q", title="row"),
-            alt.Tooltip("run:N", title="run"),
-            alt.Tooltip("y:Q", title=RESIDUAL),
-            alt.Tooltip("band:Q", title=BAND),
-        ],
+        tooltip=hints({"row:Q": "row", "run:N": "run", "y:Q": RESIDUAL, "band:Q": BAND}),
     )
     return chart

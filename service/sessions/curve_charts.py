@@ -16,16 +16,16 @@ from service.sessions.charts import (
     BAND,
     DATA_FORM,
     HEIGHT,
-    HIGH,
-    LEFT,
-    LOW,
-    RIGHT,
     UNIT,
     ChartSet,
     Panel,
     filled,
+    hints,
     padded,
     specification,
+    x_scale,
+    y_axis,
+    y_scale,
     zero_line,
 )
 from service.sessions.words.curves import change
@@ -56,9 +56,7 @@ def _set(curves: ThermalCurves, kind: str, parameter: str, by_sensor: dict[str, 
     low = min(float((moved - u).min()) for moved, u in found.values())
     high = max(float((moved + u).max()) for moved, u in found.values())
     measure = deviation_measure(kind, parameter, max(-low, high))
-    bottom, top = padded(low * measure.factor, high * measure.factor)
-    left, right = padded(curves.lowest, curves.highest)
-    texts = {UNIT: measure.label, BAND: say("U, {label}", label=measure.label)}
+    x, y = padded(curves.lowest, curves.highest), padded(low * measure.factor, high * measure.factor)
     words = {
         "bias": say("Bias of the {kind}s over temperature", kind=kind),
         "scale": say("Scale factor of the {kind}s over temperature", kind=kind),
@@ -66,7 +64,7 @@ def _set(curves: ThermalCurves, kind: str, parameter: str, by_sensor: dict[str, 
     return ChartSet(
         name=f"curves-{kind}-{parameter}",
         heading=words[parameter],
-        spec=filled(_spec(), {LEFT: left, RIGHT: right, LOW: bottom, HIGH: top, **texts}),
+        spec=filled(_spec(), x, y, measure.label, {BAND: say("U, {label}", label=measure.label)}),
         panels=tuple(_panel(name, T, *found[name], measure, by_sensor[name].order) for name in by_sensor),
     )
 
@@ -82,18 +80,17 @@ def _panel(name: str, T: Array, moved: Array, spread: Array, measure: Measure, o
         }
         for t, y, u in zip(T, moved, spread, strict=True)
     ]
-    return Panel(name, say("polynomial of order {order}", order=order), None, {DATA_FORM: data})
+    return Panel(name, say("polynomial of order {order}", order=order), {DATA_FORM: data})
 
 
 @cache
 def _spec() -> Json:
     """With blanks for the unit and the ranges."""
-    x = alt.X("x:Q", title="°C", axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
-    scale = alt.Scale(domain=[LOW, HIGH])
+    x = alt.X("x:Q", title="°C", axis=alt.Axis(tickCount=5), scale=x_scale(nice=False))
+    scale = y_scale()
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     shade = base.mark_area(color="var(--accent)", opacity=0.25).encode(y=alt.Y("low:Q", scale=scale), y2="high:Q")
     line = base.mark_line(color="var(--accent)", strokeWidth=2).encode(
-        y=alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=scale),
-        tooltip=[alt.Tooltip("x:Q", title="°C"), alt.Tooltip("y:Q", title=UNIT), alt.Tooltip("band:Q", title=BAND)],
+        y=y_axis(scale), tooltip=hints({"x:Q": "°C", "y:Q": UNIT, "band:Q": BAND})
     )
     return specification([shade, zero_line(), line], HEIGHT)

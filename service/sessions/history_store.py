@@ -61,29 +61,18 @@ class StoredPoint(NamedTuple):
     common_sigma: float | None
 
 
+MEASURED = (
+    *("session_id", "at", "sensor", "kind", "parameter", "value", "u"),
+    *("axis_x", "axis_y", "axis_z", "revision"),
+)
+JUDGED = (
+    *("verdict", "value", "reference", "deviation", "uncertainty", "expanded"),
+    *("coverage_factor", "tolerance", "common", "common_sigma"),
+)
 POINT = (
-    ParameterRow.session_id,
-    ParameterRow.at,
-    ParameterRow.sensor,
-    ParameterRow.kind,
-    ParameterRow.parameter,
-    ParameterRow.value,
-    ParameterRow.u,
-    ParameterRow.axis_x,
-    ParameterRow.axis_y,
-    ParameterRow.axis_z,
-    ParameterRow.revision,
+    *(getattr(ParameterRow, name) for name in MEASURED),
     SessionRow.is_reference,
-    DecisionRow.verdict,
-    DecisionRow.value,
-    DecisionRow.reference,
-    DecisionRow.deviation,
-    DecisionRow.uncertainty,
-    DecisionRow.expanded,
-    DecisionRow.coverage_factor,
-    DecisionRow.tolerance,
-    DecisionRow.common,
-    DecisionRow.common_sigma,
+    *(getattr(DecisionRow, name) for name in JUDGED),
 )
 """The columns; decisions are joined from outside."""
 

@@ -31,9 +31,7 @@ class States(Queries):
                 kind=kind,
                 record=record,
                 state=state,
-                who=step.who,
-                at=step.at,
-                why=step.why,
+                **vars(step),
                 superseded_by=superseded_by,
                 remedies=None if remedies is None else asdict(remedies),
             )
@@ -53,7 +51,7 @@ class States(Queries):
 
     def choose(self, unit: int, session: str, step: Step) -> None:
         """A session is chosen as the reference of its epoch."""
-        self._session.add(ReferenceChoiceRow(unit_id=unit, session_id=session, who=step.who, at=step.at, why=step.why))
+        self._session.add(ReferenceChoiceRow(unit_id=unit, session_id=session, **vars(step)))
         self._session.flush()
 
     def choices(self, unit: int) -> tuple[ReferenceChoice, ...]:

@@ -1,6 +1,6 @@
 """Sessions and their decisions."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, fields
 from datetime import datetime
 from typing import Any
@@ -12,6 +12,7 @@ from sqlalchemy import (
     SQLColumnExpression,
     and_,
     bindparam,
+    case,
     func,
     or_,
     select,
@@ -21,21 +22,22 @@ from sqlalchemy.orm import InstrumentedAttribute, aliased
 
 from estimator.health.common_motion import CommonMotion
 from estimator.health.temperature_law import Steps, TemperatureCorrection
-from estimator.message import say
+from estimator.json_object import Json
 from estimator.session import CALIBRATIONS
 from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
 from service.kit.arriving_files import DEMONSTRATION
 from service.kit.copying import copied
 from service.sessions.decision import Decision, Verdict
-from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionQuery, StoredSession
-from service.sessions.reservation_document import reservations_from_list
+from service.sessions.doubt import Reservation, Reservations
+from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionOrder, SessionQuery, StoredSession
 from service.sessions.states import RecordState
 from service.sessions.states_store import IS_ACCEPTED, IS_BREAK
 from service.sessions.tables import CommonMotionRow, DecisionRow, SessionRow
-from service.sessions.wanted_store import SESSIONS
 from service.stands.tables import StandRow
 from service.storage.audit import AuditRow
+from service.storage.json_text import STORED
+from service.storage.listing import Key, Listing
 from service.storage.queries import Queries, lists
 from service.types.tables import UnitTypeRow
 from service.units.tables import ServiceRow, UnitRow
@@ -67,7 +69,7 @@ class Sessions(Queries):
         """One session."""
         found = self._session.execute(_BY_ID, {"id": id}).one_or_none()
         if found is None:
-            raise NotFoundError(say("There is no session {id}.", id=repr(id)))
+            raise NotFoundError("There is no session {id}.", id=repr(id))
         return session_record(*found)
 
     def only_demonstration(self) -> bool:
@@ -304,5 +306,52 @@ def motion_record(row: CommonMotionRow) -> CommonMotion:
 
 
 def _plain(value: Any) -> Any:
-    """JSON's lists are the tuples that they were."""
     return tuple(map(_plain, value)) if isinstance(value, list) else value
+
+
+SEVERITY = case({verdict.value: verdict.severity for verdict in Verdict}, value=SessionRow.verdict)
+"""A number that orders verdicts from good to bad."""
+LATEST = (Key(SessionRow.started_at, is_falling=True), Key(SessionRow.id, is_falling=True))
+ORDERS = {
+    SessionOrder.MEASURED: LATEST,
+    SessionOrder.UPLOADED: (Key(SessionRow.uploaded_at, is_falling=True), Key(SessionRow.id, is_falling=True)),
+    SessionOrder.VERDICT: (Key(SEVERITY, is_falling=True), *LATEST),
+    SessionOrder.UNIT: (Key(UnitRow.serial), Key(SessionRow.started_at), Key(SessionRow.id)),
+}
+
+
+def _is_of(name: str) -> ColumnElement[bool]:
+    of_type = select(UnitTypeRow.id).where(UnitTypeRow.name == name)
+    return UnitRow.unit_type_id == of_type.scalar_subquery()
+
+
+def _is_on(stand: str) -> ColumnElement[bool]:
+    return SessionRow.stand_id == select(StandRow.id).where(StandRow.name == stand).scalar_subquery()
+
+
+SESSIONS: Listing[SessionQuery] = Listing(
+    name=SessionRow.id,
+    keys=lambda wanted: ORDERS[wanted.order],
+    conditions={
+        "text": lambda text: UnitRow.serial.icontains(text, autoescape=True),
+        "unit": lambda serial: UnitRow.serial == serial,
+        "unit_type": _is_of,
+        "stand": _is_on,
+        "since": lambda since: SessionRow.started_at >= since,
+        "until": lambda until: SessionRow.started_at < until,
+        "state": lambda state: SessionRow.state == state,
+        "verdict": lambda verdict: SessionRow.verdict == verdict,
+        "is_reference": lambda is_so: SessionRow.is_reference.is_(is_so),
+        "reserved": lambda _: DiagnosisRow.reservations.is_not(None),
+    },
+)
+
+
+def reservations_to_list(reservations: Sequence[Reservation]) -> list[Json] | None:
+    """Every reservation, or None where there are none."""
+    return STORED.written(list(reservations)) or None
+
+
+def reservations_from_list(diagnosed: str | None, entries: list[Any] | None) -> Reservations:
+    """What `reservations_to_list` wrote; None where no diagnosis is stored yet."""
+    return None if diagnosed is None else tuple(STORED.read(Reservation, entry) for entry in entries or ())

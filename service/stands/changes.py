@@ -2,8 +2,7 @@
 
 from datetime import datetime
 
-from estimator.errors import Problem
-from estimator.message import say
+from estimator.errors import problem_at
 from service.errors import RefusedError
 from service.stands.records import StandCertificate, StandError
 from service.stands.store import StandCertificates
@@ -19,8 +18,8 @@ def record_stand_certificate(
     ``errors``: of the stand, as the certificate's document states them.
     """
     if new.valid_until < new.issued_on:
-        fault = Problem(
-            "valid_until", say("lies before the day of issue, {issued_on}; check both dates", issued_on=new.issued_on)
+        fault = problem_at(
+            "valid_until", "lies before the day of issue, {issued_on}; check both dates", issued_on=new.issued_on
         )
         raise RefusedError("The certificate cannot be used.", (fault,))
     with storage.database.writing() as store:

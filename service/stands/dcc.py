@@ -14,7 +14,7 @@ from math import inf, isfinite, pi
 
 from lxml import etree
 
-from estimator.errors import Problem
+from estimator.errors import Problem, problem_at
 from estimator.message import say
 from estimator.reading.bounds import WITHIN
 from estimator.reading.keys import SIGMA
@@ -87,7 +87,7 @@ def _text(root: Element, path: str, problems: list[Problem]) -> str:
     text = " ".join((root.findtext(path, "") or "").split())
     if not text or len(text) > MOST_NAMED:
         field = path.removesuffix("/{*}contact/{*}name/{*}content").rpartition("}")[2]
-        problems.append(Problem(field, say("must be a text of 1 to {most} characters", most=MOST_NAMED)))
+        problems.append(problem_at(field, "must be a text of 1 to {most} characters", most=MOST_NAMED))
     return text
 
 

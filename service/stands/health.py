@@ -28,8 +28,6 @@ def stand_health(store: Store) -> tuple[StandCondition, ...]:
 
 @dataclass(frozen=True)
 class _Found:
-    """One quantity of one stand."""
-
     kind: str
     quantity: str
     start: datetime

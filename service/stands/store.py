@@ -8,7 +8,6 @@ from sqlalchemy import Integer, Select, cast, delete, func, select
 
 from estimator.health.common_motion import SEPARATED
 from estimator.json_object import Json
-from estimator.message import say
 from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
 from service.sessions.states_store import IS_ACCEPTED
@@ -58,7 +57,7 @@ class Stands(Queries):
         found = self._session.execute(_stands().where(StandRow.name == stand)).one_or_none()
         if found is None:
             raise NotFoundError(
-                say("There is no stand {stand}: no session was measured on one of that name.", stand=repr(stand))
+                "There is no stand {stand}: no session was measured on one of that name.", stand=repr(stand)
             )
         return _known(*found)
 
@@ -207,7 +206,7 @@ class StandCertificates(Queries):
         key = self._session.scalar(select(StandRow.id).where(StandRow.name == stand))
         if key is None:
             raise NotFoundError(
-                say("There is no stand {stand}: no session was measured on one of that name.", stand=repr(stand))
+                "There is no stand {stand}: no session was measured on one of that name.", stand=repr(stand)
             )
         return key
 

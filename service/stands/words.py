@@ -67,7 +67,6 @@ def scatter_of(seating: StandSeating) -> str:
 
 
 def _seating(seating: Sequence[StandSeating]) -> Sequence[str]:
-    """How blocks are seated, ± U."""
     return [say("Mounting repeatability: {own}.", own=scatter_of(s)) for s in seating if s.quantity == AXES][:1]
 
 

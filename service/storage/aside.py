@@ -95,7 +95,6 @@ def _age(path: Path) -> float:
 
 
 def _access(path: Path) -> tuple[float, int]:
-    """Time of the last access and size; zeros where another request has just removed it."""
     try:
         status = path.stat()
     except FileNotFoundError:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from estimator.message import say
 from estimator.on_demand import function_on_demand
 from service.errors import AwayError
 from service.kit.lock_order import writing
@@ -19,12 +20,13 @@ from service.storage.audit import Audit
 from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
 from service.storage.queries import BeforeCommit, Store
-from service.storage.revisions import unfit
 from service.storage.waits import FairLock, Waits
 
 if TYPE_CHECKING:
-    from service.storage.schema import stored_revision
+    from service.storage.schema import head_revision, is_known, stored_revision
 else:
+    head_revision = function_on_demand("service.storage.schema", "head_revision")
+    is_known = function_on_demand("service.storage.schema", "is_known")
     stored_revision = function_on_demand("service.storage.schema", "stored_revision")
 
 
@@ -90,3 +92,22 @@ class Database:
     def close(self) -> None:
         """Closes every connection."""
         self.engine.dispose()
+
+
+def unfit(revision: str | None) -> str | None:
+    """Why this version cannot work with a revision; None for the one that it needs."""
+    needed = head_revision()
+    if revision == needed:
+        return None
+    if revision is not None and not is_known(revision):
+        return say(
+            "The database's schema is at {revision}, which a newer version of the program made; this "
+            "one goes up to {needed_revision}: run the newer version.",
+            revision=revision,
+            needed_revision=needed,
+        )
+    return say(
+        "The database's schema is at {revision}, this version needs {needed_revision}: run `imu-health db upgrade`.",
+        revision=revision or "nothing",
+        needed_revision=needed,
+    )

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
-from estimator.message import say
 from service.errors import AwayError, NoSpaceError, ServiceError
 
 FULL_SQLSTATES = frozenset({"53100"})
@@ -62,7 +61,7 @@ def disk_faults() -> Iterator[None]:
     except OSError as fault:
         if fault.errno in FULL_ERRNOS:
             raise NoSpaceError(NO_SPACE) from fault
-        raise AwayError(say(NO_FOLDER, reason=fault.strerror or fault)) from fault
+        raise AwayError(NO_FOLDER, reason=fault.strerror or fault) from fault
 
 
 def _is_full(fault: DBAPIError) -> bool:

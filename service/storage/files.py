@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from hashlib import file_digest, sha256
 from pathlib import Path
 
-from estimator.message import say
 from service.errors import DamagedError, NotFoundError
 from service.kit.arriving_files import Content, Landed
 from service.kit.log import log
@@ -97,31 +96,25 @@ class Files:
         except FileNotFoundError as missing:
             self._report_fault("missing", digest)
             raise NotFoundError(
-                say(
-                    "The uploaded file {digest} is missing from {folder}. Upload the same file to restore it.",
-                    digest=digest,
-                    folder=self.folder,
-                )
+                "The uploaded file {digest} is missing from {folder}. Upload the same file to restore it.",
+                digest=digest,
+                folder=self.folder,
             ) from missing
         except OSError as fault:
             self._report_fault("unreadable", digest)
             raise DamagedError(
-                say(
-                    "The uploaded file {digest} cannot be read: {strerror}.",
-                    digest=digest,
-                    strerror=fault.strerror or fault,
-                )
+                "The uploaded file {digest} cannot be read: {strerror}.",
+                digest=digest,
+                strerror=fault.strerror or fault,
             ) from fault
 
     def _check(self, actual: str, digest: str) -> None:
         if actual != digest:
             self._report_fault("damaged", digest)
             raise DamagedError(
-                say(
-                    "The stored file {digest} is not what was uploaded: its content was changed, so it cannot be "
-                    "downloaded. Upload the same file, or the one in a backup, to restore it.",
-                    digest=digest,
-                )
+                "The stored file {digest} is not what was uploaded: its content was changed, so it cannot be "
+                "downloaded. Upload the same file, or the one in a backup, to restore it.",
+                digest=digest,
             )
 
     def sweep(self) -> int:

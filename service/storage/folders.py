@@ -29,7 +29,7 @@ def named_in(folder: Path, name: str) -> Path:
     """Path of a file of this name; every stored name becomes a path here, and nowhere else."""
     if not is_name(name):
         raise DamagedError(
-            say("{name} is not the name of a stored file: the record that names it was changed.", name=repr(name[:100]))
+            "{name} is not the name of a stored file: the record that names it was changed.", name=repr(name[:100])
         )
     return folder / name
 
@@ -109,12 +109,10 @@ def require_writable(folder: Path) -> None:
             pass
     except OSError as fault:
         raise ServiceError(
-            say(
-                "The folder {folder} cannot be written: {strerror}. Give the service's user the right to "
-                "write there, or name another one with --data-folder or IMU_HEALTH_DATA_FOLDER.",
-                folder=folder,
-                strerror=fault.strerror or fault,
-            )
+            "The folder {folder} cannot be written: {strerror}. Give the service's user the right to "
+            "write there, or name another one with --data-folder or IMU_HEALTH_DATA_FOLDER.",
+            folder=folder,
+            strerror=fault.strerror or fault,
         ) from fault
 
 

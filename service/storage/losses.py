@@ -14,7 +14,6 @@ class Loss:
 
     table: str
     rows: int
-    """Deleted rows."""
     values: tuple[tuple[str, int], ...] = ()
     """Deleted columns, each with the number of rows that have a value in it."""
 
@@ -45,7 +44,6 @@ def _rows(connection: Connection, table: Table) -> int:
 
 
 def _filled(connection: Connection, table: Table) -> dict[str, int]:
-    """For every column the number of rows with a value."""
     columns = list(table.columns)
     counts = connection.execute(select(*(func.count(column) for column in columns))).one()
     return {column.name: number for column, number in zip(columns, counts, strict=True)}

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.storage.faults import disk_faults
 from service.storage.files import Files, content_hash
@@ -30,7 +29,7 @@ def read_made(files: Files, id: int, digest: str) -> bytes:
     except OSError:
         content = b""
     if content_hash(content) != digest:
-        raise NotFoundError(say("The file of job {id} was deleted. Request it again.", id=id))
+        raise NotFoundError("The file of job {id} was deleted. Request it again.", id=id)
     return content
 
 

@@ -67,6 +67,5 @@ class Queries:
         return self._session.scalar(inserted.returning(literal_column("1", Integer))) is not None
 
     def _upsert(self, table: type[Base]) -> postgresql.Insert | sqlite.Insert:
-        """An insertion that can handle existing rows."""
         dialect_insert = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
         return dialect_insert(table)

@@ -70,7 +70,6 @@ def take_back(connection: Connection, revision: str) -> None:
 
 @contextmanager
 def _known_revisions(connection: Connection, wanted: str) -> Iterator[None]:
-    """Clear errors where the database is of a newer version, or the revision does not exist."""
     current = stored_revision(connection)
     if current is not None and not is_known(current):
         raise ServiceError(

@@ -37,7 +37,6 @@ class FairLock:
             self._leave(place)
 
     def _come(self) -> Lock:
-        """Joins the queue; the first place is free at once."""
         place = Lock()
         with self._own:
             if self._line:

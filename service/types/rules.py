@@ -71,5 +71,4 @@ def _observed(kind: str, calibration: Calibration) -> Tolerances:
 
 
 def _is_unseen(observable: list[bool | None]) -> bool:
-    """Whether a parameter of the session is observable on no sensor."""
     return any(seen is not None for seen in observable) and not any(observable)

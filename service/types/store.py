@@ -9,7 +9,6 @@ from sqlalchemy import ColumnElement, Select, bindparam, func, or_, select, upda
 from sqlalchemy.orm import aliased
 
 from estimator.health.type_law import TypeLaw
-from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.fleet.tables import FleetTallyRow
@@ -80,7 +79,7 @@ class UnitTypes(Queries):
             _with_tolerances().join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == serial)
         ).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         return unit_type_of(*row)
 
     def of_unit_through_time(self, serial: str) -> TypeThroughTime:
@@ -204,15 +203,13 @@ def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
 
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
-    """Types, each with its current revision of tolerances."""
     return select(UnitTypeRow, ToleranceRow).join(
-        ToleranceRow,
-        (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
+        ToleranceRow, (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
     )
 
 
 def _missing(name: str) -> NotFoundError:
-    return NotFoundError(say("There is no unit type {name}.", name=repr(name)))
+    return NotFoundError("There is no unit type {name}.", name=repr(name))
 
 
 def _use(counts: Mapping[int | None, int]) -> TypeUse:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from estimator.errors import Problem
+from estimator.errors import Problem, problem_at
 from estimator.message import joined, say
 from service.errors import RefusedError
 from service.ingest.names import plain_name
@@ -52,12 +52,12 @@ def _rows(content: bytes, filename: str) -> list[dict[str, Any]]:
         detail = say("cannot be read as a table: {fault}", fault=printable(str(fault).partition("\n")[0]))
         raise _refused(filename, [Problem("file", detail)]) from fault
     if table.height > MOST_ROWS:
-        raise _refused(filename, [Problem("file", say("has more than {most} rows; split it", most=MOST_ROWS))])
+        raise _refused(filename, [problem_at("file", "has more than {most} rows; split it", most=MOST_ROWS)])
     return table.to_dicts()
 
 
 def _of_columns(first: dict[str, Any]) -> list[Problem]:
-    found = [Problem(name, say("is no column of the register; it has {columns}", columns=joined(", ", COLUMNS)))
+    found = [problem_at(name, "is no column of the register; it has {columns}", columns=joined(", ", COLUMNS))
              for name in first if name not in (*COLUMNS, *LEFT)]  # fmt: skip
     if first and "serial" not in first:
         found.append(Problem("serial", "is missing: one column names the units"))
@@ -70,13 +70,13 @@ def _of_rows(rows: Sequence[dict[str, Any]]) -> list[Problem]:
         for name in COLUMNS:
             longest = LONGEST.get(name, SHORT)
             if len(_cell(row.get(name))) > longest:
-                found.append(Problem(name, say("is longer than {longest} characters", longest=longest), number))
+                found.append(problem_at(name, "is longer than {longest} characters", number, longest=longest))
             if "\x00" in _cell(row.get(name)):
                 found.append(Problem(name, "contains a character that cannot be stored", number))
         serial = _cell(row.get("serial"))
         if serial in seen and serial:
             found.append(
-                Problem("serial", say("{serial} stands in row {row} too", serial=serial, row=seen[serial]), number)
+                problem_at("serial", "{serial} stands in row {row} too", number, serial=serial, row=seen[serial])
             )
         seen.setdefault(serial, number)
     return found

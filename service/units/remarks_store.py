@@ -4,7 +4,6 @@ from datetime import datetime
 
 from sqlalchemy import ColumnElement, Select, String, cast, select
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.kit.copying import copied
 from service.sessions.states import RecordKind
@@ -34,7 +33,7 @@ class Notes(Queries):
         """One note."""
         row = self._session.execute(_notes().where(NoteRow.id == id)).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no note {id}.", id=id))
+            raise NotFoundError("There is no note {id}.", id=id)
         return note_record(*row)
 
     def of_unit(self, serial: str) -> tuple[Note, ...]:
@@ -85,7 +84,7 @@ class Attachments(Queries):
         """One attached file."""
         row = self._session.execute(_attachments().where(AttachmentRow.id == id)).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no attachment {id}.", id=id))
+            raise NotFoundError("There is no attachment {id}.", id=id)
         return attachment_record(*row)
 
     def of_unit(self, serial: str) -> tuple[Attachment, ...]:

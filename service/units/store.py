@@ -1,11 +1,11 @@
-"""Units by serial number, and the services that were done to them."""
+"""Units by serial number, the services that were done to them, and the register: where each is and who has it."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from datetime import datetime
 
 from sqlalchemy import Select, exists, select, update
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.kit.copying import copied
 from service.sessions.states import RecordState
@@ -14,8 +14,8 @@ from service.sessions.tables import SessionRow
 from service.stands.tables import StandRow
 from service.storage.queries import Queries
 from service.types.tables import UnitTypeRow
-from service.units.records import Customer, NewService, Service
-from service.units.tables import ServiceRow, UnitRow
+from service.units.records import Custody, CustodyStep, Customer, Move, NewEntry, NewService, Registered, Service
+from service.units.tables import CustodyRow, ServiceRow, UnitRow
 
 HAS_SESSION = exists().where(SessionRow.unit_id == UnitRow.id)
 """Whether a session of a unit was ever stored, whatever became of it."""
@@ -53,7 +53,7 @@ class Units(Queries):
             select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
         ).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         return Customer(*row)
 
     def set_customer(self, serial: str, new: Customer) -> None:
@@ -108,7 +108,7 @@ class Units(Queries):
         """The same of a unit that must be there."""
         key = self.held(serial)
         if key is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         return key
 
     def find(self, serial: str) -> int | None:
@@ -122,7 +122,7 @@ class Units(Queries):
             return known
         key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
         if key is None:
-            raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
         self.remember_unit(serial, key)
         return key
 
@@ -158,7 +158,7 @@ class Services(Queries):
         """One recorded break."""
         row = self._session.execute(_services().where(ServiceRow.id == number)).one_or_none()
         if row is None:
-            raise NotFoundError(say("There is no service {number}.", number=number))
+            raise NotFoundError("There is no service {number}.", number=number)
         return service_record(*row)
 
     def put_state(self, number: int, state: RecordState) -> None:
@@ -198,3 +198,82 @@ def _services() -> Select[ServiceRow, str]:
 def service_record(row: ServiceRow, serial: str) -> Service:
     """A stored break."""
     return copied(Service, row, unit=serial)
+
+
+class Register(Queries):
+    """Entries by serial number."""
+
+    def get(self, serial: str) -> Registered:
+        """What is known of one unit."""
+        found = self.find((serial,))
+        if not found:
+            raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
+        return found[serial]
+
+    def find(self, serials: Sequence[str]) -> dict[str, Registered]:
+        """The same of those of some units that there are, by serial number."""
+        rows = self._session.execute(_entries().where(UnitRow.serial.in_(serials)))
+        return {row.serial: register_entry(row, unit_type) for row, unit_type in rows}
+
+    def every(self) -> tuple[Registered, ...]:
+        """All units, retired ones too, by serial number."""
+        rows = self._session.execute(_entries().order_by(UnitRow.serial))
+        return tuple(register_entry(row, unit_type) for row, unit_type in rows)
+
+    def measured(self, serials: Sequence[str]) -> frozenset[str]:
+        """Those of some units of which a session was ever stored."""
+        return frozenset(self._session.scalars(select(UnitRow.serial).where(UnitRow.serial.in_(serials), HAS_SESSION)))
+
+    def put(self, unit: int, new: NewEntry, now: datetime) -> None:
+        """Writes what is stated of a unit; from now on it is in the register."""
+        self._write(unit, new.stated)
+        entered = update(UnitRow).where(UnitRow.id == unit, UnitRow.registered_at.is_(None))
+        self._session.execute(entered.values(registered_at=now))
+
+    def move(self, unit: int, move: Move) -> None:
+        """Writes where a unit is and who has it."""
+        known = {"location": move.location, "custodian": move.custodian}
+        self._write(unit, {name: value for name, value in known.items() if value is not None})
+
+    def retire(self, unit: int, at: datetime | None) -> None:
+        """Writes since when a unit is retired; None puts it back into use."""
+        self._session.execute(update(UnitRow).where(UnitRow.id == unit).values(retired_at=at))
+
+    def _write(self, unit: int, values: Mapping[str, str]) -> None:
+        if values:
+            self._session.execute(update(UnitRow).where(UnitRow.id == unit).values(**values))
+        self.touch(unit)
+
+    def add(self, unit: int, was: Registered | None, move: Move, at: datetime, who: str, now: datetime) -> None:
+        """Stores one line of a unit's history."""
+        before = ("", "") if was is None else (was.location, was.custodian)
+        location, custodian = (
+            old if new is None else new for old, new in zip(before, (move.location, move.custodian), strict=True)
+        )
+        self._session.add(
+            CustodyRow(
+                unit_id=unit, at=at, recorded_at=now, who=who, step=move.step, location_before=before[0],
+                location=location, custodian_before=before[1], custodian=custodian, remark=move.remark,
+            )
+        )  # fmt: skip
+        self._session.flush()
+
+    def history(self, serial: str) -> tuple[Custody, ...]:
+        """Where a unit was and who had it, the latest first."""
+        query = select(CustodyRow).join(UnitRow, UnitRow.id == CustodyRow.unit_id).where(UnitRow.serial == serial)
+        rows = self._session.scalars(query.order_by(CustodyRow.at.desc(), CustodyRow.id.desc()))
+        return tuple(_line(row, serial) for row in rows)
+
+
+def _entries() -> Select[UnitRow, str]:
+    return select(UnitRow, UnitTypeRow.name).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+
+
+def register_entry(row: UnitRow, unit_type: str) -> Registered:
+    """What a unit's row says."""
+    return copied(Registered, row, unit=row.serial, unit_type=unit_type, note=row.remark)
+
+
+def _line(row: CustodyRow, serial: str) -> Custody:
+    names = ("id", "at", "who", "location_before", "location", "custodian_before", "custodian", "remark", "recorded_at")
+    return Custody(unit=serial, step=CustodyStep(row.step), **{name: getattr(row, name) for name in names})

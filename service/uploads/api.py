@@ -12,7 +12,6 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field, TypeAdapter
 
 from estimator.json_object import Json
-from estimator.message import say
 from service.errors import NotFoundError
 from service.jobs.records import Job, JobKind, under_way
 from service.jobs.store import Jobs
@@ -145,7 +144,7 @@ def read_upload(id: UploadId, store: Reading) -> UploadSchema:
 def _by_job(store: Store, number: int) -> UploadSchema:
     job = Jobs(store).get(number)
     if job.kind is not JobKind.UPLOAD:
-        raise NotFoundError(say("Job {number} takes in no upload.", number=number))
+        raise NotFoundError("Job {number} takes in no upload.", number=number)
     session = Sessions(store).get(job.session) if job.session else None
     return job_upload_schema(job, session, None if job.refusal is None else Arrivals(store).refusal(job.refusal))
 

@@ -38,7 +38,7 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
     source, doubts_found = _doubts_of(reception.storage, id)
     corrections = tuple(doubt.correction for doubt in doubts_found if doubt.correction is not None)
     if not corrections:
-        raise ConflictError(say(UNKNOWN, id=id))
+        raise ConflictError(UNKNOWN, id=id)
     original = next((d.stands_for for d in doubts_found if d.correction is not None and d.correction.unit), None)
     if original is not None:
         return _as_copy(reception, id, original, by, now)
@@ -79,7 +79,7 @@ def _doubts_of(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Dou
     with storage.database.reading() as store:
         stored = Sessions(store).get(id)
         if stored.state is not RecordState.QUESTIONED:
-            raise ConflictError(say("Session {id} is not questioned, so there is nothing to correct.", id=id))
+            raise ConflictError("Session {id} is not questioned, so there is nothing to correct.", id=id)
         source = read_upload(storage.files.content(stored.sha256), stored.filename)
         known = known_unit(store, Units(store).key(stored.unit))
         doubts_found = doubts(known, as_checked(source, stored.started_at, stored.unit), known.calibration(id), (id,))

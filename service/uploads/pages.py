@@ -46,9 +46,7 @@ class FileOutcome:
     carried: Carried | None = None
     """A table, for the page of its mapping."""
     job: Job | None = None
-    """The job for a large file."""
     progress: str = ""
-    """Progress of the job."""
 
     @property
     def became(self) -> Became:

@@ -25,7 +25,6 @@ from service.uploads.store import Layouts
 
 KNOWN = "This is a session file: upload it as it is, without a mapping."
 FIRST_ROWS = 6
-"""Rows of the preview."""
 OF_A_LOG = ("unit", "started_at", "notes", "sample_rate_hz")
 NO_STAND = {"id": ""}
 """A stand without any facts."""

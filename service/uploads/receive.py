@@ -47,8 +47,7 @@ from service.storage.files import content_hash
 from service.storage.queries import Store
 from service.types.rules import type_of
 from service.types.store import UnitTypes
-from service.units.register_store import Register
-from service.units.store import Units
+from service.units.store import Register, Units
 from service.uploads.store import Layouts, Log
 
 LONGEST_MESSAGE = 1000
@@ -195,8 +194,6 @@ def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
 
 @dataclass(frozen=True, eq=False)
 class _Ready:
-    """A session with everything computed before its transaction."""
-
     new: Calibrated
     digests: Digests
     made: MadeCalibration
@@ -244,7 +241,6 @@ def _store(store: Store, derivation: Deriving, received: Received, ready: _Ready
 def _derived(
     derivation: Deriving, known: KnownUnit, record: StoredSession, ready: _Ready, replaces: Replaced | None
 ) -> dict[str, Derived]:
-    """Everything that follows from a new session, by unit."""
     store, shared = known.store, {record.id} | ({replaces.session} if replaces else set())
     doubts_found = doubts(known, ready.new.checked, known.calibration(record.id), shared)
     if doubts_found:
@@ -281,7 +277,6 @@ def _unit(store: Store, received: Received, new: Calibrated) -> int:
 
 
 def _record(received: Received, new: Calibrated) -> StoredSession:
-    """The record before judgement."""
     session = new.checked.session
     return StoredSession(
         id=received.sha256[:ID_DIGITS],

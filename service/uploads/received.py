@@ -12,7 +12,7 @@ from starlette.datastructures import FormData, Headers, UploadFile
 from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException, MultiPartParser
 
-from estimator.errors import Problem, SessionError
+from estimator.errors import Problem, SessionError, problem_at
 from estimator.json_object import Json
 from estimator.message import say
 from service.errors import ForbiddenError, RefusedError, TooLargeError
@@ -75,10 +75,8 @@ class Arriving:
         limit = self.most if may_be_log(landing.start) else self._whole
         if landing.size > limit:
             raise TooLargeError(
-                say(
-                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
-                    limit=f"{limit:,}",
-                )
+                "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                limit=f"{limit:,}",
             )
         if landing.is_due:
             await run_in_threadpool(landing.write)
@@ -255,9 +253,8 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
     faults = [Problem(name, NEEDED) for name, text in (("by", by), ("why", why)) if not text]
     if len(why) > LONGEST_REASON:
         faults.append(
-            Problem(
-                "why",
-                say("is {length} characters long; at most {limit} are kept", length=len(why), limit=LONGEST_REASON),
+            problem_at(
+                "why", "is {length} characters long; at most {limit} are kept", length=len(why), limit=LONGEST_REASON
             )
         )
     if faults:
@@ -266,7 +263,6 @@ def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
 
 
 FileOf = Annotated[SentFile, Depends(_received)]
-"""The uploaded file."""
 
 REQUEST_BODY: Json = {
     "requestBody": {
@@ -304,4 +300,3 @@ async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:
 
 
 FormFiles = Annotated[tuple[SentFile, ...], Depends(_files)]
-"""The uploaded files."""

@@ -8,7 +8,6 @@ from sqlalchemy import ColumnElement, and_, or_, select, true
 
 from estimator.errors import Problem
 from estimator.json_object import Json
-from estimator.message import say
 from service.errors import NotFoundError
 from service.sessions.store import session_record, session_rows
 from service.sessions.tables import SessionRow
@@ -38,7 +37,7 @@ class Arrivals(Queries):
         """One refused upload."""
         row = self._session.get(RefusalRow, number)
         if row is None:
-            raise NotFoundError(say("There is no refused upload {number}.", number=number))
+            raise NotFoundError("There is no refused upload {number}.", number=number)
         return _refusal(row)
 
     def _refused(self, filters: ArrivalQuery, before: ColumnElement[bool]) -> tuple[Refusal, ...]:

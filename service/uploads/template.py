@@ -83,7 +83,6 @@ EXAMPLE = {
     "unit": "BA-017", "started_at": "2026-03-01T09:00:00Z", "powered_on_at": "2026-03-01T08:20:00Z",
     "operator": "K. Ito", "notes": "after transport",
 }  # fmt: skip
-"""Values of the example."""
 AXIS_DIGITS = 10
 """Decimals of axes: 2e-5 arcsec."""
 
@@ -188,7 +187,6 @@ def _readings_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
 
 
 def _columns(document: Json) -> Json:
-    """Of the table, with columns for time, temperature and standard errors that a pattern may lack."""
     table = dict(document["table"])
     rows = len(next(iter(table.values())))
     sensors = [sensor["name"] for sensor in document["sensors"]]
@@ -208,7 +206,6 @@ def _headings(sheet: Worksheet, style: Style, document: Json, names: list[str]) 
 
 
 def _hint(name: str, document: Json) -> str:
-    """Hint for a column, with its unit."""
     for sensor in document["sensors"]:
         if name == sensor["name"]:
             return reading_hint(name, sensor["reading_unit"])
@@ -236,7 +233,6 @@ def _example_sheet(sheet: Worksheet, style: Style, document: Json) -> None:
 
 
 def _write(sheet: Worksheet, place: tuple[int, int], value: Any, look: Format) -> None:
-    """A number, a text, or an empty cell."""
     if value in ("", None):
         sheet.write_blank(*place, None, look)
     elif isinstance(value, int | float):

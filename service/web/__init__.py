@@ -7,10 +7,9 @@ from fastapi import FastAPI
 
 from service.kit.limits import in_force
 from service.settings import Settings
-from service.web.bodies import BodyLimits, LimitedBodies
+from service.web.bodies import BodyLimits, LimitedBodies, RoomForUploads
 from service.web.hosts import AllowedHostsOnly, hosts_of
 from service.web.origins import SameSiteOnly
-from service.web.room import RoomForUploads
 from service.web.stopping import GracefulStop, RequestGate
 
 

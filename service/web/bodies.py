@@ -7,12 +7,16 @@ not that of the service.
 
 import asyncio
 from dataclasses import dataclass
+from pathlib import Path
 
+from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from estimator.message import say
+from service.kit.log import log
+from service.storage.folders import space_at
 from service.web.headers import API as PREFIX
 from service.web.problems import problem
 
@@ -70,7 +74,7 @@ class LimitedBodies:
             await self.app(scope, receive, send)
             return
         limit = None if scope["path"] in UPLOADS else self.limits.most
-        if limit is not None and _announced(scope) > limit:
+        if limit is not None and int(Headers(scope=scope).get("content-length", "0")) > limit:
             await _answer(_too_large(limit))(scope, receive, send)
             return
         body = _Body(receive, send, limit, self.limits.patience)
@@ -83,8 +87,6 @@ class LimitedBodies:
 
 
 class _Body:
-    """One incoming body: bytes received, and time waited for it."""
-
     def __init__(self, receive: Receive, send: Send, limit: int | None, patience: float) -> None:
         self._receive, self._send, self._most = receive, send, limit
         self._patience = patience
@@ -125,11 +127,6 @@ class _Body:
         return message
 
 
-def _announced(scope: Scope) -> int:
-    """The announced length; the server has checked that it is a number."""
-    return int(Headers(scope=scope).get("content-length", "0"))
-
-
 def _too_large(limit: int) -> Unfinished:
     return Unfinished(
         TOO_LARGE, say("A request of this kind may hold {limit} bytes; this one is larger.", limit=f"{limit:,}")
@@ -145,3 +142,27 @@ def _slow(patience: float) -> str:
 
 def _answer(fault: Unfinished) -> ASGIApp:
     return problem(fault.status_code, fault.detail, headers=fault.headers)
+
+
+FULL = 507
+
+
+class RoomForUploads:
+    """Checks the disk before an upload is read."""
+
+    def __init__(self, app: ASGIApp, folder: Path, least: int) -> None:
+        self.app = app
+        self.folder, self.least = folder, least
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Passes everything but uploads without enough space."""
+        if scope["type"] != "http" or scope["method"] != "POST" or scope["path"] not in UPLOADS:
+            await self.app(scope, receive, send)
+            return
+        announced = int(Headers(scope=scope).get("content-length", "0"))
+        space = await run_in_threadpool(space_at, self.folder, self.least + announced)
+        if space.too_little is None:
+            await self.app(scope, receive, send)
+            return
+        log.warning("upload refused for want of room", free=space.free, least=space.least)
+        await problem(FULL, space.too_little)(scope, receive, send)

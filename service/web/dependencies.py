@@ -7,7 +7,6 @@ from typing import Annotated
 from fastapi import Depends, Request
 from starlette.types import Message
 
-from estimator.message import say
 from service.errors import TooLargeError
 from service.kit.limits import in_force
 from service.kit.metrics import Metrics
@@ -63,10 +62,8 @@ def limited(request: Request, limit: int, *, is_form: bool) -> Request:
         received += len(message.get("body", b""))
         if received > limit_in_all:
             raise TooLargeError(
-                say(
-                    "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
-                    limit=f"{limit:,}",
-                )
+                "An upload may hold {limit} bytes at a time; this one is larger. Average or split it.",
+                limit=f"{limit:,}",
             )
         return message
 
@@ -74,11 +71,9 @@ def limited(request: Request, limit: int, *, is_form: bool) -> Request:
 
 
 SettingsOf = Annotated[Settings, Depends(_settings)]
-"""The settings of the service."""
 UploadSlotOf = Annotated[None, Depends(_slot, scope="function")]
 """A slot for an upload; BusyError where none is free."""
 MetricsOf = Annotated[Metrics, Depends(_metrics)]
-"""The metrics of the service."""
 Now = Annotated[datetime, Depends(_now)]
 """The time of the request, UTC."""
 Reading = Annotated[Store, Depends(_reading, scope="function")]

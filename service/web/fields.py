@@ -53,12 +53,10 @@ Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(in_utc)]
 Bound = Annotated[datetime, BeforeValidator(_counted), AfterValidator(_bounded)]
 """First or last time of a list; UTC without a zone. Also in milliseconds since 1970."""
 Day = Annotated[date, BeforeValidator(_day_written)]
-"""A calendar day."""
 Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
 LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]
 Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
 NonBlankName = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=200)]
-"""A name that is not blank."""
 Reason = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=2000)]
 """A text that is not blank."""
 Number = Annotated[int, Path(ge=1, le=2_000_000_000, description="Number of the entry.", examples=[1])]
@@ -73,8 +71,7 @@ SessionId = Annotated[
     ),
 ]
 Serial = Annotated[
-    str,
-    Path(pattern=TEXT, max_length=200, description="The unit's serial number.", examples=["BA-017"]),
+    str, Path(pattern=TEXT, max_length=200, description="The unit's serial number.", examples=["BA-017"])
 ]
 TypeName = Annotated[
     str, Path(pattern=TEXT, max_length=200, description="The unit type's name.", examples=["hex-cone"])

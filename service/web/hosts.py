@@ -89,7 +89,6 @@ class AllowedHostsOnly:
             await self.app(self._with_public_scheme(scope), receive, send)
 
     def _with_public_scheme(self, scope: Scope) -> Scope:
-        """Requests for the public name get its scheme: links keep the https of a proxy."""
         if scope["type"] == "lifespan" or Headers(scope=scope).get("host", "").lower() != self.public.netloc.lower():
             return scope
         scope["scheme"] = self.public.scheme

@@ -40,8 +40,6 @@ class TemplateLanguage:
 
 
 class _TranslatedLoader(FileSystemLoader):
-    """Loader that translates templates before they are compiled."""
-
     def __init__(self, folders: Sequence[Path], catalogue: Catalogue) -> None:
         super().__init__(folders)
         self._catalogue = catalogue
@@ -73,8 +71,6 @@ class LanguageHeaders:
 
 
 class _LanguageSend:
-    """Adds the headers of a language."""
-
     def __init__(self, scope: Scope, send: Send) -> None:
         self._send, self._language = send, asked(scope)
         self._by_hand = chosen_by_query(scope["query_string"].decode("latin-1"))

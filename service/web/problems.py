@@ -27,7 +27,6 @@ UNEXPECTED = "Unexpected error. It was logged; nothing was stored in part."
 """Does not state the cause, which may be confidential; the log has it."""
 CUT_OFF = "The request ended before it was complete. Nothing was stored."
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
-"""Methods of routes."""
 BODY_PARTS = ("body", "query", "path", "header")
 """FastAPI's prefixes of a field's name."""
 
@@ -60,7 +59,6 @@ class ProblemAnswer(JSONResponse):
 
 
 def _translated(content: Mapping[str, Any], say: Callable[[str], str]) -> Json:
-    """A problem with translated sentences; its keys and fields stay."""
     translated = {**content, **{key: say(content[key]) for key in ("title", "detail")}}
     if "problems" in translated:
         translated["problems"] = [fault | {"message": say(fault["message"])} for fault in translated["problems"]]
@@ -75,12 +73,7 @@ def problem(
     id: str | None = None,
 ) -> ProblemAnswer:
     """The answer to a request that was not carried out; ``id`` where the context does not have it."""
-    content: Json = {
-        "type": "about:blank",
-        "title": HTTPStatus(status).phrase,
-        "status": status,
-        "detail": detail,
-    }
+    content: Json = {"type": "about:blank", "title": HTTPStatus(status).phrase, "status": status, "detail": detail}
     known_id = id or request_id()
     if known_id is not None:
         content["request_id"] = known_id

@@ -31,7 +31,6 @@ def _groups(request: Request) -> GroupReader:
 
 
 ReaderOf = Annotated[Reader, Depends(_reader)]
-"""Reader of diagnoses."""
 GroupReaderOf = Annotated[GroupReader, Depends(_groups)]
 """Reader of what groups of sessions show."""
 JobDeskOf = Annotated[JobDesk, Depends(_jobs)]

@@ -86,7 +86,6 @@ class Helper:
         return answer
 
     def _ended(self, kind: WorkKind, subject: str) -> Failure:
-        """Why it did not answer."""
         assert self._process is not None
         self._process.join()
         if self._process.exitcode == -signal.SIGALRM:

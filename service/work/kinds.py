@@ -14,7 +14,9 @@ from service.kit.failure import with_last_try
 from service.languages.language import Language
 from service.models.records import task_of
 from service.models.store import Recomputations
-from service.papers.fleet.file import fleet_file
+from service.papers.fleet.paper import fleet_pdf
+from service.papers.fleet.report import fleet_report
+from service.papers.fleet.workbook import fleet_xlsx
 from service.queue.records import WorkKind
 from service.queue.store import WorkQueue
 from service.records import diagnose, refresh_group
@@ -96,7 +98,8 @@ def skip_piece(storage: Storage, id: int, now: datetime) -> None:
 
 def _report(storage: Storage, job: Job, now: datetime) -> None:
     with storage.database.reading() as store:
-        content = fleet_file(store, job.form, now, Language(job.language))
+        make = fleet_xlsx if job.form == "xlsx" else fleet_pdf
+        content = make(store, fleet_report(store, now), Language(job.language))
     digest = put_made(storage.files, job.id, content)
     made = Made(f"fleet-{now:%Y-%m-%d}.{job.form}", len(content), digest, now + KEPT)
     with storage.database.writing() as store:

@@ -166,7 +166,6 @@ def _taken_in(work: Callable[[Callable[[], None]], None], id: str, keep_going: K
 
 @contextmanager
 def _lease_extended(keep_going: KeepGoing) -> Iterator[None]:
-    """Extends the lease while a file is read."""
     done = Event()
 
     def extend() -> None:

@@ -44,7 +44,6 @@ LEASE = timedelta(minutes=2)
 MOST_WAITING_FOR_GROUPS = 4
 """Requests that may wait, of the 40 that are answered at once; others are rejected with Retry-After."""
 T = TypeVar("T")
-"""What is read."""
 
 
 @dataclass(frozen=True)

@@ -188,7 +188,11 @@ def derive_waiting(
         serials = Derivations(store).waiting()
     for serial in serials:
         with alone("derivations", serial), kept(_failed_at(storage, serial, clock)):
-            _derive_unit(storage, coverage_factor, clock, stop, serial)
+            remaining = 1
+            while remaining and not stop.is_set():
+                deriving = Deriving(storage.files, coverage_factor, clock())
+                remaining = derive_waiting_of(storage, deriving, serial, DERIVED_AT_ONCE)
+            date(storage, deriving, serial)
 
 
 def _failed_at(storage: Storage, serial: str, clock: Callable[[], datetime]) -> Callable[[str], None]:
@@ -197,13 +201,3 @@ def _failed_at(storage: Storage, serial: str, clock: Callable[[], datetime]) -> 
             WorkQueue(store, WorkKind.DERIVATION).add_failed(serial, why, clock())
 
     return keep
-
-
-def _derive_unit(
-    storage: Storage, coverage_factor: float, clock: Callable[[], datetime], stop: Event, serial: str
-) -> None:
-    remaining = 1
-    while remaining and not stop.is_set():
-        deriving = Deriving(storage.files, coverage_factor, clock())
-        remaining = derive_waiting_of(storage, deriving, serial, DERIVED_AT_ONCE)
-    date(storage, deriving, serial)

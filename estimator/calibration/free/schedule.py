@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from estimator.applied_vector import gravity
 from estimator.calibration.analytic import answers
-from estimator.errors import Problem, ScheduleError
+from estimator.errors import Problem, ScheduleError, problem_at
 from estimator.forward import measured
 from estimator.message import joined, say
 from estimator.session import ACCELEROMETER, CalibrationSession
@@ -51,9 +51,8 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
     if R < FEWEST:
         raise ScheduleError(
             [
-                Problem(
-                    "table",
-                    say("{problem} to estimate anything; {advice}", problem=few(R, "orientation"), advice=advice(R)),
+                problem_at(
+                    "table", "{problem} to estimate anything; {advice}", problem=few(R, "orientation"), advice=advice(R)
                 )
             ]
         )
@@ -63,15 +62,13 @@ def classified(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
     if swing.max() < LEAST_TURN:
         raise ScheduleError(
             [
-                Problem(
+                problem_at(
                     "table",
-                    say(
-                        "all {r} rows have the same orientation: with nominal_scale the readings vary by {swing} g; "
-                        "{advice}",
-                        r=R,
-                        swing=f"{swing.max():.1g}",
-                        advice=advice(0),
-                    ),
+                    "all {r} rows have the same orientation: with nominal_scale the readings vary by {swing} g; "
+                    "{advice}",
+                    r=R,
+                    swing=f"{swing.max():.1g}",
+                    advice=advice(0),
                 )
             ]
         )

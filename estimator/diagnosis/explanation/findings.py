@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.causes.contract import Cause
-from estimator.causes.noise import ExcessNoise
+from estimator.causes.sensor import ExcessNoise
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.power_on import timed_from_power_on

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import floor, isfinite, log10
 
 from estimator.causes import find
-from estimator.causes.noise import ExcessNoise
+from estimator.causes.sensor import ExcessNoise
 from estimator.diagnosis import Finding
 from estimator.diagnosis.explanation.naming import sentence
 from estimator.diagnosis.results import Course, OverSessions, ParitySplit, Separation, Structure

@@ -2,7 +2,6 @@
 
 from charset_normalizer import from_bytes
 
-from estimator.message import say
 from service.kit.limits import refusal
 
 MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
@@ -24,7 +23,7 @@ def decoded(content: bytes, filename: str, chosen: str | None = None) -> tuple[s
     except (UnicodeDecodeError, LookupError) as error:
         if chosen is None:
             raise refusal(filename, NO_TEXT) from error
-        raise refusal(filename, say("is not {encoding} text; choose another encoding", encoding=encoding)) from error
+        raise refusal(filename, "is not {encoding} text; choose another encoding", encoding=encoding) from error
 
 
 def _encoding(content: bytes) -> str:

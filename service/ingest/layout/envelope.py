@@ -13,7 +13,6 @@ from typing import Any
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 from estimator.json_object import Json
-from estimator.message import say
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
 from service.ingest.formats import HDF5, MAT, MCAP, PARQUET, SQLITE, ULOG, XLSX, start_of
@@ -63,10 +62,7 @@ def unwrapped(content: bytes, filename: str) -> tuple[Json, bytes]:
         with ZipFile(BytesIO(content)) as archive:
             parts = archive.infolist()
             if len(parts) != PARTS or any(part.compress_type != ZIP_STORED for part in parts):
-                raise refusal(
-                    filename,
-                    say("must contain two uncompressed parts: {mapping} and the table", mapping=MAPPING),
-                )
+                raise refusal(filename, "must contain two uncompressed parts: {mapping} and the table", mapping=MAPPING)
             text, table = (archive.read(part) for part in parts)
     except UNREADABLE as error:
         raise refusal(filename, "is damaged; upload the table and its mapping again") from error
@@ -76,9 +72,7 @@ def unwrapped(content: bytes, filename: str) -> tuple[Json, bytes]:
 def mapping_of(text: bytes, filename: str) -> Json:
     """The mapping in a JSON text, not yet checked."""
     if len(text) > LONGEST_MAPPING:
-        raise refusal(
-            filename, say("is longer than {longest_mapping} bytes", longest_mapping=LONGEST_MAPPING), "mapping"
-        )
+        raise refusal(filename, "is longer than {longest_mapping} bytes", "mapping", longest_mapping=LONGEST_MAPPING)
     problems = Problems(filename, in_force().extent)
     document = parse_json(text.decode("utf-8", errors="replace"), problems)
     problems.raise_if_any()

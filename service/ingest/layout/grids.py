@@ -89,7 +89,8 @@ def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
             return read(content, filename)
     log = logs.log_of(content, filename)
     if log is not None:
-        return _log(log)
+        grid = _named("log", log.columns)
+        return replace(grid, meanings=dict(zip(grid.headings, log.meanings, strict=True)), facts=log.facts)
     return _text(content, filename, stated)
 
 
@@ -124,7 +125,6 @@ def _text(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
 
 
 def _separator(text: str) -> str:
-    """The separator that cuts most of the first lines into the same number of cells."""
     lines = [line for line in text[:100_000].split("\n")[:SCANNED_ROWS] if line.strip()]
     for separator in SEPARATORS:
         counts = [line.count(separator) for line in lines if separator in line]
@@ -138,8 +138,7 @@ def _cut(text: str, separator: str, filename: str) -> list[list[Cell]]:
         rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator[:1]))
     except (csv.Error, ValueError, TypeError) as error:
         raise refusal(
-            filename,
-            say("is not a table that can be cut at {separator}: {error}", separator=repr(separator), error=error),
+            filename, "is not a table that can be cut at {separator}: {error}", separator=repr(separator), error=error
         ) from error
     while rows and not any(cell.strip() for cell in rows[-1]):
         rows.pop()
@@ -158,8 +157,10 @@ def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
     if not frames:
         raise refusal(
             filename,
-            say("has no sheet {chosen}; choose one of {names}", chosen=repr(chosen), names=", ".join(names)),
+            "has no sheet {chosen}; choose one of {names}",
             "table.sheet",
+            chosen=repr(chosen),
+            names=", ".join(names),
         )
     name = max(frames, key=lambda name: (frames[name][2], _filled(frames[name][0])))
     texts, numbers, _ = frames[name]
@@ -195,7 +196,6 @@ def _headed(
     filename: str,
     sheets: tuple[str, ...] = (),
 ) -> Grid:
-    """The headings, found or stated, and the rows below them."""
     width = max(map(len, rows), default=0)
     rows = [row + [None] * (width - len(row)) for row in rows]
     first = int(stated.get("first_row") or _first_row(rows)) - 1
@@ -249,7 +249,6 @@ def _is_title(row: Sequence[Cell]) -> bool:
 
 
 def _share(row: Sequence[Cell]) -> float:
-    """Share of numbers among the cells that are not empty."""
     cells = [cell for cell in row if not is_nothing(cell)]
     return sum(number_of(cell, ",") is not None for cell in cells) / len(cells) if cells else 0.0
 
@@ -350,11 +349,6 @@ def _named(kind: str, table: Mapping[str, Any]) -> Grid:
         tuple(c for c in columns if len(c) == rows),
         {"first_row": 1, "decimal": "."},
     )
-
-
-def _log(log: logs.LogTable) -> Grid:
-    grid = _named("log", log.columns)
-    return replace(grid, meanings=dict(zip(grid.headings, log.meanings, strict=True)), facts=log.facts)
 
 
 def _listed(cells: Sequence[Cell] | NDArray[Any]) -> list[Cell]:

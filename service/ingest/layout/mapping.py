@@ -5,18 +5,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from estimator.errors import FormatError, Problem
+from estimator.errors import FormatError, Problem, problem_at
 from estimator.json_object import Json
 from estimator.message import joined, say
 from estimator.reading.problems import shown
 
 FORMAT = "imu-mapping/1"
-"""Value of ``format``."""
 PARTS = ("format", "table", "columns", "session")
 TABLE = {"encoding": str, "separator": str, "decimal": str, "sheet": str, "header_row": int, "first_row": int}
 """Settings of the parser, as far as stated."""
 COLUMN = {"heading": str, "as": str, "unit": str, "words": dict, "fill_down": bool}
-"""Fields of a column."""
 ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1251", "cp1252", "koi8-r", "cp866")
 """Encodings of tables that are recognised, and can be chosen by hand."""
 MOST_ROW = 1_048_576
@@ -80,20 +78,20 @@ def _column(document: Mapping[str, Any]) -> ColumnMapping:
 
 def _wrong_format(document: Mapping[str, Any]) -> list[Problem]:
     problems = [
-        Problem(key, say("is not a part of a mapping; it has {parts}", parts=joined(", ", PARTS)))
+        problem_at(key, "is not a part of a mapping; it has {parts}", parts=joined(", ", PARTS))
         for key in document
         if key not in PARTS
     ]
     if document.get("format") != FORMAT:
-        problems.append(Problem("format", say('must be "{format}"', format=FORMAT)))
+        problems.append(problem_at("format", 'must be "{format}"', format=FORMAT))
     return problems
 
 
 def _wrong_table(table: Any) -> list[Problem]:
     if not isinstance(table, Mapping):
-        return [Problem("table", say("is {table}; must be an object", table=shown(table)))]
+        return [problem_at("table", "is {table}; must be an object", table=shown(table))]
     problems = [
-        Problem(f"table.{key}", say("is unknown; give {table}", table=joined(", ", TABLE)))
+        problem_at(f"table.{key}", "is unknown; give {table}", table=joined(", ", TABLE))
         for key in table
         if key not in TABLE
     ]
@@ -111,7 +109,7 @@ def _wrong_table(table: Any) -> list[Problem]:
                 )
             )
         elif isinstance(value, int) and not (0 if key == "header_row" else 1) <= value <= MOST_ROW:
-            problems.append(Problem(f"table.{key}", say("is {value}; must be a row of the file", value=value)))
+            problems.append(problem_at(f"table.{key}", "is {value}; must be a row of the file", value=value))
     if "separator" in table and len(str(table["separator"])) != 1:
         problems.append(Problem("table.separator", "must be one character"))
     if table.get("decimal", ".") not in (".", ","):
@@ -121,22 +119,21 @@ def _wrong_table(table: Any) -> list[Problem]:
 
 def _wrong_columns(columns: Any) -> list[Problem]:
     if not isinstance(columns, list | tuple):
-        return [Problem("columns", say("is {columns}; must be a list", columns=shown(columns)))]
+        return [problem_at("columns", "is {columns}; must be a list", columns=shown(columns))]
     problems, seen = [], set()
     for number, column in enumerate(columns, start=1):
         place = f"columns[{number}]"
         if not isinstance(column, Mapping):
             problems.append(
-                Problem(place, say("is {column}; must be an object with heading and as", column=shown(column)))
+                problem_at(place, "is {column}; must be an object with heading and as", column=shown(column))
             )
             continue
         problems += _wrong_column(place, column)
         meaning = column.get("as")
         if isinstance(meaning, str) and meaning in seen:
             problems.append(
-                Problem(
-                    f"{place}.as",
-                    say("another column is also read as {meaning}; remove one", meaning=shown(meaning)),
+                problem_at(
+                    f"{place}.as", "another column is also read as {meaning}; remove one", meaning=shown(meaning)
                 )
             )
         seen.add(meaning if isinstance(meaning, str) and meaning else None)
@@ -146,22 +143,22 @@ def _wrong_columns(columns: Any) -> list[Problem]:
 
 def _wrong_column(place: str, column: Mapping[str, Any]) -> list[Problem]:
     problems = [
-        Problem(f"{place}.{key}", say("is unknown; give {column}", column=joined(", ", COLUMN)))
+        problem_at(f"{place}.{key}", "is unknown; give {column}", column=joined(", ", COLUMN))
         for key in column
         if key not in COLUMN
     ]
     for key, kind in COLUMN.items():
         value = column.get(key)
         if value is not None and not isinstance(value, kind):
-            problems.append(Problem(f"{place}.{key}", say("is {value}; must be of another kind", value=shown(value))))
+            problems.append(problem_at(f"{place}.{key}", "is {value}; must be of another kind", value=shown(value)))
         elif isinstance(value, str) and len(value) > LONGEST:
-            problems.append(Problem(f"{place}.{key}", say("is longer than {longest} characters", longest=LONGEST)))
+            problems.append(problem_at(f"{place}.{key}", "is longer than {longest} characters", longest=LONGEST))
     return problems
 
 
 def _wrong_session(session: Any) -> list[Problem]:
     if not isinstance(session, Mapping):
-        return [Problem("session", say("is {session}; must be an object", session=shown(session)))]
+        return [problem_at("session", "is {session}; must be an object", session=shown(session))]
     extra_keys = [key for key in ("format", "table") if key in session]
     return [Problem(f"session.{key}", "is not given in a mapping; it follows from the file") for key in extra_keys]
 

@@ -6,7 +6,7 @@ from datetime import datetime
 
 import numpy as np
 
-from estimator.errors import FormatError, Problem
+from estimator.errors import FormatError, Problem, problem_at
 from estimator.message import joined, say
 from estimator.reading.problems import Where, shown
 from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
@@ -15,7 +15,6 @@ from service.ingest.layout.vocabulary import conversion, target_label
 
 FORMAT = "imu-session/1"
 WORDS = ("run", "position")
-"""Columns of words."""
 CLOCK = re.compile(r"^(?:(?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(?:[.,]\d+)?)$")
 """A time of day, or minutes and seconds."""
 DAY = 86_400.0
@@ -59,21 +58,19 @@ def _other_columns(grid: Grid, layout: Layout) -> list[Problem]:
     missing = [heading for heading in expected if heading not in grid.headings]
     detail = say("; {names} is not among them", names=joined(", ", map(shown, missing[:5]))) if missing else ""
     return [
-        Problem("columns", say("are not those of the file{detail}; make a new mapping from its preview", detail=detail))
+        problem_at("columns", "are not those of the file{detail}; make a new mapping from its preview", detail=detail)
     ]
 
 
 def _unit_problems(layout: Layout) -> list[Problem]:
     """Units that cannot be converted to those of the session."""
     return [
-        Problem(
+        problem_at(
             column.meaning or "",
-            say(
-                "is in {unit}, which cannot be converted to {target_unit}; choose the unit of column {heading}",
-                unit=shown(column.unit),
-                target_unit=wanted,
-                heading=shown(column.heading),
-            ),
+            "is in {unit}, which cannot be converted to {target_unit}; choose the unit of column {heading}",
+            unit=shown(column.unit),
+            target_unit=wanted,
+            heading=shown(column.heading),
         )
         for column in layout.columns
         if column.meaning

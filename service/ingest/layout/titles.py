@@ -48,7 +48,7 @@ def stated_in(rows: Sequence[Sequence[str | float | None]]) -> Json:
 
 def _pairs(rows: Sequence[Sequence[str | float | None]]) -> Iterator[tuple[str, str]]:
     for row in rows:
-        cells = [_text(cell) for cell in row if cell is not None]
+        cells = [cell.strip() if isinstance(cell, str) else f"{cell:.15g}" for cell in row if cell is not None]
         for cell, following in zip(cells, (*cells, "")[1:], strict=True):
             for key, title in TITLE.items():
                 match = title.fullmatch(cell[:LONGEST])
@@ -58,10 +58,6 @@ def _pairs(rows: Sequence[Sequence[str | float | None]]) -> Iterator[tuple[str, 
                 value = rest or following
                 if value and (match["mark"] or not rest or VALUE[key].match(rest)):
                     yield key, value
-
-
-def _text(cell: str | float) -> str:
-    return cell.strip() if isinstance(cell, str) else f"{cell:.15g}"
 
 
 def _start(day_text: str, clock_text: str) -> str:

@@ -43,9 +43,9 @@ def contents(messages: Iterable[Message], filename: str) -> Contents:
         try:
             rows.setdefault(topic, array("d")).extend(_row(logged, content))
         except DAMAGED as fault:
-            raise refusal(filename, say(WRONG, topic=topic, kind=IMU), "table") from fault
+            raise refusal(filename, WRONG, "table", topic=topic, kind=IMU) from fault
     if not rows:
-        raise refusal(filename, say(NONE, kind=IMU), "table")
+        raise refusal(filename, NONE, "table", kind=IMU)
     tables = {topic: np.frombuffer(cells).reshape(-1, COLUMNS) for topic, cells in sorted(rows.items())}
     streams = [stream for topic, table in tables.items() for stream in _streams(topic, table)]
     return Contents(streams, _facts(streams))

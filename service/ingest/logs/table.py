@@ -79,8 +79,9 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     if not any(stream.kind == ACCELEROMETER for stream in ordered):
         raise refusal(
             filename,
-            say("contains no accelerometer with at least {fewest} samples; log the raw IMU data", fewest=FEWEST),
+            "contains no accelerometer with at least {fewest} samples; log the raw IMU data",
             "table",
+            fewest=FEWEST,
         )
     start = max(float(stream.time[0]) for stream in ordered)
     end = min(float(stream.time[-1]) for stream in ordered)
@@ -88,12 +89,10 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     if slowest < SLOWEST:
         raise refusal(
             filename,
-            say(
-                "has an IMU with {rate} samples a second; at least {lowest_rate} are needed",
-                rate=f"{slowest:.3g}",
-                lowest_rate=f"{SLOWEST:g}",
-            ),
+            "has an IMU with {rate} samples a second; at least {lowest_rate} are needed",
             "table",
+            rate=f"{slowest:.3g}",
+            lowest_rate=f"{SLOWEST:g}",
         )
     rate = min(RATE, slowest / SAMPLES)
     rows = (end - start) * rate
@@ -111,7 +110,6 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
 
 
 def _left_out(streams: Sequence[Stream], cleaned: Sequence[Stream]) -> Iterator[str]:
-    """Samples and streams that are not in the table."""
     for stream, clean in zip(streams, cleaned, strict=True):
         if len(clean.time) < len(stream.time):
             lost = len(stream.time) - len(clean.time)

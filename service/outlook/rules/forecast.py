@@ -186,7 +186,6 @@ def _decided(past: Past, last: StoredSession, foreseen: _Foreseen) -> UnitOutloo
 
 
 def _basis(past: Past, last: StoredSession, foreseen: _Foreseen) -> tuple[DueBasis, datetime | None]:
-    """The rule that decides, and the date that it sets."""
     found = next((s for s in (past.shown, last) if s is not None and s.verdict in UNFIT), None)
     if found is not None:
         return DueBasis(DueRule.UNFIT, found.started_at), None
@@ -205,6 +204,5 @@ def _basis(past: Past, last: StoredSession, foreseen: _Foreseen) -> tuple[DueBas
 
 
 def _passes(risk: tuple[RiskPoint, ...]) -> datetime | None:
-    """When the risk passes the level."""
     years = float(reach(np.array([[point.risk for point in risk]]), RISK_LEVEL)[0])
     return _after(risk[0].at, years)

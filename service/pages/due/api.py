@@ -53,17 +53,14 @@ router = APIRouter(prefix="/fleet", tags=["fleet"])
 
 
 @router.get(
-    "/due",
-    responses={200: {"content": {"text/csv": BINARY, XLSX: BINARY}}, **errors(422)},
-    response_model=DueList,
+    "/due", responses={200: {"content": {"text/csv": BINARY, XLSX: BINARY}}, **errors(422)}, response_model=DueList
 )
 def read_due(
     request: Request,
     store: ReadingFleet,
     now: Now,
     when: Annotated[
-        Text | None,
-        Query(pattern=PERIOD, description="Only `overdue`, `unknown`, or a month; else all with a date."),
+        Text | None, Query(pattern=PERIOD, description="Only `overdue`, `unknown`, or a month; else all with a date.")
     ] = None,
     location: Annotated[Text | None, Query(description="Only those at this location.")] = None,
     custodian: Annotated[Text | None, Query(description="Only those that this custodian has.")] = None,

@@ -59,7 +59,6 @@ class DueView(ListView):
         )
 
     def _between(self, now: datetime) -> tuple[datetime | None, datetime]:
-        """From when until when; what is overdue is in no month."""
         if self.when == OVERDUE:
             return None, now
         if self.when in ("", UNKNOWN):

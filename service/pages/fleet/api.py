@@ -18,18 +18,7 @@ from service.papers.fleet.report import fleet_report
 from service.papers.fleet.workbook import fleet_xlsx
 from service.web.dependencies import Now, Reading
 from service.web.fields import Page, Window
-from service.web.files import (
-    BINARY,
-    BY_HEADER,
-    FORMS,
-    PDF,
-    TABLES,
-    XLSX,
-    as_file,
-    as_table,
-    table_of,
-    wanted_form,
-)
+from service.web.files import BINARY, BY_HEADER, FORMS, PDF, TABLES, XLSX, as_file, as_table, table_of, wanted_form
 from service.web.problem_document import errors
 from service.work.dependencies import ReadingFleet
 
@@ -76,10 +65,7 @@ def report_fleet(
     request: Request,
     store: ReadingFleet,
     now: Now,
-    format: Annotated[
-        Literal["json", "csv", "parquet", "arrow", "xlsx", "pdf"] | None,
-        Query(description=FORM),
-    ] = None,
+    format: Annotated[Literal["json", "csv", "parquet", "arrow", "xlsx", "pdf"] | None, Query(description=FORM)] = None,
     page: Page = 1,
     limit: Annotated[int, Query(ge=1, le=10_000, description="How many units on a page.")] = 10_000,
 ) -> Response:

@@ -183,11 +183,6 @@ def flags_in_words(count: int) -> str:
     return say_count("{n} flag", "{n} flags", count) if count else ""
 
 
-def worst_in_words(unit: UnitSummary) -> str:
-    """``A3 bias``."""
-    return joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter)))
-
-
 def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
     """One unit of a list."""
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
@@ -195,7 +190,7 @@ def fleet_row(unit: UnitSummary, usable: Usable) -> FleetRow:
         FleetRow,
         unit,
         condition=condition,
-        worst=worst_in_words(unit),
+        worst=joined(" ", filter(None, (unit.worst_sensor, unit.worst_parameter))),
         margin=None if unit.used is None else margin_of(unit.used),
         flags=flags_in_words(unit.flags),
         due=usable.due,

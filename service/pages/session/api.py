@@ -6,7 +6,6 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
 from pydantic import Field
 
-from estimator.message import say
 from service.errors import NotFoundError
 from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.judging.records import said
@@ -138,7 +137,7 @@ def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
     found = SessionNoises(store).get(id)
     if found is None:
         raise NotFoundError(
-            say("Session {id} has no noise results: it contains no rest periods, or is not evaluated yet.", id=id)
+            "Session {id} has no noise results: it contains no rest periods, or is not evaluated yet.", id=id
         )
     return NoiseDocument.model_validate(found.to_dict())
 

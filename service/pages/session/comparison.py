@@ -73,7 +73,7 @@ def compare(store: Store, a: str, b: str, coverage_factor: float) -> ComparisonV
     first, second = sorted((Sessions(store).get(a), Sessions(store).get(b)), key=lambda s: (s.started_at, s.id))
     if first.unit != second.unit:
         named = {"first": first.id, "second": second.id, "one": first.unit, "other": second.unit}
-        raise ConflictError(say(OF_TWO, **named))
+        raise ConflictError(OF_TWO, **named)
     known = Calibrations(store).in_force((first.id, second.id))
     before, after = known[first.id], known[second.id]
     return ComparisonView(

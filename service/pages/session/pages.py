@@ -32,8 +32,8 @@ from service.kit.measures import (
 )
 from service.models.records import ModelRevision
 from service.pages.unit.remarks import Remarks
+from service.papers.certified import SessionReport
 from service.papers.records import Traceability
-from service.papers.session_report import SessionReport
 from service.sessions.charts import ChartSet, noise_of, residual_charts
 from service.sessions.curve_charts import curve_charts
 from service.sessions.decision import Decision, Verdict, nominal_factor_of
@@ -191,7 +191,6 @@ def session_page(
 
 
 def _state(report: SessionReport) -> str:
-    """Why a session does not count."""
     state = report.session.state
     if state is RecordState.ACCEPTED:
         return ""

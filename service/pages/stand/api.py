@@ -11,10 +11,9 @@ from service.papers.store import Certificates
 from service.people.admission import PersonOf
 from service.people.dependencies import StorageOf
 from service.stands.changes import record_stand_certificate
-from service.stands.conditions import stand_conditions
 from service.stands.dcc import ReadCertificate, read_dcc
 from service.stands.records import StandCertificate, StandCondition
-from service.stands.store import StandCertificates
+from service.stands.store import StandCertificates, Stands
 from service.web.dependencies import Now, Reading
 from service.web.fields import Body, Day, NonBlankName, StandName
 from service.web.files import BINARY, BY_HEADER, as_table, table_of, wanted_form
@@ -67,7 +66,7 @@ router = APIRouter(prefix="/stands", tags=["stands"])
 @router.get("", responses=errors())
 def list_stands(store: ReadingFleet) -> StandList:
     """Every stand: whether it shifts all units that are measured on it, since when, by how much."""
-    return StandList(stands=stand_conditions(store))
+    return StandList(stands=Stands(store).conditions())
 
 
 @router.get("/{name:path}/certificates", responses=errors(404, 422))

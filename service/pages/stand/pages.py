@@ -81,7 +81,6 @@ class StandReport:
     units: tuple[UnitSummary, ...]
     """Whose latest session was measured on it, the latest first."""
     uses: Mapping[str, Usable]
-    """What they may be used for."""
     sessions: tuple[StoredSession, ...]
     """Newest first."""
     models: tuple[ModelRevision, ...]
@@ -116,11 +115,7 @@ def stand_report(store: Store, name: str, now: datetime) -> StandReport:
     valid = held(tuple(certificates), now.date())
     return StandReport(
         line=StandLine(
-            known.use,
-            known.condition,
-            tuple(certificates),
-            at_fault,
-            WorkQueue(store, WorkKind.SUMMARY).count() > 0,
+            known.use, known.condition, tuple(certificates), at_fault, WorkQueue(store, WorkKind.SUMMARY).count() > 0
         ),
         flags=flags,
         units=units,
@@ -294,15 +289,7 @@ def show_stand(request: Request, store: ReadingFleet, now: Now, name: Key) -> HT
 
 @router.post("/stands/{name:path}/certificates")
 def record_certificate(
-    name: Key,
-    number: Said,
-    issued_by: Said,
-    issued_on: Day,
-    valid_until: Day,
-    *,
-    by: By,
-    storage: StorageOf,
-    now: Now,
+    name: Key, number: Said, issued_by: Said, issued_on: Day, valid_until: Day, *, by: By, storage: StorageOf, now: Now
 ) -> RedirectResponse:
     """Keeps the certificate of the stand's calibration."""
     given = StandCertificate(name, number.strip(), issued_by.strip(), issued_on, valid_until)

@@ -81,7 +81,6 @@ class TypeReport:
     units: tuple[UnitSummary, ...]
     """Worst first."""
     uses: Mapping[str, Usable]
-    """What they may be used for."""
     models: tuple[ModelRevision, ...]
     """Causes that engineers accepted into its model, and that hold."""
 
@@ -252,7 +251,6 @@ def _revision(limits: ToleranceRevision, known: UnitType, report: TypeReport) ->
 
 
 def _limits(known: UnitType) -> tuple[tuple[str, str], ...]:
-    """What units are judged by; of a mixed block for each kind of sensor."""
     allowed = tolerances_of(known)
     kinds = (known.block,) if known.gyro_tolerances is None else (ACCELEROMETER, GYROSCOPE)
     kind_words = {kind: f"{KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}

@@ -205,8 +205,7 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
     if found.recordings:
         units = counted(found.recordings, "unit")
         yield say(
-            "{units} not counted: the latest session is a recording in service without a calibration.",
-            units=units,
+            "{units} not counted: the latest session is a recording in service without a calibration.", units=units
         )
     if found.beyond:
         yield say("Only the worst units were checked; not checked: {beyond}.", beyond=counted(found.beyond, "unit"))
@@ -289,10 +288,8 @@ def set_tolerances(
         current = UnitTypes(store).hold(name)
         if seen is not None and seen != current.revision:
             raise ConflictError(
-                say(
-                    "Other tolerances were set meanwhile, revision {revision}: check them, then set yours.",
-                    revision=current.revision,
-                )
+                "Other tolerances were set meanwhile, revision {revision}: check them, then set yours.",
+                revision=current.revision,
             )
         said = {"why": why} if why else {}
         wished = _others(current, watch)

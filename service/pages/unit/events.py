@@ -78,18 +78,7 @@ def events_of(
 ) -> tuple[UnitEvent, ...]:
     """Newest first."""
     gone = {line.record: state_in_words(line) for line in withdrawals}
-    listed = [
-        UnitEvent(
-            s.at,
-            service_in_words(s),
-            s.note,
-            s.who,
-            None,
-            s,
-            gone.get(str(s.id), ""),
-        )
-        for s in services
-    ]
+    listed = [UnitEvent(s.at, service_in_words(s), s.note, s.who, None, s, gone.get(str(s.id), "")) for s in services]
     listed += [UnitEvent(note.at, "Note", note.text, note.who, note) for note in notes]
     return tuple(sorted(listed, key=lambda event: event.at, reverse=True))
 

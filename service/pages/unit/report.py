@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.message import say
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.fleet.condition import UnitSummary
@@ -60,7 +59,7 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
     """The unit's condition, type, latest sessions and known breaks."""
     known = Fleet(store).unit_known(serial, now)
     if known is None:
-        raise NotFoundError(say("There is no unit {serial}.", serial=repr(serial)))
+        raise NotFoundError("There is no unit {serial}.", serial=repr(serial))
     said = SaidOf(store).unit(serial)
     return copied(
         UnitReport,

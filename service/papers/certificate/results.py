@@ -76,7 +76,6 @@ def result_row(
 
 
 def _value(sensor: SensorCalibration, column: ResultColumn) -> tuple[str, str]:
-    """The value and its U; a scale factor's is relative."""
     if column.parameter == "axis":
         if sensor.axis is None:
             return NOT_OBSERVABLE, UNKNOWN
@@ -132,8 +131,6 @@ class ResultTable:
 
 @dataclass(frozen=True)
 class _Results:
-    """Input of all tables."""
-
     before: Mapping[str, SensorCalibration]
     """The sensors of the reference by name; empty where there is none."""
     judged: Mapping[tuple[str, str], Decision]

@@ -1,22 +1,111 @@
-"""The contents of a certificate in words, before its charts are drawn."""
+"""The contents of a certificate in words, before its charts are drawn, and its formal parts: number, parties,
+traceability, and statements."""
 
 from dataclasses import dataclass
 
 from estimator.health.rule import WITH_SESSION_LEVEL
-from estimator.message import say
+from estimator.message import joined, say
 from service.judging.temperature_words import laws_in_words
 from service.kit.measures import coverage_in_words, day_of, spaced
 from service.papers.certificate.facts import CertifiedCause, Fact, causes_of, facts_of, record_of
-from service.papers.certificate.paper import Paper, paper_of
 from service.papers.certificate.results import ResultTable, result_tables
 from service.papers.certified import CertifiedSession
 from service.papers.found_and_left import FoundAndLeft, JudgedChange, moved
 from service.papers.records import Issue, Meaning, Signature, Signed
-from service.papers.words import BOUND, STATES, done_by, moment_of, title_of
+from service.papers.words import (
+    BOUND,
+    RECEIVED,
+    RELATES,
+    SAMPLING,
+    STATES,
+    WHOLE,
+    done_by,
+    draft_in_words,
+    missing_facts,
+    moment_of,
+    stated,
+    title_of,
+    uncertainty_in_words,
+)
 from service.sessions.decision import nominal_factor_of
 from service.sessions.words.conditions import CONDITIONS, Condition, but, condition_of
 from service.sessions.words.motion import motions_in_words
 from service.sessions.words.readings import FitWords, combination_in_words, fit_in_words
+
+
+@dataclass(frozen=True)
+class Paper:
+    """The certificate as a document."""
+
+    number: str
+    issued: str
+    """Date."""
+    replaces: str
+    """Number of the replaced certificate; empty for a session's first."""
+    draft: str
+    """Why it is only a draft; empty where nothing is missing."""
+    parties: tuple[Fact, ...]
+    """Laboratory, customer, place."""
+    traceability: str
+    interrupted: bool
+    """Whether traceability was interrupted at the day of measurement."""
+    statements: tuple[Fact, ...]
+
+
+def paper_of(found: CertifiedSession, issue: Issue) -> Paper:
+    """The document of one issue."""
+    laboratory, customer = found.laboratory, found.customer
+    missing = missing_facts(laboratory, customer, dated=found.source.started_at is not None)
+    return Paper(
+        number=issue.number,
+        issued=day_of(issue.issued_at),
+        replaces=issue.replaces or "",
+        draft=draft_in_words(missing),
+        parties=(
+            _party("Laboratory", laboratory.name, laboratory.address, laboratory.country),
+            _party("Customer", customer.name, customer.address),
+            _party("Place of calibration", laboratory.place or laboratory.address),
+            Fact("Date of issue", day_of(issue.issued_at)),
+        ),
+        traceability=found.traceability.text,
+        interrupted=found.traceability.has_expired,
+        statements=_statements(found),
+    )
+
+
+def _party(name: str, *parts: str) -> Fact:
+    if not any(parts):
+        return Fact(name, stated(""))
+    return Fact(name, joined(", ", (stated(part) for part in parts)), is_written=True)
+
+
+def _statements(found: CertifiedSession) -> tuple[Fact, ...]:
+    k = nominal_factor_of(found.report.decisions)
+    return (
+        Fact("Uncertainty", uncertainty_in_words(found.report.calibration, k)),
+        Fact("Traceability", _traceability(found)),
+        Fact("Item", RELATES),
+        Fact("Reproduction", WHOLE),
+        Fact("Departures from the method", _departures(found)),
+        Fact("Sampling", SAMPLING),
+        Fact("Item received", RECEIVED),
+        Fact("External providers", "none stated"),
+    )
+
+
+def _traceability(found: CertifiedSession) -> str:
+    """With that of the reference, since every deviation depends on it."""
+    if found.reference is None:
+        return found.traceability.text
+    parts = {"traceability": found.traceability.text, "reference_traceability": found.reference.traceability.text}
+    return say("{traceability} Of the reference session: {reference_traceability}", **parts)
+
+
+def _departures(found: CertifiedSession) -> str:
+    if found.report.session.revision:
+        return "the accepted causes that are named under Record are part of the model"
+    return "none stated"
+
 
 MEASURED = "Measured by"
 """Signed by hand: the operator need not have an account."""

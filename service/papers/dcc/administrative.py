@@ -98,7 +98,6 @@ def _core(found: StatedSession, issue: Issue) -> Element:
 
 
 def _replaced(issue: Issue) -> Iterator[Element]:
-    """The replaced certificate."""
     if issue.replaces is not None:
         yield DCC.reportAmendedSubstituted(
             DCC.typeOfChange("substituted"), DCC.replacedUniqueIdentifier(issue.replaces)

@@ -105,7 +105,6 @@ def product(first: str, second: str) -> str:
 
 
 def _word(name: str) -> str:
-    """A name as one entry of a list."""
     return "_".join(plain(name).split())
 
 

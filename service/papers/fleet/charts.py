@@ -41,7 +41,7 @@ def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
             counts[key] = counts.get(key, 0) + tally.units
     rows = _stacked(counts)
     text = say("{counts} by tolerance used", counts=counted(sum(counts.values()), "unit"))
-    return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, None, {DATA_FORM: rows}),))
+    return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, {DATA_FORM: rows}),))
 
 
 def is_drawn(tally: Tally) -> bool:

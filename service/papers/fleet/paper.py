@@ -242,9 +242,5 @@ def _drift(placed: Placed, population: Population) -> str:
     return say("{sensor} {parameter} drifts {rate} a year", **parts)
 
 
-def _condition(tally: Tally) -> Condition:
-    return condition_of(tally.verdict, is_reference=tally.is_reference)
-
-
 def _is_not_fit(tally: Tally) -> bool:
-    return tally.verdict in NOT_FIT and _condition(tally) is not REFERENCE
+    return tally.verdict in NOT_FIT and condition_of(tally.verdict, is_reference=tally.is_reference) is not REFERENCE

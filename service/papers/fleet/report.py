@@ -25,7 +25,6 @@ class FleetReport:
     overdue: int
     """Units that should have been calibrated by now."""
     software: str
-    """Version."""
 
 
 def fleet_report(store: Store, now: datetime) -> FleetReport:

@@ -64,7 +64,7 @@ def fleet_xlsx(store: Store, report: FleetReport, language: Language = Language.
     target = io.BytesIO()
     units = Fleet(store).units(FleetQuery(limit=MOST_UNITS))
     serials = tuple(unit.serial for unit in units[:MOST_DETAILED])
-    sessions = _sessions_shown(store, serials)
+    sessions = max(1, MOST_HISTORY_ROWS // max(1, FleetRows(store).points_of_latest(serials)))
     book = Workbook(target, report.at, "Fleet report", language)
     uses = usable_of(store, units, report.at)
     book.table("Fleet", FLEET, (_fleet_row(unit, uses[unit.serial]) for unit in units))
@@ -73,11 +73,6 @@ def fleet_xlsx(store: Store, report: FleetReport, language: Language = Language.
     book.table("About", ABOUT, _about(report, sessions, len(serials) if len(units) > len(serials) else None))
     book.close()
     return target.getvalue()
-
-
-def _sessions_shown(store: Store, serials: tuple[str, ...]) -> int:
-    """Sessions of every unit that the histories have room for."""
-    return max(1, MOST_HISTORY_ROWS // max(1, FleetRows(store).points_of_latest(serials)))
 
 
 def _fleet_row(unit: UnitSummary, usable: Usable) -> tuple[Cell, ...]:

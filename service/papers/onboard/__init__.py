@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from service.papers.onboard import ardupilot, kalibr, px4, ros2
+from service.papers.onboard import autopilots, kalibr, ros2
 from service.papers.onboard.given import ExportInput
 
 __all__ = ["FORMS", "Form", "System"]
@@ -31,8 +31,8 @@ class ExportForm:
 
 
 FORMS = {
-    System.PX4: ExportForm("PX4", "params", px4.written),
-    System.ARDUPILOT: ExportForm("ArduPilot", "parm", ardupilot.written),
+    System.PX4: ExportForm("PX4", "params", autopilots.px4),
+    System.ARDUPILOT: ExportForm("ArduPilot", "parm", autopilots.ardupilot),
     System.KALIBR: ExportForm("Kalibr", "yaml", kalibr.written),
     System.ROS2: ExportForm("ROS 2", "yaml", ros2.written),
 }

@@ -6,8 +6,7 @@ from fastapi import APIRouter, Query, Response
 
 from estimator.json_object import Json
 from service.papers.onboard import FORMS, System
-from service.papers.onboard.given import check
-from service.papers.onboard.stored import given_of
+from service.papers.onboard.given import check, given_of
 from service.people.dependencies import StorageOf
 from service.sessions.store import Sessions
 from service.web.dependencies import Now

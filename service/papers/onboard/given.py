@@ -1,19 +1,25 @@
 """What every parameter file is written from, and what all of them say."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
 
 import numpy as np
 
 from estimator.allan import BlockNoise
-from estimator.message import say
-from estimator.nominal_vector import NominalVector
+from estimator.nominal_vector import NominalVector, nominal_vector
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from service.errors import ConflictError
 from service.judging.records import Usable
+from service.judging.usable_reading import usable_unit
 from service.judging.use import Use, in_words
+from service.judging.words import verdict_in_words
+from service.papers.correction import corrected
+from service.sessions.calibrations_store import SessionNoises
 from service.sessions.states import RecordState
+from service.sessions.words.conditions import condition_of
+from service.settings import VERSION
+from service.storage import Storage
 
 STANDARD_GRAVITY = 9.80665
 """m/s², at which what is left of an accelerometer's error is stated."""
@@ -92,12 +98,12 @@ def _uses(given: ExportInput) -> Iterator[str]:
 def check(given: ExportInput) -> None:
     """ConflictError where the unit must not be used, or the session does not count."""
     if given.state is not RecordState.ACCEPTED:
-        raise ConflictError(say(NOT_COUNTED, state=given.state.value, force=FORCE))
+        raise ConflictError(NOT_COUNTED, state=given.state.value, force=FORCE)
     if not given.use.usable:
-        raise ConflictError(say(REFUSED, unit=given.unit, why=given.use.why, force=FORCE))
+        raise ConflictError(REFUSED, unit=given.unit, why=given.use.why, force=FORCE)
 
 
-def commented(lines: Iterator[str]) -> list[str]:
+def commented(lines: Iterable[str]) -> list[str]:
     """As comments of all four systems."""
     return [f"# {' '.join(line.split())}" for line in lines]
 
@@ -173,3 +179,30 @@ def left_of(given: ExportInput) -> Iterator[str]:
             f"Left in angular rate: scale factors, up to {1e6 * float(np.abs(scale - 1).max()):.3g} ppm, "
             f"and axes up to {1e3 * angle:.3g} mrad askew: gyros have an offset only."
         )
+
+
+def given_of(storage: Storage, id: str, now: datetime) -> ExportInput:
+    """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
+    vector that a driver makes holds it too."""
+    source = corrected(storage, id)
+    if source.found.left_out:
+        why = "; ".join(f"{name}: {reason}" for name, reason in source.found.left_out)
+        raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
+    with storage.database.reading() as store:
+        noise, use = SessionNoises(store).get(id), usable_unit(store, source.stored.unit, now)
+    curves = source.calibration.thermal
+    return ExportInput(
+        unit=source.stored.unit,
+        session=source.stored.id,
+        measured_at=source.stored.started_at,
+        state=source.stored.state,
+        verdict=verdict_in_words(
+            condition_of(source.stored.verdict, is_reference=source.stored.is_reference), source.stored.reservations
+        ),
+        use=use,
+        simulated=source.stored.simulated,
+        software=f"imu-health {VERSION}",
+        vectors={block.kind: nominal_vector(source.session, block) for block in source.found.blocks},
+        noise=noise,
+        temperature=None if curves is None else curves.reference_temperature,
+    )

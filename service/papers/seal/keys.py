@@ -41,10 +41,10 @@ def read_key(file: Path, password_file: Path | None) -> KeyPair:
         password = None if password_file is None else password_file.read_bytes().rstrip(b"\r\n")
         pair = _from_pem(content, password) if PEM in content else _from_pkcs12(content, password)
     except (OSError, ValueError, TypeError) as fault:
-        raise ServiceError(say(UNREADABLE, file=file, fault=fault)) from fault
+        raise ServiceError(UNREADABLE, file=file, fault=fault) from fault
     weakness = _fault_of(pair)
     if weakness:
-        raise ServiceError(say(UNREADABLE, file=file, fault=weakness))
+        raise ServiceError(UNREADABLE, file=file, fault=weakness)
     return pair
 
 
@@ -53,12 +53,10 @@ def require_valid(pair: KeyPair, now: datetime) -> None:
     start, end = pair.certificate.not_valid_before_utc, pair.certificate.not_valid_after_utc
     if not start <= now <= end:
         raise ConflictError(
-            say(
-                "The certificate of the laboratory's seal holds from {start} to {end}: whoever runs "
-                "the service must set a valid one. Nothing was signed.",
-                start=f"{start:%Y-%m-%d}",
-                end=f"{end:%Y-%m-%d}",
-            )
+            "The certificate of the laboratory's seal holds from {start} to {end}: whoever runs "
+            "the service must set a valid one. Nothing was signed.",
+            start=f"{start:%Y-%m-%d}",
+            end=f"{end:%Y-%m-%d}",
         )
 
 

@@ -8,12 +8,7 @@ from cryptography.x509 import load_der_x509_certificate, load_pem_x509_certifica
 from lxml import etree
 from signxml.algorithms import DigestAlgorithm, SignatureConstructionMethod, SignatureMethod
 from signxml.exceptions import InvalidInput, InvalidSignature
-from signxml.xades.xades import (
-    XAdESDataObjectFormat,
-    XAdESSignatureConfiguration,
-    XAdESSigner,
-    XAdESVerifier,
-)
+from signxml.xades.xades import XAdESDataObjectFormat, XAdESSignatureConfiguration, XAdESSigner, XAdESVerifier
 
 from service.kit.printable import sealed_document
 from service.papers.seal.keys import KeyPair

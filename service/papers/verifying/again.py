@@ -10,10 +10,9 @@ from service.ingest.checked import Checked, as_checked, check
 from service.judging.calibrate import Calibrated, CalibrationBasis, calibrate
 from service.judging.judge import as_decisions
 from service.judging.words import first_in_words, reason, recording_in_words
-from service.papers.certified import ReferenceSession, StatedSession
+from service.papers.certified import ReferenceSession, SessionReport, StatedSession
 from service.papers.dcc.elements import plain
 from service.papers.dcc.inputs import RecomputationInputs
-from service.papers.session_report import SessionReport
 from service.papers.verifying.records import RawFile
 from service.papers.verifying.stated import Printed
 from service.papers.words import traceability
@@ -98,7 +97,6 @@ def _record(
 
 
 def _reason(found: Calibrated, decisions: tuple[Decision, ...]) -> str:
-    """Why the verdict is what it is."""
     if found.comparison is not None:
         return recording_in_words(found.comparison.result, decisions)
     return reason(decisions, too_few(found.calibration))

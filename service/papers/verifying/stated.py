@@ -88,7 +88,6 @@ class Printed:
         return Customer(*self._contact(".//dcc:customer/"))
 
     def _contact(self, path: str) -> tuple[str, str]:
-        """Name and address; empty where not stated."""
         texts = (self.text(f"{path}{part}/dcc:content") for part in ("dcc:name", "dcc:location/dcc:further"))
         name, address = ("" if text == NOT_STATED else text for text in texts)
         return name, address

@@ -37,7 +37,6 @@ class Beside:
     trusted: bytes | None = None
     """The laboratory's certificate of its seal, PEM."""
     reference: RawFile | None = None
-    """The file of the reference session."""
 
 
 def verify(certificate: bytes, raw: RawFile, beside: Beside, now: datetime) -> Verification:

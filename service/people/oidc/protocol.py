@@ -95,7 +95,6 @@ class OpenIdProvider:
         return address
 
     def _require_issuer(self, answer: Callback, metadata: Mapping[str, Any]) -> None:
-        """Checks that the answer is not of another provider."""
         is_required = metadata.get("authorization_response_iss_parameter_supported") is True
         if answer.issuer != self._own.issuer and (is_required or answer.issuer is not None):
             raise _refused("it came from another provider")
@@ -149,7 +148,6 @@ class OpenIdProvider:
         )
 
     def _require_ours(self, claims: Mapping[str, Any], journey: Journey) -> None:
-        """Checks beyond the registry."""
         has_other_audiences = isinstance(claims["aud"], list) and len(claims["aud"]) > 1
         if claims.get("azp", None if has_other_audiences else self._own.client) != self._own.client:
             raise _refused("its token was made for another program")
@@ -199,7 +197,7 @@ def _text(claims: Mapping[str, Any], name: str) -> str:
 
 
 def _refused(why: str) -> SignInError:
-    return SignInError(say(REFUSED, why=why))
+    return SignInError(REFUSED, why=why)
 
 
 def _unavailable(fault: str) -> AwayError:

@@ -1,20 +1,20 @@
 """Step: what the history of a unit's sensors shows means a flag: one a sensor, of its worst kind of change.
 
-It has one where somebody must act (`service.outlook.rules.worth`); a smaller change is a remark. A sensor that is, or
+It has one where somebody must act (`is_worth_a_flag`); a smaller change is a remark. A sensor that is, or
 is flagged, out of tolerance has no second one for how it came there, nor one whose drift has made the calibration due
 that is overdue. What a person resolved stays resolved until a later session.
 """
 
 from collections.abc import Iterator
-from datetime import datetime
+from datetime import datetime, timedelta
 
 from estimator.message import joined
 from service.flags.records import Concern, Flag, Matter
 from service.flags.store import Flags
 from service.judging.records import Key, Moment
 from service.judging.store import Derivations
+from service.kit.measures import YEAR
 from service.outlook.records import FoundChange, ParameterTrend, UnitOutlook
-from service.outlook.rules.worth import GOES_ON, is_worth_a_flag
 from service.outlook.words import change_in_words
 from service.records.flagging.acts import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
 from service.sessions.decision import Verdict
@@ -85,7 +85,6 @@ def _is_settled(store: Store, occasion: Occasion, settled: Moment | None) -> boo
 
 
 def _by_sensor(outlook: UnitOutlook) -> dict[str, list[Found]]:
-    """What chance does not explain, the most evident first."""
     found: dict[str, list[Found]] = {}
     for trend in outlook.trends:
         for change in trend.changes:
@@ -118,3 +117,29 @@ def _concerns(found: dict[str, list[Found]], outlook: UnitOutlook, unit_type: Un
             goes_on = any(change.kind in GOES_ON for _, change in worth)
             matter = Matter.DRIFT if goes_on else Matter.JUMP
             yield Concern(matter, sensor, 1, joined(" ", (change_in_words(*pair) for pair in worth)))
+
+
+GOES_ON = ("drift", "aging", "walk")
+"""Kinds of change that have not come to an end."""
+A_YEAR = 1.0
+
+
+def is_worth_a_flag(trend: ParameterTrend, change: FoundChange, outlook: UnitOutlook, unit_type: UnitType) -> bool:
+    """Whether a change takes the share of the tolerance that its type says, or goes on and may pass the tolerance
+    before the unit comes back."""
+    latest, back = outlook.risk[0].at, comes_back(outlook, unit_type)
+    years = max(A_YEAR, (back - latest) / YEAR)
+    if taken_by(change, years) >= unit_type.flag_share * trend.tolerance:
+        return True
+    return change.kind in GOES_ON and trend.reach_90 is not None and trend.reach_90 <= back
+
+
+def taken_by(change: FoundChange, years: float) -> float:
+    """What a change takes of the tolerance, SI or relative: a jump its size, a drift what it adds in so many years,
+    aging that of its first year, from which on it slows, a walk what it has come to."""
+    return abs(change.size) * (years if change.kind == "drift" else 1.0)
+
+
+def comes_back(outlook: UnitOutlook, unit_type: UnitType) -> datetime:
+    """When the next calibration is due; where the unit waits for no date, the longest interval from the latest."""
+    return outlook.due or outlook.risk[0].at + timedelta(days=unit_type.maximum_interval_days)

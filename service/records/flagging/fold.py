@@ -228,7 +228,6 @@ def _after(lives: Lives, evidence: FlagEvidence, at: Moment) -> Lives:
 
 
 def _concern(flag: Flag) -> Concern:
-    """Of a session whose evidence was not kept."""
     return Concern(flag.matter, flag.place, flag.severity, flag.summary)
 
 

@@ -36,8 +36,6 @@ MOST_NAMED = 12
 
 @dataclass(frozen=True)
 class _Fault:
-    """A stand that sessions find at fault."""
-
     concern: Concern
     at: Moment
     """Of the last session that shows it."""
@@ -152,5 +150,5 @@ def _require_whole(condition: StandCondition) -> None:
     """Raises for sessions whose common motion cannot be used; without them the stand is still judged."""
     if condition.unreadable:
         raise ServiceError(
-            say("What is stored of these sessions cannot be used: {reason}.", reason=", ".join(condition.unreadable))
+            "What is stored of these sessions cannot be used: {reason}.", reason=", ".join(condition.unreadable)
         )

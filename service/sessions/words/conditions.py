@@ -50,10 +50,7 @@ REFERENCE = Condition(
 )  # fmt: skip
 NOT_MEASURED = Condition("none", "No calibration yet", "stroke", "No session of it counts yet.")
 QUESTIONED = Condition(
-    "none",
-    "Questioned",
-    "stroke",
-    "Its file cannot be right; it counts once an engineer accepts it.",
+    "none", "Questioned", "stroke", "Its file cannot be right; it counts once an engineer accepts it."
 )
 NOT_JUDGED = Condition("none", "Not judged", "circle", "No tolerance or no reference is set.")
 

@@ -73,7 +73,6 @@ def _sizes(courses: Sequence[Points]) -> list[GrowthCourse]:
 
 
 def _by_term(courses: Sequence[Points]) -> list[list[Points]]:
-    """Those of one term of one kind of sensor together."""
     return [list(term) for _, term in groupby(sorted(courses, key=_term), key=_term)]
 
 

@@ -6,15 +6,7 @@ from math import isfinite, sqrt
 from estimator.message import joined, say, say_count
 from estimator.moments import duration
 from estimator.results import Calibration, Fit, KnownCombination
-from service.kit.measures import (
-    COVERAGE,
-    MINUS,
-    Measure,
-    measured,
-    number,
-    scale_measure,
-    value_measure,
-)
+from service.kit.measures import COVERAGE, MINUS, Measure, measured, number, scale_measure, value_measure
 from service.sessions.words.advice import too_few, what_to_add
 
 UNLIKELY = 0.001

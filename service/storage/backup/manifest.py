@@ -70,7 +70,6 @@ class Manifest(_Part):
     tables: tuple[TableContents, ...]
     """In order of insertion: referenced tables come first."""
     files: tuple[Hash, ...]
-    """Hashes of the uploaded files."""
     lost: tuple[str, ...]
     """Hashes of files that sessions name, but that were missing or damaged when the backup was made."""
 

@@ -112,7 +112,6 @@ def verified(file: Path) -> Manifest:
 
 
 def _faults(archive: zipfile.ZipFile, manifest: Manifest) -> Iterator[str]:
-    """Everything that differs from the manifest."""
     yield from (f"{name} does not belong to it" for name in sorted(set(archive.namelist()) - manifest.members))
     for table in manifest.tables:
         if not _is_table(archive, table):

@@ -88,7 +88,6 @@ def continue_numbers(connection: Connection, table: Table) -> None:
 
 
 def _plain(column: Column[Any]) -> Callable[[Any], Any]:
-    """Function that writes a value of a column."""
     if isinstance(column.type, DateTime):
         return _instant
     if isinstance(column.type, Date):
@@ -104,7 +103,6 @@ def _instant(value: datetime) -> str:
 
 
 def _stored(column: Column[Any], *, naive: bool) -> Callable[[Any], Any]:
-    """Function that reads a written value of a column."""
     if isinstance(column.type, DateTime):
         return lambda value: datetime.fromisoformat(value).replace(tzinfo=None if naive else UTC)
     if isinstance(column.type, Date):

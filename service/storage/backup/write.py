@@ -49,7 +49,6 @@ def write_backup(url: str, files: Files, target: Path, now: datetime) -> Manifes
 
 @contextmanager
 def _snapshot(url: str) -> Iterator[Connection]:
-    """A read transaction with a consistent snapshot of all tables."""
     engine = open_engine(url, PATIENT)
     options = {} if engine.name == "sqlite" else {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
     try:
@@ -60,7 +59,6 @@ def _snapshot(url: str) -> Iterator[Connection]:
 
 
 def _written(archive: zipfile.ZipFile, connection: Connection, files: Files, stamp: tuple[str, datetime]) -> Manifest:
-    """Tables, then files, then the manifest."""
     tables = tables_of(connection)
     contents = tuple(_write_table(archive, connection, table) for table in tables)
     waiting = _waiting(connection, tables)

@@ -179,7 +179,6 @@ def _chosen(fields: Mapping[str, str]) -> Json:
 
 
 def _column(fields: Mapping[str, str], k: int, before: Any) -> Json:
-    """One column as chosen."""
     known = before if isinstance(before, dict) else {}
     meaning, unit = fields.get(f"as.{k}", known.get("as") or ""), fields.get(f"unit.{k}", known.get("unit") or "")
     heading = str(known.get("heading", ""))
@@ -276,7 +275,6 @@ def _sensors(fields: Mapping[str, str], session: Mapping[str, Any], columns: lis
 
 
 def _arranged(fields: Mapping[str, str], count: int) -> list[list[float] | None]:
-    """Axes of a usual arrangement; None where they are as written."""
     arrangement, half_angle = fields.get("arrangement", ""), half_angle_of(fields)
     if arrangement == "orthogonal" and count == len(ORTHOGONAL):
         return [list(axis) for axis in ORTHOGONAL]

@@ -24,7 +24,6 @@ UNITS = (
     "V", "mV", "µV", "mA", "µA", "count", "pulse", "m/s²", "g", "mg", "rad/s", "°/s", "°/h", "deg", "rad", "arcmin",
     "arcsec", "s", "ms", "min", "h", "°C", "K", "°F",
 )  # fmt: skip
-"""Offered units."""
 SEPARATORS = {";": "semicolon ;", ",": "comma ,", "\t": "tab", "|": "bar |"}
 DECIMALS = {".": "point 0.5", ",": "comma 0,5"}
 OFFSETS = (

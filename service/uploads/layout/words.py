@@ -22,7 +22,6 @@ PLACES = (
     ("stand.id", "Stand: name or number", "text"), ("stand.alpha_deg", "Elevation of the head's axis α, °", "decimal"),
     ("site.latitude_deg", "Latitude, °", "decimal"), ("site.gravity_m_s2", "or measured gravity, m/s²", "decimal"),
 )  # fmt: skip
-"""Fields of the stand and the site."""
 RARE = (
     ("time_since_power_on_s", "From switching on to the first row, s", "decimal"),
     ("stand.chi_deg", "Gyroscopes: elevation χ, °", "decimal"), ("count_time_s", "Pulses: count time, s", "decimal"),
@@ -93,7 +92,6 @@ def _label(field: str, mapping: Mapping[str, Any]) -> str:
 
 
 def _entry(entries: Any, number: str) -> Mapping[str, Any]:
-    """An entry of a list by its number, from 1."""
     found = entries[int(number) - 1] if isinstance(entries, list) and int(number) <= len(entries) else {}
     return found if isinstance(found, Mapping) else {}
 

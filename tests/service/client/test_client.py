@@ -12,8 +12,7 @@ import pytest
 
 from service.app import create_app
 from service.client import Client, connect
-from service.client.answers import Point
-from service.client.reading import read
+from service.client.answers import Point, read
 from service.errors import ConflictError, NotFoundError, RefusedError, ServiceError, SignInError
 from service.kit.person import Role
 from service.settings import Settings

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.demo.many import plan
+from service.demo.fill import plan
 from service.fleet.records import FleetQuery
 from service.fleet.store import Fleet
 from service.opening import open_database

@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from service.outlook.records import ChangeKind, FoundChange, ParameterTrend, RiskPoint, UnitOutlook
-from service.outlook.rules.worth import is_worth_a_flag
+from service.records.flagging.drift import is_worth_a_flag
 from service.types.records import Tolerances, UnitType
 
 LATEST = datetime(2026, 1, 1, tzinfo=UTC)

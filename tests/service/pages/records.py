@@ -11,7 +11,7 @@ from service.ingest.checked import as_checked
 from service.judging.judge import judge
 from service.judging.records import Usable, UseFacts
 from service.judging.usable import usable
-from service.papers.session_report import SessionReport
+from service.papers.certified import SessionReport
 from service.sessions.decision import Verdict
 from service.sessions.records import HistoryPoint, StoredSession
 from service.types.rules import type_of

@@ -17,11 +17,11 @@ from service.outlook.store import Outlooks
 from service.pages.stand.pages import every_stand, stand_report
 from service.pages.type.pages import every_type, type_report
 from service.pages.unit.report import unit_report
-from service.papers.session_report import session_report
+from service.papers.certified import session_report
 from service.sessions.history_store import History, HistoryQuery
 from service.sessions.records import SessionQuery
 from service.sessions.store import Sessions
-from service.stands.conditions import stand_conditions
+from service.stands.store import Stands
 from service.storage import Storage
 from service.storage.queries import Store
 from service.types.store import UnitTypes
@@ -46,7 +46,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "outlook": (4, lambda store: outlook_of(store, "BA-000", NOW)),
     "due dates": (1, lambda store: Outlooks(store).due(100)),
     "standouts": (1, lambda store: fleet_standouts(store, 6)),
-    "stands": (1, stand_conditions),
+    "stands": (1, lambda store: Stands(store).conditions()),
     "types": (1, lambda store: UnitTypes(store).page(0, 100)),
     "list of sessions": (1, lambda store: Sessions(store).wanted(SessionQuery())),
     "list of stands": (4, every_stand),

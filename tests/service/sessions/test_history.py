@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 import pytest
 
 from service.pages.unit import parameters
-from service.papers.session_report import recent_history
+from service.papers.certified import recent_history
 from service.sessions.history_store import History, HistoryQuery
 from service.sessions.records import HistoryPoint
 from service.storage import Storage

@@ -16,7 +16,7 @@ from service.diagnosis.store import read_diagnosis
 from service.groups.store import read_group
 from service.models.store import evidence_from_dict, evidence_to_dict
 from service.outlook.store import outlook_from_dicts, outlook_to_dicts
-from service.sessions.reservation_document import reservations_from_list, reservations_to_list
+from service.sessions.store import reservations_from_list, reservations_to_list
 from service.stands.records import StandCondition
 from service.storage.json_text import STORED
 

@@ -19,7 +19,7 @@ from service.storage.queries import Store
 from service.types.store import UnitTypes
 from service.units.records import CustodyStep, Move, NewEntry
 from service.units.register_file import read_register
-from service.units.register_store import Register
+from service.units.store import Register
 from service.uploads.receive import upload
 from tests.conftest import Filled, Holding
 from tests.databases import all_on_both_engines as pytest_generate_tests  # noqa: F401 - the hook
