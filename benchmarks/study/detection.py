@@ -18,6 +18,7 @@ test there is on average over that prior (Neyman and Pearson): no method that is
 
 import argparse
 import json
+import math
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -282,7 +283,7 @@ def beside_network(looks: list[Look], command: str, network: Path) -> str:
 
 def threshold(values: list[float], alarms: float) -> float:
     """What so large a share of the values, of sound sessions, exceeds."""
-    return sorted(values)[-1 - round(alarms * len(values))]
+    return [-math.inf, *sorted(values)][-1 - round(alarms * len(values))]
 
 
 def _passed(
