@@ -1,4 +1,4 @@
-"""``python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 1`` writes what is found beside rivals.
+"""``python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 2`` writes what is found beside rivals.
 
 How faint an effect may be and still be found, by the diagnosis and by its rivals, on the same sessions and at equal
 false alarms: every rival's threshold is the one that 1 % of the same sound sessions pass, or as many as get a name.
