@@ -68,7 +68,7 @@ papers: setup
 study: $(BENCH)
 	$(BIN)/python -m benchmarks.study --sessions 4650 --seed 2611
 	$(BIN)/python -m benchmarks.study.neural --minutes 60
-	$(BIN)/python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 1 --network build/neural.npz
+	$(BIN)/python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 2 --network build/neural.npz
 	$(BIN)/python -m benchmarks.study.amplitudes --sessions 660 --seed 3
 	$(BIN)/python -m benchmarks.study.open_world --sessions 12 --seed 1
 	$(BIN)/python -m benchmarks.study.groups --groups 300 --seed 8

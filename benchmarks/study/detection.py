@@ -1,7 +1,9 @@
-"""``python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 1`` writes what is found beside rivals.
+"""``python -m benchmarks.study.detection --sessions 84 --sound 400 --seed 2`` writes what is found beside rivals.
 
 How faint an effect may be and still be found, by the diagnosis and by its rivals, on the same sessions and at equal
-false alarms: every rival's threshold is the one that 1 % of the same sound sessions pass.
+false alarms: every rival's threshold is the one that 1 % of the same sound sessions pass, or as many as get a name.
+What was looked at is kept in build/study, and a study that was stopped goes on from there: remove it after a change of
+the program. The section on a network stays as it is where no network is given.
 
 Theory
 ------
@@ -15,11 +17,13 @@ test there is on average over that prior (Neyman and Pearson): no method that is
 """
 
 import argparse
+import json
+import math
 import os
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -31,6 +35,7 @@ import numpy as np
 from scipy.special import gammaln, ive, logsumexp
 
 from benchmarks.details import RESULTS
+from benchmarks.study.kept import BUILD
 from benchmarks.study.neural.network import Answer, answer, weights
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
@@ -211,46 +216,63 @@ METHODS: tuple[tuple[str, Method], ...] = (
 
 
 NEURAL = "neural posterior, learned from simulated sessions"
+NETWORK = "\n## A network beside them\n"
+HEAD = ("method", "sound sessions", *(f"strength {s:g}" for s in STRENGTHS))
+Sessions = dict[float, list[Look]]
+"""Those with an effect, by its strength."""
 
 
-def page(looks: list[Look], command: str, network: Path | None = None) -> str:
-    """Markdown."""
+def divided(looks: list[Look]) -> tuple[list[Look], Sessions]:
+    """Sound sessions, and those with an effect."""
     sound = [look for look in looks if not look.cause]
-    hidden = {s: [look for look in looks if look.cause and look.strength == s] for s in STRENGTHS}
-    rows: list[tuple[object, ...]] = [
-        (
-            "the diagnosis: any name",
-            rate([k.named for k in sound]),
-            *(rate([k.named for k in h]) for h in hidden.values()),
-        ),
+    return sound, {s: [look for look in looks if look.cause and look.strength == s] for s in STRENGTHS}
+
+
+def page(looks: list[Look], command: str) -> str:
+    """Markdown."""
+    sound, hidden = divided(looks)
+    named = rate([k.named for k in sound])
+    ours = [
+        ("the diagnosis: any name", named, *(rate([k.named for k in h]) for h in hidden.values())),
         ("the diagnosis: the right name, first or listed", "", *(rate([k.listed for k in h]) for h in hidden.values())),
     ]
-    for name, method in METHODS:
-        cells = [_passed(sound, seen, partial(method, strength=s)) for s, seen in hidden.items()]
-        rows.append((name, "1 %", *cells))
-    if network:
-        cells = [_passed(sound, h, lambda look: look.neural.log_odds) for h in hidden.values()]
-        right = [_passed(sound, h, lambda look: look.neural.log_odds, right=True) for h in hidden.values()]
-        rows += [(NEURAL, "1 %", *cells), (f"{NEURAL}: the right name first", "", *right)]
-    rows.append(("matched subspace that is *given the cause*", "1 %", *(_given(sound, h) for h in hidden.values())))
-    head = ("method", "sound sessions", *(f"strength {s:g}" for s in STRENGTHS))
     return (
         f"# How faint an effect is still found\n\n{len(looks)} simulated sessions, made by `{command}`. "
         "Every method sees the same sessions; each rival has the threshold that 1 % of the same sound sessions pass. "
         "Strength: see [the study](../../../docs/diagnosis/study.md). Intervals: 95 % (Wilson).\n\n"
-        f"{table(head, rows)}\n\n"
+        f"{table(HEAD, [*ours, *rivals(sound, hidden, ALARMS)])}\n\n"
         "The last line is given the cause that acts, so that it looks for one family of shapes where all others look "
         f"for {len(HIDDEN)}: what lies between it and the limit is the price of not knowing the cause, which nobody "
-        "who measures can avoid.\n"
-        f"{learned(network) if network else ''}"
+        "who measures can avoid.\n\n"
+        "## At the false alarms of the diagnosis\n\n"
+        "Each rival has the threshold that as many of the sound sessions pass as get a name.\n\n"
+        f"{table(HEAD, [*ours[:1], *rivals(sound, hidden, named.share)])}\n"
     )
 
 
-def learned(network: Path) -> str:
-    """A paragraph: what the network is and how it learned."""
-    had = weights(network)
+def rivals(sound: list[Look], hidden: Sessions, alarms: float) -> list[tuple[object, ...]]:
+    """Lines of the other methods at equal false alarms."""
+    said = f"{100 * alarms:.2g} %"
+    rows: list[tuple[object, ...]] = []
+    for name, method in METHODS:
+        found = [_passed(sound, h, partial(method, strength=s), alarms) for s, h in hidden.items()]
+        rows.append((name, said, *found))
+    given = [_given(sound, h, alarms) for h in hidden.values()]
+    return [*rows, ("matched subspace that is *given the cause*", said, *given)]
+
+
+def beside_network(looks: list[Look], command: str, network: Path) -> str:
+    """A section: what a network finds, how it learned."""
+    sound, hidden = divided(looks)
+    had, limit, log_odds = weights(network), METHODS[0], lambda look: look.neural.log_odds
+    rows: list[tuple[object, ...]] = [
+        (limit[0], "1 %", *(_passed(sound, h, partial(limit[1], strength=s)) for s, h in hidden.items())),
+        (NEURAL, "1 %", *(_passed(sound, h, log_odds) for h in hidden.values())),
+        (f"{NEURAL}: the right name first", "", *(_passed(sound, h, log_odds, right=True) for h in hidden.values())),
+    ]
     return (
-        "\nThe neural posterior learns signatures of its own, from attitude, time and temperature of the readings: "
+        f"{NETWORK}\n{len(looks)} simulated sessions, made by `{command}`.\n\n{table(HEAD, rows)}\n\n"
+        "The neural posterior learns signatures of its own, from attitude, time and temperature of the readings: "
         f"{had['minutes']:.0f} minutes ({had['processor_minutes']:.0f} of one processor), {had['sessions']} sessions, "
         f"{had['draws'] / 1e6:.1f} million draws; log loss of held-out sessions {had['loss']:.2f}, of the prior "
         f"{had['prior_loss']:.2f} (`python -m benchmarks.study.neural`). Without the catalogue it finds most of what "
@@ -259,17 +281,53 @@ def learned(network: Path) -> str:
     )
 
 
-def _passed(sound: list[Look], hidden: list[Look], statistic: Callable[[Look], float], *, right: bool = False) -> str:
+def threshold(values: list[float], alarms: float) -> float:
+    """What so large a share of the values, of sound sessions, exceeds."""
+    return [-math.inf, *sorted(values)][-1 - round(alarms * len(values))]
+
+
+def _passed(
+    sound: list[Look],
+    hidden: list[Look],
+    statistic: Callable[[Look], float],
+    alarms: float = ALARMS,
+    *,
+    right: bool = False,
+) -> str:
     """Share above the threshold; ``right``: with the right cause, as the network names it."""
-    threshold = float(np.quantile([statistic(look) for look in sound], 1 - ALARMS, method="higher"))
-    return str(rate([statistic(k) > threshold and (not right or k.neural.cause == k.cause) for k in hidden]))
+    above = threshold([statistic(look) for look in sound], alarms)
+    return str(rate([statistic(k) > above and (not right or k.neural.cause == k.cause) for k in hidden]))
 
 
-def _given(sound: list[Look], hidden: list[Look]) -> str:
+def _given(sound: list[Look], hidden: list[Look], alarms: float) -> str:
     """The threshold is of all causes' families in all sound sessions: each is given one of them."""
-    every = [value for look in sound for value in look.families.values()]
-    threshold = float(np.quantile(every, 1 - ALARMS, method="higher"))
-    return str(rate([look.families.get(look.cause, 0.0) > threshold for look in hidden]))
+    above = threshold([value for look in sound for value in look.families.values()], alarms)
+    return str(rate([look.families.get(look.cause, 0.0) > above for look in hidden]))
+
+
+def resumed(work: list[Task], processes: int, network: Path | None, path: Path) -> Iterator[Look | None]:
+    """The looks of all tasks in order: those that the file holds first, then the others, each written as it comes."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    before = path.read_text().splitlines(keepends=True)[: len(work)] if path.exists() else []
+    before = [line for line in before if line.endswith("\n")]
+    yield from map(_look, before)
+    with path.open("w") as file, ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        file.writelines(before)
+        for k, look in enumerate(pool.map(partial(perform, network=network), work[len(before) :], chunksize=2), 1):
+            file.write(json.dumps(look and asdict(look)) + "\n")
+            file.flush()
+            print(f"\r{len(before) + k}/{len(work)}", end="", file=sys.stderr)
+            yield look
+    print(file=sys.stderr)
+
+
+def _look(line: str) -> Look | None:
+    values = json.loads(line)
+    if values is None:
+        return None
+    limit = {float(strength): value for strength, value in values["limit"].items()}
+    neural = values["neural"] and Answer(*values["neural"])
+    return Look(**values | {"limit": limit, "neural": neural})
 
 
 def main() -> None:
@@ -282,15 +340,18 @@ def main() -> None:
     parser.add_argument("--network", type=Path, help="weights that `python -m benchmarks.study.neural` wrote")
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
-    work, looks = list(tasks(options.sessions, options.sound, options.seed)), list[Look]()
-    with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
-        for k, look in enumerate(pool.map(partial(perform, network=options.network), work, chunksize=2), 1):
-            looks += [look] if look else []
-            print(f"\r{k}/{len(work)}", end="", file=sys.stderr)
-    print(file=sys.stderr)
     given = f"--sessions {options.sessions} --sound {options.sound} --seed {options.seed}"
-    given += f" --network {options.network}" if options.network else ""
-    text = page(looks, f"python -m benchmarks.study.detection {given}", options.network)
+    kept = BUILD / "study" / f"detection-{options.sessions}-{options.sound}-{options.seed}.jsonl"
+    if options.network:
+        given, kept = f"{given} --network {options.network}", kept.with_suffix(".network.jsonl")
+    work = list(tasks(options.sessions, options.sound, options.seed))
+    looks = [look for look in resumed(work, options.processes, options.network, kept) if look]
+    command = f"python -m benchmarks.study.detection {given}"
+    before = options.out.read_text(encoding="utf-8") if options.out.exists() else ""
+    section = (
+        beside_network(looks, command, options.network) if options.network else "".join(before.partition(NETWORK)[1:])
+    )
+    text = page(looks, command) + section
     options.out.write_text(text, encoding="utf-8")
     print(text)
 

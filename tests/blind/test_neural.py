@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.study.detection import NEURAL, STRENGTHS, Look, page
+from benchmarks.study.detection import NETWORK, NEURAL, STRENGTHS, Look, beside_network, page, threshold
 from benchmarks.study.neural.lessons import STRENGTHS as LEARNED
 from benchmarks.study.neural.lessons import Lesson, draw, filled, lesson
 from benchmarks.study.neural.network import Answer, Design, Filters, answer, design_of, log_posterior, starting
@@ -105,9 +105,17 @@ def test_the_page_has_its_lines_at_equal_false_alarms(stored: Path) -> None:
     sound = [look("", 0.0, k / 100, "bias-ramp") for k in range(101)]
     said = ((0.5, "bias-ramp"), (2.0, "warm-up"), (3.0, "bias-ramp"))
     hidden = [look("bias-ramp", strength, *answer) for strength in STRENGTHS for answer in said]
-    text = page([*sound, *hidden], "a command", stored)
+    looks = [*sound, *hidden]
+    text = beside_network(looks, "a command", stored)
+    assert text.startswith(NETWORK)
     assert f"| {NEURAL} | 1 % |" + 4 * " 66.7 % (20.8–93.9) of 3 |" in text
     assert f"| {NEURAL}: the right name first |  |" + 4 * " 33.3 % (6.1–79.2) of 3 |" in text
     assert "25 minutes (21 of one processor)" in text
     assert "held-out sessions 0.99, of the prior 2.97" in text
-    assert NEURAL not in page([*sound, *hidden], "a command")
+    assert NEURAL not in page(looks, "a command")
+
+
+def test_as_many_sound_sessions_pass_a_threshold_as_are_wished() -> None:
+    values = [float(k) for k in np.random.default_rng(1).permutation(400)]
+    assert sum(value > threshold(values, 0.01) for value in values) == 4
+    assert threshold(values, 0.0) == 399.0

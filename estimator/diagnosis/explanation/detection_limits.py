@@ -12,7 +12,7 @@ from scipy.special import chndtr
 
 from estimator.causes.contract import Cause, RecordCorrection, Signature
 from estimator.diagnosis.results import Limit
-from estimator.diagnosis.selection.search_state import LEVEL, SearchState
+from estimator.diagnosis.selection.search_state import LEVEL, NAMED, SearchState
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
 from estimator.message import joined, say
 from estimator.significance import critical_chi2
@@ -59,7 +59,7 @@ def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
     places = int(visible.any(axis=1).sum())
     if places == 0:
         return Limit(cause.identifier, None, cause.units, "the calibration absorbs it completely")
-    need = required(1, LEVEL / (places * state.families))
+    need = required(1, NAMED / (places * state.families))
     norms = norms / np.array([cause.left(state.baseline.setting, shape) for shape in traces.shapes])[:, None]
     worst = [float(need / n[v].min()) if v.any() else float("nan") for n, v in zip(norms.T, visible.T, strict=True)]
     return Limit(cause.identifier, tuple(w for w in worst if np.isfinite(w)), cause.units, "")

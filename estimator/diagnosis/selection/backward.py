@@ -12,7 +12,7 @@ from estimator.diagnosis.selection.ranking import (
     joint_log_evidence,
     strongest,
 )
-from estimator.diagnosis.selection.search_state import LEVEL, SearchState
+from estimator.diagnosis.selection.search_state import SearchState
 from estimator.diagnosis.signatures.autocorrelation import autocorrelation
 from estimator.diagnosis.signatures.scores import rescored
 
@@ -54,7 +54,7 @@ def backward_elimination(state: SearchState) -> SearchState:
             (conditional_p_value(f, s, state.families), k)
             for k, (f, s) in enumerate(zip(state.detections, again, strict=True))
         )
-        if p_value < LEVEL:
+        if p_value < state.level:
             break
         state = replace(state, detections=state.detections[:weakest] + state.detections[weakest + 1 :])
     return state

@@ -19,6 +19,7 @@ weights.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.special import chdtrc, gammaln
@@ -33,6 +34,8 @@ FREEDOMS = np.array([3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0, 32.0, np.inf])
 NORMAL = 0.99
 """π of the normal law; the others share the rest. Readings are means of many samples, and means are nearly normal
 whatever a sample is: it takes a scatter of the others that shows it to say that they are not."""
+
+PRIOR = np.where(np.isinf(FREEDOMS), NORMAL, (1 - NORMAL) / (len(FREEDOMS) - 1))
 
 KNOWN = 0.2
 """Degrees of freedom that a row must have for its residual to show how errors are distributed: single readings that a
@@ -62,25 +65,34 @@ class Tails:
         """ν of the largest weight; infinite for normal errors."""
         return float(FREEDOMS[int(np.argmax(self.weight))])
 
+    @property
+    def evenly(self) -> "Tails":
+        """The same where every ν was as likely beforehand."""
+        weight = self.weight / PRIOR
+        return replace(self, weight=weight / weight.sum())
+
 
 def without_names_of_tails(state: SearchState) -> SearchState:
     """The state without names that readings far out in the tails of the errors explain as well, the worst first.
 
-    They must be as rare under the tails that the readings show as under normal errors.
+    They must be as rare under the tails that the readings show as under normal errors. A faint one, less rare than
+    `LEVEL`, must be rare even where normal errors were no likelier beforehand than any tails.
     """
     while state.detections and (tails := tails_of(state)) is not None:
-        chances = [
-            conditional_p_value(f, replace(f.best, p_value=p_value(state, f, tails)), state.families)
-            for f in state.detections
-        ]
-        worst = int(np.argmax(chances))
-        if chances[worst] < LEVEL:
+        gone = max(state.detections, key=partial(chance, state, tails))
+        if chance(state, tails, gone) < LEVEL or chance(state, tails.evenly, gone) < state.level:
             break
-        gone = state.detections[worst]
+        rest = tuple(f for f in state.detections if f is not gone)
         state = replace(
-            state, detections=tuple(f for f in state.detections if f is not gone), in_tails=(*state.in_tails, gone)
+            state, detections=rest, in_tails=(*state.in_tails, gone) if gone.p_family < LEVEL else state.in_tails
         )
     return state
+
+
+def chance(state: SearchState, tails: Tails, detection: Detection) -> float:
+    """Family-wise p-value of a name under the tails that the readings show."""
+    p = p_value(state, detection, tails)
+    return conditional_p_value(detection, replace(detection.best, p_value=p), state.families)
 
 
 def tails_of(state: SearchState) -> Tails | None:
@@ -95,8 +107,7 @@ def tails_of(state: SearchState) -> Tails | None:
     size = np.sqrt(np.bincount(sensor, scaled**2) / np.maximum(np.bincount(sensor), 1))[sensor]
     scaled = scaled / np.where(size > 0, size, 1.0)
     scale = np.array([scale_of(scaled, freedom) for freedom in FREEDOMS])
-    prior = np.where(np.isinf(FREEDOMS), NORMAL, (1 - NORMAL) / (len(FREEDOMS) - 1))
-    logs = np.array([log_density(scaled, v, s).sum() for v, s in zip(FREEDOMS, scale, strict=True)]) + np.log(prior)
+    logs = np.array([log_density(scaled, v, s).sum() for v, s in zip(FREEDOMS, scale, strict=True)]) + np.log(PRIOR)
     weight = np.exp(logs - logs.max())
     return Tails(weight / weight.sum(), scale)
 

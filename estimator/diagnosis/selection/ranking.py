@@ -32,7 +32,9 @@ def strongest(state: SearchState, traces: Sequence[Traces], without: Detection |
 
     ``without``: one finding is taken back and chosen anew, on its own sensor or common to all.
     """
-    families = state.families if traces is state.traces else len(traces)
+    families, level = len(traces), LEVEL
+    if traces is state.traces:
+        families, level = state.families, state.level_beside([f for f in state.detections if f is not without])
     if without is not None and without.best.sensors:
         traces = [t.at(without.best.sensors) for t in traces]
     closed = {s.sensor for s in state.autocorrelated if s.plain}
@@ -40,7 +42,7 @@ def strongest(state: SearchState, traces: Sequence[Traces], without: Detection |
     order = [(k, e) for k, e in given.ranked() if given.sensor[k] not in closed and given.group(k) not in state.refuted]
     for best in (given.scored(k) for k, _ in order[:TRIED]):
         p_family = family_p_value(best, families)
-        if p_family < LEVEL:
+        if p_family < level:
             return Detection(best, p_family, tuple((given.scored(k), e) for k, e in order))
     return None
 

@@ -12,8 +12,8 @@ from estimator.diagnosis.selection.ranking import (
     on_other_sensors,
     strongest,
 )
-from estimator.diagnosis.selection.search_state import LEVEL
-from estimator.diagnosis.signatures.noise import Autocorrelation
+from estimator.diagnosis.selection.search_state import LEVEL, NAMED
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from tests.estimator.diagnosis.selection.small import SENSOR, candidate, effect, start
 
 FEW = ("cubic-nonlinearity", "bias-ramp", "beta-eccentricity")
@@ -32,6 +32,18 @@ def test_the_strongest_is_the_cause_that_is_there() -> None:
     assert best is not None
     assert best.best.group == ("cubic-nonlinearity", (SENSOR,))
     assert best.p_family < LEVEL
+
+
+def test_a_name_beside_another_or_beside_noise_is_held_to_a_stricter_level_than_one_alone() -> None:
+    sizes = (start(FEW, size * CUBIC) for size in np.linspace(0.05, 0.2, 100))
+    alone = next(state for state in sizes if (best := strongest(state, state.traces)) and best.p_family > 1.2 * LEVEL)
+    beside = replace(alone, detections=(candidate(alone, "bias-ramp", (3,)),))
+    noisy = replace(alone, excess=(ExcessVariance(3, 4.0, 19.0, 9.0, 1e-5),))
+    assert LEVEL < family_p_value(strongest(alone, alone.traces).best, alone.families) < NAMED
+    assert strongest(beside, beside.traces) is None
+    assert strongest(noisy, noisy.traces) is None
+    again = replace(alone, detections=(candidate(alone, "cubic-nonlinearity"),))
+    assert strongest(again, again.traces, without=again.detections[0]) is not None
 
 
 def test_a_refuted_cause_is_not_chosen() -> None:
