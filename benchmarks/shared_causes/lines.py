@@ -15,6 +15,7 @@ TITLES = {
     "tails": "Errors with tails",
     "noisier": "Unequal noise",
     "gain": "Gain in one sentence",
+    "history": "A unit with earlier sessions",
 }
 RESTS = "block, tilt"
 """Head of the table of `benchmarks.rests`."""

@@ -37,15 +37,16 @@ def traces_of(residuals: WhitenedResiduals, causes: Iterable[Signature]) -> list
 def _hypotheses(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape, ...]) -> list[Traces]:
     """Traces of one cause. With history: as lasting since then, as new, and with the sensor's own change left open.
 
-    In a block of many sensors an effect is taken as lasting, and what it moved if it is new shows as drift.
+    In a block of many sensors an effect is taken as lasting, and what it moved if it is new shows as drift; but what
+    settles after switching on may be new.
     """
-    lasts = not cause.between
+    lasts, many = not cause.between, len(residuals.baseline.unstated) > MANY
     white = residuals.whitened(np.concatenate([s.columns for s in shapes], axis=-1))
     first = _traces(residuals, cause, shapes, white, lasting=lasts)
-    if not lasts or cause.nameless or residuals.change is None or len(residuals.baseline.unstated) > MANY:
+    if not lasts or cause.nameless or residuals.change is None or (many and not cause.since_power_on):
         return [first]
     new = as_new(residuals, first, white)
-    return [first, new] if first.common else [first, new, with_open_change(residuals, first)]
+    return [first, new] if first.common or many else [first, new, with_open_change(residuals, first)]
 
 
 def _traces(
@@ -96,15 +97,16 @@ def absorbed_before(
 ) -> Array | None:
     """(P, S·q) dimensionless: what the history's calibrations absorbed of the same effects; None if that is unknown.
 
-    It is known on a stand, of causes of one sensor that may act in every session at every row. ``columns_of``: the
-    columns (R, m, S·q) of the shapes in a session, m/s² (rad/s), where they are not the cause's own.
+    It is known on a stand, of causes of one sensor that may act in every session at every row; in orientations of what
+    settles after switching on, which depends on nothing but the time. ``columns_of``: the columns (R, m, S·q) of the
+    shapes in a session, m/s² (rad/s), where they are not the cause's own.
     """
     change = residuals.change
     if change is None or cause.nameless or not shapes[0].sensors or "row" in cause.nonlinear_units:
         return None
     absorbed = np.zeros((len(change.deviation), 1))
     for setting, absorbs in alike(change, RECORDED if columns_of else RECORDED & cause.needs):
-        if setting.beta is None or not cause.available(setting):
+        if (setting.beta is None and not cause.since_power_on) or not cause.available(setting):
             return None
         if columns_of is None and isinstance(cause, SensorCause):
             each = [absorbed_terms(absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
