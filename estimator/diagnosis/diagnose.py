@@ -146,9 +146,13 @@ def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
 
 
 def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
-    """The residuals of a session, and nothing sought in them yet."""
+    """The residuals of a session, and nothing sought in them yet.
+
+    A course that sensors share shows within the session: that several have changed since the history is none.
+    """
     baseline, earlier = baselines(right, history)
-    if history:
-        known = settling(about_their_flips(list(history)), tuple(catalogue))
-        baseline, earlier = with_open_change(baseline, earlier, [settling_in(baseline, tuple(catalogue)), *known])
-    return begin(baseline, earlier, catalogue)
+    if not history:
+        return begin(baseline, earlier, catalogue)
+    own, known = settling_in(baseline, tuple(catalogue)), settling(about_their_flips(list(history)), tuple(catalogue))
+    state = begin(*with_open_change(baseline, earlier, [own, *known]), catalogue)
+    return replace(state, apart=own is None)

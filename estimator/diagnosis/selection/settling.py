@@ -38,6 +38,8 @@ from estimator.significance import p_value
 
 FITS = 0.01
 """p-value of a session's residuals above which no course is looked for: it fits."""
+NEGLIGIBLE = 0.01
+"""Standard errors of a zero that has settled."""
 MEDIAN = float(chdtri(1, 0.5))
 SCALE, SQUARE, AXES = [0], [2], [3, 4]
 PARTS = (SCALE, SQUARE, AXES)
@@ -110,14 +112,12 @@ class Seen:
     def of(cls, session: Baseline, own: Settling | None, known: Sequence[Settling]) -> "Seen":
         """With its ``own`` course and all that are ``known`` of the unit."""
         tell = [c.offset(session.setting) for c in known if c is own or c.holds_in(session.setting)]
-        reach = np.max(tell, axis=0) if tell else np.zeros(len(session.unstated))
+        reach = np.max([np.zeros(len(session.unstated)), *tell], axis=0)
         return cls(session if own is None else own.left_free(session), reach, own is not None)
 
     def opened(self, session: Baseline, settled: "Seen") -> Baseline:
         """Its ``session`` with how far its parameters may lie off those of one that has settled more."""
-        if not self.reach.any():
-            return session
-        return replace(session, unsettled=np.sqrt(variance_between(self, settled)))
+        return replace(session, unsettled=np.sqrt(variance_between(self, settled))) if self.reach.any() else session
 
 
 def with_open_change(
@@ -144,7 +144,7 @@ def variance_between(one: Seen, other: Seen) -> Array:
     reach, found = np.maximum(one.reach, other.reach) / setting.norm, np.zeros(moved.shape)
     for kind in set(setting.kinds):
         own = np.array(setting.kinds) == kind
-        own_reach = own & (reach > 0)
+        own_reach = own & (reach > NEGLIGIBLE * np.sqrt(noise[:, 1]))
         if own_reach.any():
             share = typical(moved[own_reach, 1], noise[own_reach, 1], reach[own_reach])
             found[own_reach, 1] = min(share, 1.0) * reach[own_reach] ** 2

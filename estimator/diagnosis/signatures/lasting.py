@@ -37,16 +37,15 @@ def traces_of(residuals: WhitenedResiduals, causes: Iterable[Signature]) -> list
 def _hypotheses(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape, ...]) -> list[Traces]:
     """Traces of one cause. With history: as lasting since then, as new, and with the sensor's own change left open.
 
-    In a block of many sensors an effect is taken as lasting, and what it moved if it is new shows as drift; but what
-    settles after switching on may be new.
+    In a block of many sensors an effect is taken as lasting, and what it moved if it is new shows as drift.
     """
-    lasts, many = not cause.between, len(residuals.baseline.unstated) > MANY
+    lasts = not cause.between
     white = residuals.whitened(np.concatenate([s.columns for s in shapes], axis=-1))
     first = _traces(residuals, cause, shapes, white, lasting=lasts)
-    if not lasts or cause.nameless or residuals.change is None or (many and not cause.since_power_on):
+    if not lasts or cause.nameless or residuals.change is None or len(residuals.baseline.unstated) > MANY:
         return [first]
     new = as_new(residuals, first, white)
-    return [first, new] if first.common or many else [first, new, with_open_change(residuals, first)]
+    return [first, new] if first.common else [first, new, with_open_change(residuals, first)]
 
 
 def _traces(
