@@ -153,7 +153,7 @@ SOUND, COLD, BOTH, CHANGED = "sound", "cold start", "cold start, one sensor chan
 WARM = 6.0
 """Time constants that a session begins after switching on at least, if it is no cold start: 0.2 % are left."""
 CHANGE = 15.0
-"""Standard errors by which a zero changes for good: of a mean, or beside a course of what it settles to."""
+"""Standard errors of a mean by which a zero changes for good; twice as many of what it settles to beside a course."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +178,8 @@ def draw_life(block: Block, kind: str, each: float, rng: np.random.Generator, *,
     count = {BOTH: 1, CHANGED: int(rng.integers(2, 5))}.get(kind, 0)
     moved, change = np.sort(rng.choice(m, count, replace=False)), np.zeros(m)
     alike = float(np.mean(shape) ** 2 / np.mean(shape**2)) if kind == BOTH else 0.0
-    change[moved] = rng.choice([-1.0, 1.0], count) * CHANGE * error[moved] / np.sqrt(1 - alike)
+    known = error[moved] / np.sqrt(1 - alike)
+    change[moved] = rng.choice([-1.0, 1.0], count) * CHANGE * known * (2.0 if kind == BOTH else 1.0)
     cold, sessions = kind in (COLD, BOTH), list[dict[str, Any]]()
     for month in range(1, earlier + 2):
         last = month > earlier

@@ -52,7 +52,7 @@ class Settling:
 
     cause: SensorCause
     shapes: tuple[Shape, ...]
-    """Of every sensor that follows."""
+    """Of every sensor that follows; the first bears how the whole changes with the nonlinear parameter, if it does."""
     size: Array
     """(k,) β, m/s² (rad/s)."""
 
@@ -68,7 +68,7 @@ class Settling:
         return self.cause.since_power_on and setting.switched_on is not None and self.cause.available(setting)
 
     def left_free(self, session: Baseline) -> Baseline:
-        """Its session fitted with the sizes as nuisances of which nothing is known."""
+        """Its session fitted with sizes and nonlinear parameter as nuisances of which nothing is known."""
         columns = np.concatenate([s.columns for s in self.shapes], axis=-1)
         columns = columns / np.sqrt((columns**2).sum(axis=(0, 1)))
         constant = np.concatenate([session.constant, columns], axis=-1)
@@ -94,7 +94,7 @@ def settling_in(session: Baseline, catalogue: tuple[Cause, ...]) -> Settling | N
     traces = [f.best.trace for f in event]
     first = np.cumsum([0, *(t.shape[1] for t in traces[:-1])])
     size = least_squares(np.concatenate(traces, axis=1), residuals.z, FAINT).value[first]
-    return Settling(event[0].best.cause, tuple(f.best.shape.first(1) for f in event), size)
+    return Settling(event[0].best.cause, tuple(f.best.shape for f in event), size)
 
 
 @dataclass(frozen=True, eq=False)
