@@ -13,7 +13,7 @@ from service.outlook.reading import outlook_of
 from service.records.diagnose import diagnose
 from service.storage import Storage
 from service.uploads.receive import upload
-from tests.blind.courses import BLOCKS, BOTH, COLD, Life, draw_life
+from tests.blind.courses import BLOCKS, COLD, Life, draw_life
 from tests.databases import one_engine
 from tests.service.dated import upload_and_date
 
@@ -23,13 +23,13 @@ EARLIER, AT = 5, 3
 
 
 @cache
-def life(kind: str) -> Life:
-    return draw_life(BLOCKS[0], kind, 20.0, np.random.default_rng((62, 1)), earlier=EARLIER)
+def life() -> Life:
+    return draw_life(BLOCKS[0], COLD, 20.0, np.random.default_rng((62, 1)), earlier=EARLIER)
 
 
-def measured(storage: Storage, kind: str) -> tuple[str, str]:
+def measured(storage: Storage) -> tuple[str, str]:
     """The unit, and the session just after switching on between warm ones, not diagnosed yet."""
-    *warm, cold = life(kind).sessions
+    *warm, cold = life().sessions
     for document in warm:
         upload(storage, json.dumps(document).encode(), "a.json", NOW, outlook=False)
     between = json.dumps(cold | {"started_at": f"2026-{AT:02d}-15T09:00:00Z"}).encode()
@@ -64,17 +64,10 @@ def due(storage: Storage, unit: str) -> datetime:
 
 @one_engine
 def test_settling_is_taken_off_before_dates_and_flags_are_made(storage: Storage) -> None:
-    unit, id = measured(storage, COLD)
+    unit, id = measured(storage)
     assert sum(size > 6 for size in changes(storage, unit).values()) >= 3
     early = due(storage, unit)
     diagnose(storage, id, NOW)
     assert max(changes(storage, unit).values()) < 5
     assert flagged(storage, unit) == set()
     assert due(storage, unit) > early
-
-
-@one_engine
-def test_a_sensor_that_changed_beside_it_keeps_its_own_change(storage: Storage) -> None:
-    unit, id = measured(storage, BOTH)
-    diagnose(storage, id, NOW)
-    assert {sensor for sensor, size in changes(storage, unit).items() if size > 5} == set(life(BOTH).changed)
