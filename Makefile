@@ -13,7 +13,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Tests wait now and then, for a browser or a process: one worker more than cores keeps these at work.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8)))
 
-.PHONY: setup run test lint format words bench papers study backtest dates stands tails lives fuzz-numbers pictures docs browser lock clean
+.PHONY: setup run test test-all lint format words bench papers study backtest dates stands tails lives fuzz-numbers pictures docs browser lock clean
 
 setup: $(STAMP)
 
@@ -32,11 +32,15 @@ browser:
 	@sh tests/install_chromium.sh
 
 # Every service that a test starts has threads of its own, and each thread would keep memory for itself; so would polars.
-test: export MALLOC_ARENA_MAX ?= 2
-test: export _RJEM_MALLOC_CONF ?= dirty_decay_ms:0,muzzy_decay_ms:0
-test: setup browser
+test test-all: export MALLOC_ARENA_MAX ?= 2
+test test-all: export _RJEM_MALLOC_CONF ?= dirty_decay_ms:0,muzzy_decay_ms:0
+test test-all: setup browser
 	$(BIN)/python -m compileall -q -j 0 estimator service benchmarks
-	$(BIN)/pytest -n $(WORKERS) --dist worksteal
+	$(PYTEST)
+
+# What a change is judged by, and everything there is, on both databases.
+test: PYTEST := $(BIN)/pytest -n $(WORKERS) --dist worksteal
+test-all: PYTEST := ENGINES=both $(BIN)/pytest -n $(WORKERS) --dist worksteal -m ""
 
 lint: setup
 	$(BIN)/ruff format --check .

@@ -52,6 +52,7 @@ def test_a_time_constant_and_every_size_lie_within_their_uncertainty() -> None:
         assert abs(value - true[name]) < 4 * sigma
 
 
+@pytest.mark.slow
 def test_many_that_none_can_be_named_alone_are_found_together() -> None:
     hidden = draw_course(MANY, "exponential", 24, 14.0, np.random.default_rng((53, 1)), even=True)
     (found,) = found_in(hidden)
@@ -89,6 +90,7 @@ def test_a_sound_session_shows_no_course(block: int, seed: int) -> None:
     assert found_in(hidden) == ()
 
 
+@pytest.mark.slow
 def test_zeros_that_wander_each_by_itself_share_nothing() -> None:
     walking = draw_others(STAND, WALKS, 12.0, np.random.default_rng((57, 0)))
     assert all(f.shared is None for f in diagnose(read_session(walking.session)).findings)
@@ -96,6 +98,7 @@ def test_zeros_that_wander_each_by_itself_share_nothing() -> None:
     assert all(f.shared is None for f in found_in(roaming))
 
 
+@pytest.mark.slow
 def test_sensors_that_depart_from_a_course_hide_it_no_more_than_they_spoil_the_others() -> None:
     hidden = draw_departing(MANY, 4, 15.0, np.random.default_rng((77, 24, 4, 8, 0)), second=False)
     found = diagnose(read_session(hidden.session))

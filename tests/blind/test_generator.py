@@ -104,6 +104,7 @@ def test_the_matched_statistic_has_the_strength_and_unit_spread():
     assert statistic.std() == pytest.approx(1.0, abs=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", [name for name in CATALOGUE if name not in DISCRETE | {"excess-noise", "saturation"}])
 def test_the_own_column_of_a_cause_explains_it_wholly(cause: str):
     """The rivals' columns hold the truth: fitted with its own, next to nothing is left."""

@@ -15,6 +15,7 @@ def told(group: Group) -> tuple[GroupOutcome, dict[str, Any]]:
     return score(group, found), found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("level", "seed"), [("unit", 2), ("stand", 3), ("type", 3)])
 def test_an_effect_too_small_for_a_session_is_named_at_its_level(level: str, seed: int):
     outcome, found = told(draw_group(level, "one", (31, seed)))
@@ -22,6 +23,7 @@ def test_an_effect_too_small_for_a_session_is_named_at_its_level(level: str, see
     assert outcome.first or not outcome.clear, outcome
 
 
+@pytest.mark.slow
 def test_an_effect_that_began_some_day_is_told_as_such():
     group = draw_group("unit", "one", (4, 1), form="since")
     outcome, found = told(group)
@@ -32,6 +34,7 @@ def test_an_effect_that_began_some_day_is_told_as_such():
     assert abs(dates.index(finding["since"]) - group.truths[0].since) <= 2
 
 
+@pytest.mark.slow
 def test_two_effects_are_two_findings():
     outcome, _ = told(draw_group("unit", "two", (7, 3)))
     assert outcome.named == (True, True)
@@ -48,6 +51,7 @@ def test_what_the_catalogue_lacks_is_unexplained():
     assert outcome.findings == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("form", "seed"), [("a²·T", 0), ("lag T·t", 1)])
 def test_no_name_is_sure_where_the_effect_is_in_no_catalogue(form: str, seed: int):
     """Square of input times temperature, lagged temperature times time."""
@@ -57,6 +61,7 @@ def test_no_name_is_sure_where_the_effect_is_in_no_catalogue(form: str, seed: in
     assert all(term["gain"] > 0 for term in found["terms"])
 
 
+@pytest.mark.slow
 def test_two_causes_on_one_sensor_are_still_two_names():
     outcome, found = told(draw_group("unit", "two", (27, 4, 0)))
     assert outcome.named == (True, True), (outcome.findings, found["notes"])

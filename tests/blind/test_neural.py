@@ -81,6 +81,7 @@ def test_a_session_filled_up_is_answered_as_it_is(residuals: WhitenedResiduals, 
     assert said.cause in OWN + SHARED
 
 
+@pytest.mark.slow
 def test_it_learns(given: Lesson) -> None:
     neural = pytest.importorskip(
         "benchmarks.study.neural.__main__", reason="needs jax: pip install -r requirements-bench.lock"

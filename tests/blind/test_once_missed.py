@@ -8,6 +8,7 @@ from tests.blind.examine import examine
 SEED = 2028
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "cause"),
     [
@@ -25,6 +26,7 @@ def test_it_is_named_or_listed(number: int, cause: str) -> None:
     assert outcome.good, outcome
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "number",
     [
@@ -39,6 +41,7 @@ def test_a_random_walk_is_structure_and_no_cause(number: int) -> None:
     assert not outcome.findings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", ["beta-eccentricity", "beta-second-harmonic", "beta-scale", "flip-misalignment"])
 def test_a_strong_error_of_the_stand_does_not_pass_for_noise_that_the_file_does_not_state(cause: str) -> None:
     case = draw_at(100.0, (777, 20), cause)

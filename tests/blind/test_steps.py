@@ -16,6 +16,7 @@ def found_in(hidden: Stepped) -> tuple[Finding, ...]:
     return diagnose(read_session(hidden.session)).findings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("block", "count", "seed"),
     [
@@ -42,6 +43,7 @@ def test_zeros_that_step_together_are_one_finding_with_one_moment(
         assert abs(value - true[sensor]) < 4 * sigma
 
 
+@pytest.mark.slow
 def test_beside_jumps_of_eighty_standard_errors_no_other_sensor_seems_to_jump() -> None:
     for block in BLOCKS[:3]:
         hidden = draw_steps(block, np.full(3, 80.0), np.random.default_rng((23, 3)))
@@ -57,6 +59,7 @@ def test_zeros_that_step_apart_are_no_event() -> None:
     assert len({shape["row"] for f in found for shape in f.nonlinear_each}) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "block", "strength", "seed"),
     [

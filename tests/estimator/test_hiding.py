@@ -77,6 +77,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_the_diagnosis_names_it_at_every_seed(case: str) -> None:
     name, made = CASES[case]

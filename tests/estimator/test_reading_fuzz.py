@@ -3,6 +3,7 @@
 import copy
 import json
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -65,6 +66,7 @@ def mutated(draw):
     return document
 
 
+@pytest.mark.slow
 @given(mutated())
 @settings(max_examples=150, deadline=None, derandomize=True)
 def test_mutated_documents(document):

@@ -169,6 +169,7 @@ def wandering(rests, seconds, time, size, rng):
     return rng.standard_normal(wander.shape) + size * wander, Intervals(start, start + n)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seconds", "time"), [(5.0, 2.0), (10.0, 2.0), (5.0, 0.5)])
 def test_means_of_a_zero_that_wanders_within_the_rest_are_covered(seconds, time):
     """The true mean is 0; 20 logs of 20 rests."""

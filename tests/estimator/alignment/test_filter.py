@@ -36,6 +36,7 @@ def runs(name: str) -> list[Case]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_errors_are_as_large_as_their_covariance_says(name: str) -> None:
     cases = runs(name)

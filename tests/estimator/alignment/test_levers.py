@@ -60,6 +60,7 @@ def test_not_knowing_where_sensors_stand_costs_little() -> None:
     assert unknown[2:13] / known[2:13] == pytest.approx(1.0, abs=0.06)
 
 
+@pytest.mark.slow
 def test_the_errors_are_as_large_as_stated() -> None:
     """Mean normalised error squared of ∇, E, within its 99.8 % bounds over 40 sessions."""
     rng = np.random.default_rng(11)

@@ -74,6 +74,7 @@ def test_a_stand_session_without_a_degree_of_freedom_claims_none_either() -> Non
     assert result.fit.positions_to_add == 2, "three sensors of one noise tell six degrees of freedom"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("m", "count"), [(3, 10), (3, 12), (3, 15), (4, 9), (3, 19)])
 def test_intervals_hold_with_few_degrees_of_freedom(m: int, count: int) -> None:
     """40 sessions; parameters of one session go together, so each counts once."""
@@ -81,6 +82,7 @@ def test_intervals_hold_with_few_degrees_of_freedom(m: int, count: int) -> None:
     assert abs(np.mean(shares) - 0.95) < 0.01 + 2.5 * np.std(shares) / np.sqrt(len(shares))
 
 
+@pytest.mark.slow
 def test_a_noisy_sensor_has_a_noise_of_its_own() -> None:
     """Six sensors, one five times as noisy, 27 degrees of freedom together."""
     ratios = []

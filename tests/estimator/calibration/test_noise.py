@@ -23,6 +23,7 @@ def sessions(case: Case, count: int, *, noise: float = 1.0, stated: bool = True)
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [STAND, GYRO], ids=lambda c: c.name)
 def test_unstated_noise_gives_honest_intervals(case: Case) -> None:
     results = calibrate_many(sessions(case, 600, stated=False))
@@ -44,6 +45,7 @@ def found_noise(sessions: Sequence[CalibrationSession]) -> np.ndarray:
     return np.stack([np.sqrt(solved([s]).fitted.variance[0, 0]) for s in sessions]) * 0.12 / QUIET.noise
 
 
+@pytest.mark.slow
 def test_noise_far_below_the_errors_of_the_stand_gives_honest_intervals() -> None:
     results = calibrate_many(sessions(QUIET, 600, stated=False))
     scaled = np.stack([errors(r, QUIET.truth) / np.sqrt(np.diagonal(r.covariance)) for r in results])

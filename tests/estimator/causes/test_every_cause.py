@@ -198,6 +198,7 @@ def test_one_run_makes_causes_of_two_unavailable() -> None:
     assert not any(c.available(setting) for c in SIGNATURES if "both runs" in c.needs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("known", CORRECTIONS, ids=lambda c: c.identifier)
 def test_a_correction_made_twice_is_none(known: RecordCorrection) -> None:
     session = WORLD.session

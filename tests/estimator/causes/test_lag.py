@@ -44,6 +44,7 @@ def test_the_hidden_time_constant_is_found() -> None:
     assert finding.nonlinear["s"] == pytest.approx(900.0, rel=0.2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("simple", ["bias-temperature", "temperature-rate"])
 def test_a_zero_that_follows_the_temperature_at_once_is_not_called_late(simple: str) -> None:
     where = scene(ACCELEROMETER, 0)

@@ -91,6 +91,7 @@ def test_every_record_of_a_group_is_a_number_however_long_the_unit_was_on() -> N
     assert all(np.isfinite(getattr(record, name)).all() for name in ("size", "score", "correlation"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("now", "before"), [(-EARLIER, None), (None, -EARLIER), (-EARLIER, -EARLIER)])
 def test_what_an_earlier_session_has_too_is_not_new_though_one_of_them_says_no_power_on(
     now: float | None, before: float | None

@@ -42,6 +42,7 @@ def test_the_sentence_says_how_far() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rates", [(2.0,), (20.0,), (6.0, 12.0)])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_their_uncertainty_is_honest(rates: tuple[float, ...], seed: int) -> None:
@@ -59,6 +60,7 @@ def test_turns_held_out_are_predicted_far_better(stops: tuple[float, ...]) -> No
     assert gain.after.rms < 0.1 * gain.before.rms
 
 
+@pytest.mark.slow
 def test_sound_sessions_are_called_sound() -> None:
     rng, named = np.random.default_rng(3), 0
     for seed in range(SESSIONS):
@@ -68,6 +70,7 @@ def test_sound_sessions_are_called_sound() -> None:
     assert named <= 1, "1 %; the level is 0.3 %"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", [0.1, 0.5, 1.0])
 @pytest.mark.parametrize("rate", [6.0, 20.0])
 def test_a_table_out_of_level_is_no_lever_arm_however_coarse_its_rows(row: float, rate: float) -> None:
@@ -78,6 +81,7 @@ def test_a_table_out_of_level_is_no_lever_arm_however_coarse_its_rows(row: float
         assert [(arm.named, arm.other) for arm in arms] == [(False, "")] * 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stated_noise", [1 / 3, 3.0])
 def test_sound_sessions_of_misstated_noise_are_called_sound(stated_noise: float) -> None:
     for seed in range(5):
@@ -105,6 +109,7 @@ def test_noise_that_turns_bring_makes_the_uncertainty_larger() -> None:
     assert 3 < rough.sigma[0] / quiet.sigma[0] < 7
 
 
+@pytest.mark.slow
 def test_noise_that_turns_bring_is_no_lever_arm() -> None:
     assert [diagnose(turned(replace(QUICK, rough=5.0), seed)).findings for seed in range(20)] == [()] * 20
 
@@ -200,6 +205,7 @@ def test_what_no_turn_shows_is_said() -> None:
     assert [limit.cause for limit in found.limits] == ["lever-arm"]
 
 
+@pytest.mark.slow
 def test_the_limit_is_what_is_found() -> None:
     """A lever arm at the detection limit is found in 95 % of sessions: in 15 of 20 at least."""
     amplitude = diagnose(turned(QUICK)).limits[0].amplitude

@@ -22,11 +22,13 @@ def is_called_wrong(factor: float, seed: int) -> bool:
     return found.unexplained or any(f.cause != "excess-noise" for f in found.findings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [3.5, 5.0])
 def test_white_noise_of_unequal_sensors_is_no_structure(factor: float) -> None:
     assert not any(is_called_wrong(factor, seed) for seed in range(8))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [3.5, 5.0])
 def test_one_sensor_noisier_than_stated_is_called_noisy(factor: float) -> None:
     """By 24 orientations: its readings pull the directions that all share, so that others scatter too."""

@@ -83,6 +83,7 @@ def test_records_alone_do_not_make_a_name_sure() -> None:
     assert [UNEXPLAINED in f.alternatives for f in diagnose_statistics(kept, sessions=whole).findings] == [False]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at_hand", [7, 4])
 def test_the_history_of_a_diagnosis_is_held_against_the_library(at_hand: int) -> None:
     """``at_hand`` of seven earlier sessions, records of all."""

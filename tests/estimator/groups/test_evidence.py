@@ -46,6 +46,7 @@ def test_evidence_is_soon_there_where_the_effect_is() -> None:
     assert log_bayes(np.array([[15.0]]), 5 * F, F)[0] > -np.log(ALPHA) + 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spread", [0.0, 1.0, 4.0])
 def test_two_sigma_hold_the_amplitude(spread: float) -> None:
     """93 to 97 % of 300 groups of twelve sessions, widened by some two standard errors of that share; without a spread

@@ -59,6 +59,7 @@ def test_few_units_tell_nothing_of_their_type() -> None:
     assert laws(FEWEST_UNITS - 1) == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sessions", [5, 8])
 def test_a_unit_of_the_type_is_decided_with_few_sessions(sessions: int) -> None:
     """As rarely wrong as U says, and more often than by its own sessions."""

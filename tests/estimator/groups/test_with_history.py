@@ -39,6 +39,7 @@ def told(cause: str, *, ended: bool = False) -> Diagnosis:
     return diagnose(sessions[-1], sessions[:-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", WEAK)
 def test_the_twelfth_names_what_twelve_show_together_and_none_alone(cause: str) -> None:
     sessions, effect = weak(cause)
@@ -65,6 +66,7 @@ def test_the_calibration_holds_it_with_what_is_not_known_of_it() -> None:
     assert np.any(np.diagonal(found.calibration.covariance) > 1.001 * np.diagonal(found.baseline.covariance))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", ["cubic-nonlinearity", "beta-eccentricity"])
 def test_what_has_ended_is_not_named(cause: str) -> None:
     found = told(cause, ended=True)

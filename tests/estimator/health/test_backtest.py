@@ -10,6 +10,7 @@ from benchmarks.backtest.__main__ import main
 from estimator.health import odds, posterior
 
 
+@pytest.mark.slow
 def test_the_small_back_test_writes_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "page.md"
     for room, name in ((posterior, "DRAWS"), (odds, "DRAWS"), (knowing, "DRAWS"), (knowing, "FOLLOWED")):

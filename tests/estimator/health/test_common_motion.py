@@ -83,6 +83,7 @@ def test_a_common_factor_is_taken_off_all_scales() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [4, 6, 8])
 def test_a_sensor_that_tilts_alone_is_found_and_does_not_smear(m: int) -> None:
     found = [split(m, np.random.default_rng([m, seed]), tilted(m, 1, 30.0))["axes"] for seed in range(40)]
@@ -183,6 +184,7 @@ def test_parallel_axes_do_not_hold_a_turn() -> None:
     assert {s.motion.quantity: s.motion.state for s in common_motion(one, one)}["axes"] == "too-few-sensors"
 
 
+@pytest.mark.slow
 def test_the_turn_and_what_is_left_have_honest_covariances() -> None:
     """Mean normalised error squared, and the chance to call a turn that is not there."""
     rng = np.random.default_rng(6)
@@ -221,6 +223,7 @@ def test_a_turn_however_large_leaves_nothing_of_any_sensor(m: int, degrees: floa
     assert max(np.abs(d.vector).max() for d in found.residuals.values()) < 1e-9
 
 
+@pytest.mark.slow
 def test_a_large_turn_has_an_honest_covariance_and_moves_no_sensor() -> None:
     rng, errors, outs = np.random.default_rng(21), [], 0
     for k in range(150):

@@ -168,6 +168,7 @@ def healthy(rng: np.random.Generator, common: float) -> tuple[ParameterJudgement
     return judge(calibration(*moved), calibration(*origin), TOLERANCES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("common", [0.0, 0.8])
 def test_a_unit_at_its_reference_is_called_out_of_tolerance_in_less_than_one_percent(common: float) -> None:
     rng = np.random.default_rng(11)

@@ -25,6 +25,7 @@ def still(rng: np.random.Generator, sessions: int, components: int = 1) -> Readi
     return readings(measured(rng, dates(rng, sessions), np.zeros((sessions, components))))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sessions", "components"), [(2, 1), (3, 2), (10, 1), (8, 2), (25, 1)])
 def test_p_values_are_uniform_where_nothing_happens(sessions: int, components: int) -> None:
     rng = np.random.default_rng([1, sessions, components])
@@ -44,6 +45,7 @@ def test_p_values_are_uniform_where_the_walk_is_what_the_type_does() -> None:
     assert stats.kstest(p, "uniform").pvalue > 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("components", [1, 2])
 def test_noise_that_is_estimated_from_few_readings_raises_no_more_alarms(components: int) -> None:
     """Sigmas with three degrees of freedom each; taken for known they give many times as many alarms."""
@@ -78,6 +80,7 @@ def test_a_drift_is_known_for_what_it_is(course: object, kind: tuple[Kind, ...])
     assert found(readings(one)).changes[0].kind in kind
 
 
+@pytest.mark.slow
 def test_the_size_of_a_drift_is_as_uncertain_as_stated() -> None:
     rng = np.random.default_rng(6)
     t = np.linspace(0, 3, 8)

@@ -26,6 +26,7 @@ def test_a_disc_without_area_holds_nothing() -> None:
     assert disc_probability(np.zeros(2), np.ones(2), 0.0) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [(1.0, 1.0), (0.3, 1.0)])
 @pytest.mark.parametrize("length", [2.0, 4.0, 8.0])
 def test_limits_hold_the_true_length_as_often_as_they_claim(sigma: tuple[float, float], length: float) -> None:
@@ -40,6 +41,7 @@ def test_limits_hold_the_true_length_as_often_as_they_claim(sigma: tuple[float, 
         assert max(above, below) < 0.0228 + 3 * np.sqrt(0.0228 / 500)
 
 
+@pytest.mark.slow
 def test_the_length_is_freed_of_the_upward_pull_of_noise() -> None:
     """Noise of one sigma lengthens a vector of two by a quarter of a sigma; the median of the estimate is two."""
     draws = np.array([0.0, 2.0]) + np.random.default_rng(8).standard_normal((4000, 2))

@@ -110,6 +110,7 @@ def test_a_drift_that_was_found_goes_on_in_the_forecast() -> None:
     assert found.fan.quantiles((0.5,), found.direction)[0, 0] == pytest.approx(0.9, abs=0.05)
 
 
+@pytest.mark.slow
 def test_bounds_hold_a_later_session_as_often_as_they_claim_in_a_type_that_is_known() -> None:
     """A third of the parameters drift, a third walk; the year after the last session."""
     rng = np.random.default_rng(8)

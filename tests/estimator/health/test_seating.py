@@ -32,6 +32,7 @@ def test_a_stand_without_remountings_takes_what_is_typical_of_the_others() -> No
     assert state.seating / ARCSEC == pytest.approx(10.0, rel=0.4)
 
 
+@pytest.mark.slow
 def test_a_turn_of_12_arcsec_is_found_beside_ten_units_seated_to_30() -> None:
     every = told(Fleet(20, 10, 2, lambda u, _: 30.0 if u < 10 else 5.0, turned), 43)
     assert sum(map(found, every)) >= stats.binom.ppf(1e-3, FLEETS, 0.95)
@@ -39,6 +40,7 @@ def test_a_turn_of_12_arcsec_is_found_beside_ten_units_seated_to_30() -> None:
     assert np.median(sizes) == pytest.approx(12.0, abs=1.0)
 
 
+@pytest.mark.slow
 def test_a_stand_that_was_seated_badly_for_a_month_has_one_shift_with_both_dates() -> None:
     every = told(Fleet(40, 12, 2, lambda _, __: 5.0, excursion), 44, 5)
     assert sum(map(dated, every)) >= 4

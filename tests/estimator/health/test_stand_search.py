@@ -1,6 +1,7 @@
 """When a stand was turned, and turned back, among all dates of a stand with more sessions than are spread."""
 
 import numpy as np
+import pytest
 
 from estimator.health.stand_search import MOST_DATES
 from estimator.health.stands import StandMotion, StandShift, stand_states
@@ -33,6 +34,7 @@ def shifts(motions: list[StandMotion]) -> tuple[StandShift, ...]:
     return stand_states(motions)[0].shifts
 
 
+@pytest.mark.slow
 def test_an_excursion_that_four_sessions_of_many_saw_has_its_very_dates() -> None:
     for start in range(91, 97, 2):
         motions, dates = fleet(np.arange(start, start + 4))

@@ -61,6 +61,7 @@ def test_a_stand_that_shifts_is_flagged_with_date_and_size() -> None:
     assert np.mean(inside) > 0.9
 
 
+@pytest.mark.slow
 def test_stands_that_stay_are_left_alone() -> None:
     alarms = sum(bool(flagged(stand_states(fleet(np.random.default_rng(100 + s), still)))) for s in range(30))
     assert alarms <= stats.binom.isf(1e-3, 30, 0.02)
@@ -70,6 +71,7 @@ def test_blocks_that_each_sit_otherwise_in_a_fixture_do_not_shift_the_stand() ->
     assert not any(flagged(stand_states(fleet(np.random.default_rng(s), fitted))) for s in range(6))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("units", [3, 8])
 @pytest.mark.parametrize("seating", [fitted, reseated])
 def test_however_blocks_are_seated_a_stand_that_stays_is_left_alone(seating: Seating, units: int) -> None:
@@ -78,6 +80,7 @@ def test_however_blocks_are_seated_a_stand_that_stays_is_left_alone(seating: Sea
     assert alarms <= stats.binom.isf(1e-3, 10, 0.01)
 
 
+@pytest.mark.slow
 def test_a_unit_that_was_dropped_is_no_fault_of_any_stand() -> None:
     def dropped(stand: str, unit: str, time: float) -> Array:
         return 30 * SHIFT if unit == "U3" and time > 1.5 else np.zeros(3)

@@ -55,6 +55,7 @@ def test_what_moves_says_nothing_of_tails(moved: Array) -> None:
     assert np.ptp(told(history(np.random.default_rng(2).standard_normal(10), moved)).log_tails) < 0.1
 
 
+@pytest.mark.slow
 def test_of_heavy_tails_alarms_are_as_rare_as_stated() -> None:
     rng, runs = np.random.default_rng(3), 400
     errors = [drawn(3.5, (8,), rng) for _ in range(runs)]

@@ -80,6 +80,7 @@ def test_a_sensor_that_follows_nothing_is_left_as_it_is() -> None:
     assert temperature_steps(lived, lived[0].calibration, (20.0, 33.0), TOLERANCES) == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scatter", [0.0, 0.15], ids=["noise", "hysteresis"])
 def test_u_covers_what_the_law_leaves(scatter: float) -> None:
     """Of 200 sensors, with a bend too small to be seen in most."""

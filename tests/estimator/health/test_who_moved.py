@@ -46,6 +46,7 @@ def _direction(rng: np.random.Generator) -> Array:
     return np.array([np.cos(angle), np.sin(angle)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("m", "arcsec"), [(4, 0.8), (6, 2.0), (8, 1.2)])
 def test_u_holds_an_axis_that_drifted_by_a_part_of_its_tolerance(m: int, arcsec: float) -> None:
     """With a sensor judged beside an x that it drags itself, 74 to 90 in a hundred were held. With one that moves for

@@ -31,6 +31,7 @@ def flown(seed: int, size: float = 0.0, **changes: Any) -> ParityResult:
     return parity_check(read_session(fly(block.changed(2, "bias", size), setting, rng)), known)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stated", "gyros"), [(False, False), (True, False), (False, True), (True, True)])
 def test_lever_arms_and_delays_name_no_sensor(stated: bool, gyros: bool) -> None:
     found = [flown(seed, stated=stated, gyros=gyros) for seed in range(4)]

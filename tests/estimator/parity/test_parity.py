@@ -32,12 +32,14 @@ def unchanged():
     return results(6, motion="any", runs=24)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [4, 6, 9])
 def test_an_unchanged_block_is_called_changed_no_more_often_than_stated(m):
     alarms = sum(r.detected for r in results(m))
     assert alarms <= 2, "one in a hundred is stated: more than 2 of 16 has a probability of 0.05 %"
 
 
+@pytest.mark.slow
 def test_slow_noise_raises_no_alarms():
     slow = Weather(wander=3e-4, wander_time=20.0)
     assert sum(r.detected for r in results(6, weather=slow)) <= 2
@@ -47,6 +49,7 @@ def test_rest_raises_no_alarms():
     assert sum(r.detected for r in results(6, manoeuvres=STILL)) <= 2
 
 
+@pytest.mark.slow
 def test_stated_sigmas_are_honest():
     """Where the sensors are said to sit in one point, as they do; a stated place leaves half a millimetre."""
     found = unchanged()
@@ -59,6 +62,7 @@ def test_p_values_of_unchanged_blocks_are_spread():
     assert 0.2 < np.mean(p < 0.5) < 0.7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "change"),
     [
@@ -74,12 +78,14 @@ def test_a_change_is_attributed_to_its_sensor(kind, change):
     assert sum(kind in [c.kind for c in r.candidates] for r in found) >= 11
 
 
+@pytest.mark.slow
 def test_the_amplitude_is_found_within_its_sigma():
     found = results(6, change=lambda true: biased(true, 2, 1e-3), runs=40, motion="any")
     z = np.array([(r.sensor("A3").bias.size - 1e-3) / r.sensor("A3").bias.sigma for r in found])
     assert 0.7 < np.sqrt(np.mean(z**2)) < 1.3
 
 
+@pytest.mark.slow
 def test_a_change_of_the_detectable_size_is_usually_detected():
     caught = 0
     for seed in range(20):

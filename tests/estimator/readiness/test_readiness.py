@@ -28,6 +28,7 @@ def test_a_cold_unit_is_told_how_long_to_wait() -> None:
     assert found.wait[0] <= still_to_wait <= found.wait[2]
 
 
+@pytest.mark.slow
 def test_the_time_to_wait_is_given_with_nine_tenths_of_its_chance() -> None:
     """Over many records the true time lies inside nine times in ten: within what half of it would hold, five."""
     settling = 400 * (1 - np.exp(-clock(30) / 1200))

@@ -33,6 +33,7 @@ def tally_of(made: list[tuple[Calibration, Truth]]) -> tuple[Tally, Array]:
     return tally, np.array([compared(result, truth, tally) for result, truth in made])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [UNSTATED, FACES, GYROS], ids=lambda case: case.name)
 def test_the_bands_hold_the_true_curves(case: Case) -> None:
     """Expected 95 % with a standard error of about 2 %, since a curve counts as one figure."""

@@ -158,6 +158,7 @@ def test_a_unit_has_one_flag_at_most_and_none_where_it_is_fit_without_a_reservat
     assert (about[Scope.UNIT], about[Scope.STAND]) == (sum(flags.values()), 3)
 
 
+@pytest.mark.slow
 def test_the_first_page_does_not_wait_for_the_fleet(tmp_path: Path) -> None:
     """It says how far the demonstration is; a service that stops meanwhile leaves one that the next start finishes."""
     with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", tmp_path) as address:

@@ -33,6 +33,7 @@ def test_open_flags_are_shown(run: Run, address: str) -> None:
     assert ran.out.splitlines()[1].split()[:3] == ["1", "BA-017", "raised"]
 
 
+@pytest.mark.slow
 def test_more_open_flags_than_a_page_holds_are_all_shown(run: Run, sqlite: Databases, stock_of: StockOf) -> None:
     with stock_of(sqlite).holding(*FAILED) as settings:
         with stores(settings) as storage, storage.database.writing() as store:

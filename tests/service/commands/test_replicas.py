@@ -35,6 +35,7 @@ def test_what_one_stores_the_other_shows(replicas: tuple[str, str]) -> None:
     assert httpx.get(f"{other}/readyz").json()["status"] == "ready"
 
 
+@pytest.mark.slow
 def test_the_same_session_sent_to_both_at_once_is_stored_once(replicas: tuple[str, str]) -> None:
     content = session_bytes(seed=2)
 

@@ -13,6 +13,7 @@ from service.commands.simulate import FIRST_SESSION, back_from_future
 from tests.service.commands.conftest import Run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cause", "options"),
     [

@@ -25,6 +25,13 @@ def recordings_let_go():
 
 FILES = {"kth-mimu": 2}
 """How many are enough, where all take long."""
+LARGE = ("kth-mimu", "mpu9150-five")
+"""They take seven to twelve seconds to read, and 200 MB."""
+
+
+def each(*cases):
+    """Parameters of a test: recordings of a format, and what is expected of them."""
+    return [pytest.param(*case, marks=[pytest.mark.slow] * (case[0] in LARGE)) for case in cases]
 
 
 def some(name):
@@ -32,7 +39,7 @@ def some(name):
     return recordings(name, FILES.get(name))
 
 
-@pytest.mark.parametrize("name", [converter.name for converter in FORMATS])
+@pytest.mark.parametrize("name", each(*((converter.name,) for converter in FORMATS)))
 def test_the_recordings_convert_and_calibrate(name):
     found = [calibrate(recording.session).fit for recording in some(name)]
     assert found
@@ -44,14 +51,14 @@ def triads(recording):
     return ours(recording)(recording.session)
 
 
-@pytest.mark.parametrize(("name", "which"), [("imu-tk", 0), *(("mpu9150-five", k) for k in range(5))])
+@pytest.mark.parametrize(("name", "which"), each(("imu-tk", 0), *(("mpu9150-five", k) for k in range(5))))
 def test_published_parameters_leave_more_than_ours_on_the_same_positions(name, which):
     recording = some(name)[which]
     known = rms(known_triads(recording), recording.session, recording.g)
     assert np.all(rms(triads(recording), recording.session, recording.g) < known)
 
 
-@pytest.mark.parametrize(("name", "count"), [("imu-tk", 1), ("mpu9150-five", 6), ("ctu-mat", 1), ("kth-mimu", 2)])
+@pytest.mark.parametrize(("name", "count"), each(("imu-tk", 1), ("mpu9150-five", 6), ("ctu-mat", 1), ("kth-mimu", 2)))
 def test_held_out_positions_are_met_as_well_as_by_the_usual_fit(name, count):
     found = some(name)
     assert len(found) == count
@@ -61,6 +68,7 @@ def test_held_out_positions_are_met_as_well_as_by_the_usual_fit(name, count):
         assert np.sqrt(np.mean(own**2)) < 1.1 * np.sqrt(np.mean(usual**2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("k", range(5))
 def test_the_five_published_calibrations_are_reproduced(k):
     recording = some("mpu9150-five")[k]
@@ -85,12 +93,14 @@ def test_six_labelled_positions_give_the_published_result_within_our_uncertainty
     assert result.fit.p_value > 0.05
 
 
+@pytest.mark.slow
 def test_twenty_four_accelerometers_of_one_board_repeat_from_session_to_session():
     first, second = (triads(r) for r in some("kth-mimu")[:2])
     change = np.array([b.scale / a.scale - 1 for a, b in zip(first, second, strict=True)])
     assert change.std() < 4e-4
 
 
+@pytest.mark.slow
 def test_the_five_imus_agree_with_each_other_within_their_stated_noise():
     result = calibrate(some("mpu9150-five")[5].session)
     assert result.fit.p_value > 0.01

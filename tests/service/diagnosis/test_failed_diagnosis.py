@@ -140,6 +140,7 @@ def test_what_rests_on_a_diagnosis_that_somebody_is_making_is_asked_for_again(
     assert (answer.status_code, answer.headers["Retry-After"]) == (503, "2")
 
 
+@pytest.mark.slow
 def test_what_the_program_fails_at_is_tried_some_times_beside_the_requests(
     written: io.StringIO, spoilt: Storage, settings: Settings
 ) -> None:

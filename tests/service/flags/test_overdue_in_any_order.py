@@ -36,6 +36,7 @@ def brought(client: httpx.Client, record: str) -> None:
         client.post("/api/v1/sessions", content=SESSIONS[record]).raise_for_status()
 
 
+@pytest.mark.slow
 @one_engine
 @pytest.mark.parametrize("order", ORDERS, ids="-".join)
 def test_no_flag_stays_open_where_nothing_is_due(settings: Settings, order: tuple[str, ...]) -> None:

@@ -206,6 +206,7 @@ def test_a_delivery_that_was_cut_short_is_made_again(outbox: Outbox) -> None:
     assert len(outbox.hook.messages) == 2
 
 
+@pytest.mark.slow
 def test_pauses_grow_and_end_within_a_day(outbox: Outbox) -> None:
     outbox.hook.statuses += [500] * 2 * MOST_ATTEMPTS
     for _ in range(MOST_ATTEMPTS):

@@ -3,6 +3,7 @@
 from datetime import UTC, datetime
 from typing import Any
 
+import pytest
 from sqlalchemy import text
 
 from service.flags.changes import resolve_flag
@@ -74,6 +75,7 @@ def test_counts_follow_every_change_of_the_records(storage: Storage) -> None:
     assert answers(storage, KEPT) != seen[1] != seen[0]
 
 
+@pytest.mark.slow
 def test_a_store_from_before_is_counted_when_it_is_brought_up_to_date(storage: Storage, store_url: str) -> None:
     fill(storage)
     kept = answers(storage, KEPT)

@@ -82,10 +82,12 @@ def test_twelve_sessions_name_what_none_of_them_shows(filled: Filled) -> None:
     assert (found["sessions"], len(found["findings"][0]["sessions"]), found["left_out"]) == (12, 12, 0)
 
 
+@pytest.mark.slow
 def test_none_of_the_twelve_shows_anything_alone() -> None:
     assert [find_causes(read_upload(content, "a.json")).findings for content in GROUP] == [()] * 12
 
 
+@pytest.mark.slow
 @one_engine
 def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(filled: Filled) -> None:
     storage = filled(twelve)

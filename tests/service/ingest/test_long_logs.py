@@ -21,6 +21,7 @@ def memory():
     limits.use(usual)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("write", "rows", "most"), [(write_csv, 1_600_000, 96), (write_parquet, 3_000_000, 128)])
 def test_memory_does_not_grow_with_the_log(memory, tmp_path: Path, write, rows: int, most: int) -> None:
     memory(most)

@@ -102,6 +102,7 @@ def test_the_law_of_the_sessions_before_brings_a_session_to_its_reference(holdin
     assert moved["deviation"] == pytest.approx(150 * MICRO_G, abs=20 * MICRO_G)
 
 
+@pytest.mark.slow
 def test_a_session_taken_back_is_no_longer_learned_from(holding: Holding) -> None:
     client = holding(*LEARNED, WARM)
     for gone in LEARNED[1:3]:

@@ -2,6 +2,8 @@
 
 from datetime import UTC, datetime, timedelta
 
+import pytest
+
 from service.papers.certified import certified_session, laboratory_of
 from service.papers.desk import statement_of
 from service.records.changes import record_service
@@ -32,6 +34,7 @@ def content_hash(storage: Storage, order: tuple[int, ...]) -> str:
     return statement_of(certified_session(storage, made, laboratory_of(Settings()))).content_hash
 
 
+@pytest.mark.slow
 @one_engine
 def test_it_is_the_same_in_every_order(filled: Filled) -> None:
     orders = ((0, 1, 2, 3), (2, 1, 0, 3), (1, 3, 2, 0))

@@ -113,6 +113,7 @@ def test_an_empty_fleet_has_a_report(client: httpx.Client) -> None:
     assert len(workbook(client)["Fleet"]) == 0
 
 
+@pytest.mark.slow
 def test_queries_do_not_grow_with_the_fleet(storage: Storage) -> None:
     def both(store: Store) -> None:
         report = fleet_report(store, NOW)

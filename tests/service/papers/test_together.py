@@ -3,6 +3,7 @@
 import io
 
 import httpx
+import pytest
 from pypdf import PdfReader, PdfWriter
 from pypdf.annotations import Rectangle
 from pypdf.generic import NameObject
@@ -22,6 +23,7 @@ def printed(client: httpx.Client, *ids: str) -> httpx.Response:
     return client.get("/api/v1/certificates", params={"session": list(ids)})
 
 
+@pytest.mark.slow
 def test_the_pages_of_each_follow_in_the_order_asked_for(holding: Holding) -> None:
     client = holding(FIRST, SECOND)
     alone = [pages_of(client.get(f"/api/v1/sessions/{id}/certificate").content) for id in IDS]

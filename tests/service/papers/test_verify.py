@@ -34,7 +34,7 @@ from tests.service.recordings import recording_bytes
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 ID = session_id(FAILED[-1])
 RAW = RawFile("session.json", FAILED[-1])
-MUTATIONS = 80
+MUTATIONS = 30
 NOTHING = Beside()
 
 

@@ -126,7 +126,14 @@ def _holds(databases: Databases, folder: Path, examples: int) -> Callable[[], No
     return every_order
 
 
-@pytest.mark.parametrize(("engine", "examples"), [("sqlite", 3), ("postgresql", 1)])
+@pytest.mark.parametrize(
+    ("engine", "examples"),
+    [
+        ("sqlite", 1),
+        pytest.param("sqlite", 3, marks=pytest.mark.slow),
+        pytest.param("postgresql", 1, marks=pytest.mark.slow),
+    ],
+)
 def test_any_order_and_any_detour_give_the_same_state(
     engine: str, examples: int, request: pytest.FixtureRequest, tmp_path: Path
 ) -> None:

@@ -37,6 +37,7 @@ def waiting(storage: Storage) -> int:
         return Derivations(store).waiting_of(UNIT)
 
 
+@pytest.mark.slow
 def test_what_is_judged_later_ends_as_what_is_judged_at_once(storage: Storage) -> None:
     ids = filled(storage)
     choose_reference(storage, way(storage, at_once=None), ids[3], step())

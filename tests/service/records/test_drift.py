@@ -132,6 +132,7 @@ def test_a_recording_in_service_that_finds_a_unit_unfit_leaves_it_no_date(storag
     assert found.reason.startswith("Found out of tolerance on 1 May 2026")
 
 
+@pytest.mark.slow
 def test_a_fleet_does_not_depend_on_the_order_in_which_its_sessions_came(storage: Storage) -> None:
     """Another unit of the type tells later what was not known when the first was looked at."""
     measure(storage, {1: 0.0, 3: 0.0, 5: 0.0})

@@ -89,6 +89,7 @@ def test_a_unit_that_is_not_there_is_told_and_stops_no_other(storage: Storage) -
     assert second.done is not None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("databases", ["postgresql"], indirect=True)
 def test_a_worker_that_is_killed_costs_nothing(storage: Storage, settings: Settings) -> None:
     binary = parquet_bytes(accelerometer_block(unit="BB-001", positions=12) | {"unit_type": TYPE})

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 
+import pytest
 from sqlalchemy import Engine, event
 
 from service.models.records import AcceptedFinding, ModelRevision, Scope
@@ -48,6 +49,7 @@ def test_an_upload_asks_the_database_44_questions_at_most(storage: Storage) -> N
     assert 0 < len(statements) <= 44
 
 
+@pytest.mark.slow
 def test_recomputing_a_unit_asks_no_more_for_more_sessions(storage: Storage) -> None:
     counts = []
     for month in (1, 2, 3, 4):

@@ -56,6 +56,7 @@ def looked_at(client: httpx.Client, id: str) -> tuple[Any, Any]:
     return named, client.get(f"/api/v1/sessions/{id}").json()["reservations"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", ["tolerances", "reference"])
 def test_other_tolerances_weigh_only_what_is_computed_from_then_on(holding: Holding, first: str) -> None:
     client = holding(REFERENCE)
@@ -79,6 +80,7 @@ def test_what_stands_for_an_earlier_session_is_not_compared_with_it(holding: Hol
     assert looked_at(client, id) == looked_at(alone, sent(alone, MOVED)) == ([], [])
 
 
+@pytest.mark.slow
 def test_a_questioned_session_is_looked_at_again_once_it_is_accepted(holding: Holding) -> None:
     """Of three sensors: beside the earlier session all of it seems new, and every sensor more costs seconds."""
     found = []

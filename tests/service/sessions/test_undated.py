@@ -58,7 +58,9 @@ def refused(client: httpx.Client) -> dict[str, int]:
 
 
 @one_engine
-@pytest.mark.parametrize("sound", [SOUND, DATED], ids=["undated", "mixed"])
+@pytest.mark.parametrize(
+    "sound", [pytest.param(SOUND, id="undated", marks=pytest.mark.slow), pytest.param(DATED, id="mixed")]
+)
 def test_what_began_in_a_file_without_a_date_is_shown_and_accepted(holding: Holding, sound: Sequence[bytes]) -> None:
     client = holding(*sound, *SINCE)
     (finding,) = client.get(f"/api/v1/units/{UNIT}/diagnosis").raise_for_status().json()["findings"]

@@ -116,6 +116,7 @@ def test_a_restored_service_goes_on(full: Settings, other: Databases, tmp_path: 
         assert client.post("/api/v1/sessions", content=session_bytes(seed=9, month=6)).status_code == 201
 
 
+@pytest.mark.slow
 def test_a_backup_of_an_earlier_schema_is_restored_as_it_was(databases: Databases, tmp_path: Path) -> None:
     old, new = databases.empty(), databases.empty()
     upgrade(old, "0003")
@@ -125,6 +126,7 @@ def test_a_backup_of_an_earlier_schema_is_restored_as_it_was(databases: Database
     assert rows(new) == {name: [] for name in rows(new)}
 
 
+@pytest.mark.slow
 def test_what_is_uploaded_meanwhile_is_wholly_in_it_or_not_at_all(full: Settings, tmp_path: Path) -> None:
     meanwhile = [session_bytes(seed=seed, month=seed - 46) for seed in (50, 51)]
     with http_client(create_app(full)) as client, ThreadPoolExecutor(1) as uploading:
@@ -173,6 +175,7 @@ def test_a_backup_that_was_cut_off_or_changed_is_refused(full: Settings, tmp_pat
         verified(backup)
 
 
+@pytest.mark.slow
 @one_engine
 def test_no_byte_of_its_manifest_and_index_changes_without_an_answer(full: Settings, tmp_path: Path) -> None:
     backup = backup_of(full, tmp_path)
@@ -183,6 +186,7 @@ def test_no_byte_of_its_manifest_and_index_changes_without_an_answer(full: Setti
             verified(backup)
 
 
+@pytest.mark.slow
 @one_engine
 @pytest.mark.parametrize("place", [6, 8, 10], ids=["version", "flags", "packing"])
 @pytest.mark.parametrize("bit", [1, 64])
@@ -284,6 +288,7 @@ CALLS = (2, 1000, 1950)
 """At the beginning, on the way, near the end: restoring so little takes 1971 calls, writing it 2390."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", CALLS)
 def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(
     full: Settings, killed_at: Killed, tmp_path: Path, call: int
@@ -296,6 +301,7 @@ def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(
     assert not list(tmp_path.glob(".part-*"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", CALLS)
 def test_a_restore_that_is_killed_leaves_no_schema_and_can_be_started_again(
     full: Settings, databases: Databases, killed_at: Killed, tmp_path: Path, call: int
@@ -326,6 +332,7 @@ def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_p
     database.close()
 
 
+@pytest.mark.slow
 @across
 def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
     settings: Settings, storage: Storage, other: Databases, tmp_path: Path
@@ -350,6 +357,7 @@ def _backup(settings: Settings, folder: Path, name: str) -> Path:
     return folder / f"{name}.backup"
 
 
+@pytest.mark.slow
 @one_engine
 def test_a_large_file_that_waits_to_be_read_is_restored_with_its_job(
     settings: Settings, databases: Databases, tmp_path: Path

@@ -39,6 +39,7 @@ def changes(number: int, ids: list[str], flags: list[int], kind: str) -> Iterato
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("databases", ["postgresql"], indirect=True)
 def test_writers_of_the_same_rows_never_wait_for_each_other(settings: Settings) -> None:
     settings = settings.model_copy(update={"diagnosis_workers": 1})

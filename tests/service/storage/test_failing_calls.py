@@ -107,12 +107,19 @@ def listening(storage: Storage, what: str, to: Callable[..., Any]) -> Iterator[N
         event.remove(storage.database.engine, what, to)
 
 
+SLOW = (
+    ("sqlite", failing_disk, landed),
+    *((engine, failing_statements, as_bytes) for engine in ENGINES),
+    ("sqlite", lost_answers, as_bytes),
+)
+
+
 @pytest.mark.parametrize(
     ("databases", "failing", "send"),
     [
         ("sqlite", failing_disk, as_bytes),
-        ("sqlite", failing_disk, landed),
-        *((engine, failing, as_bytes) for engine in ENGINES for failing in (failing_statements, lost_answers)),
+        ("postgresql", lost_answers, as_bytes),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW),
     ],
     indirect=["databases"],
 )

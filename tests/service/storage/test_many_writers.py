@@ -3,6 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import httpx
+import pytest
 
 from service.settings import Settings
 from tests.databases import one_engine
@@ -12,6 +13,7 @@ from tests.serving import TLS, serving
 CLIENTS = 32
 
 
+@pytest.mark.slow
 @one_engine
 def test_nobody_of_thirty_two_is_refused(settings: Settings) -> None:
     def send(number: int) -> int:

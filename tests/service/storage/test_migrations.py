@@ -75,6 +75,7 @@ def test_the_audit_refuses_to_be_changed(store_url: str) -> None:
     engine.dispose()
 
 
+@pytest.mark.slow
 def test_decisions_outlive_the_split_into_common_and_own_parts(store_url: str, storage: Storage) -> None:
     now = datetime(2026, 11, 21, tzinfo=UTC)
     upload(storage, session_bytes(), "a.json", now)

@@ -31,6 +31,7 @@ for process in processes:
 """
 
 
+@pytest.mark.slow
 def test_processes_that_upgrade_an_empty_database_together_all_succeed(databases: Databases) -> None:
     url = databases.empty()
     command = [sys.executable, "-c", SCRIPT, url]

@@ -3,6 +3,7 @@
 from datetime import datetime, timedelta
 
 import httpx
+import pytest
 
 from service.app import create_app
 from tests.conftest import SettingsHolding
@@ -38,6 +39,7 @@ def test_a_check_that_finds_the_unit_unfit_says_so(client: httpx.Client) -> None
     assert len(client.get("/api/v1/flags").json()["flags"]) == 1
 
 
+@pytest.mark.slow
 @one_engine
 def test_every_order_of_arrival_gives_the_same_date(settings_holding: SettingsHolding) -> None:
     found = set()

@@ -85,6 +85,7 @@ def test_a_channel_that_reads_the_same_at_every_position_is_questioned(
     assert client.get("/api/v1/jobs/failed").json()["failed"] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("programme", list(programmes()))
 @one_engine
 def test_extreme_numbers_are_taken_or_refused(client: httpx.Client, programme: str) -> None:

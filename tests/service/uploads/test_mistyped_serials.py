@@ -116,6 +116,7 @@ def test_one_click_says_which_unit_it_is(client: httpx.Client, way: str) -> None
         assert (after["unit"], after["state"]) == ("BA-10l", "accepted")
 
 
+@pytest.mark.slow
 @one_engine
 def test_nobody_of_a_numbered_fleet_is_asked_and_a_mistyped_number_is(client: httpx.Client) -> None:
     numbers = [101 + k * 7 % 30 for k in range(30)]

@@ -92,6 +92,7 @@ def test_an_alignment_neither_raises_nor_clears_a_flag(storage: Storage) -> None
     assert [flag.matter for flag in open_now] == [Matter.CAUSE]
 
 
+@pytest.mark.slow
 def test_recordings_between_two_calibrations_do_not_hide_the_earlier_one(storage: Storage) -> None:
     first = stored(storage, session_bytes())
     for seed in range(12):

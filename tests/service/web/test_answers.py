@@ -51,6 +51,7 @@ EXTREMES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "value"), EXTREMES)
 @pytest.mark.parametrize("path", ["/plan", "/api/v1/plan"])
 def test_a_number_next_to_nothing_is_planned_with_or_refused(at: At, path: str, name: str, value: float) -> None:

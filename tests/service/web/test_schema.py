@@ -15,10 +15,8 @@ from tests.patience import LONG
 from tests.service.made_sessions import session_bytes
 from tests.serving import serving
 
-EXAMPLES = {GenerationMode.POSITIVE: 3, GenerationMode.NEGATIVE: 2}
-"""Of each call; docs/security/http.md has what thousands of requests came to."""
-FEWER = {"/api/v1/plan": 2}
-"""A plan takes a second or more."""
+EXAMPLES = 2
+"""Of each call, where there is more time; docs/security/http.md has what thousands of requests came to."""
 
 
 @pytest.fixture(scope="module")
@@ -36,15 +34,17 @@ def description(address: str) -> schemathesis.BaseSchema:
 
 
 @pytest.mark.parametrize(
-    ("address", "mode"),
+    ("address", "mode", "examples"),
     [
-        ("postgresql", GenerationMode.POSITIVE),  # it refuses more than SQLite
-        ("sqlite", GenerationMode.NEGATIVE),  # is refused before the database is asked
+        ("postgresql", GenerationMode.POSITIVE, 1),  # it refuses more than SQLite
+        pytest.param("postgresql", GenerationMode.POSITIVE, EXAMPLES, marks=pytest.mark.slow),
+        # is refused before the database is asked
+        pytest.param("sqlite", GenerationMode.NEGATIVE, EXAMPLES, marks=pytest.mark.slow),
     ],
     indirect=["address"],
 )
 def test_generated_requests_are_answered_as_described(
-    description: schemathesis.BaseSchema, mode: GenerationMode
+    description: schemathesis.BaseSchema, mode: GenerationMode, examples: int
 ) -> None:
     """Requests that keep the description, and requests that break it wherever it can be broken."""
     operations = [found.ok() for found in description.get_all_operations()]  # type: ignore[union-attr]
@@ -52,7 +52,7 @@ def test_generated_requests_are_answered_as_described(
     for operation in operations if mode is GenerationMode.POSITIVE else asking_for_more(operations):
         # Where nothing is asked for, nothing can be broken.
         with suppress(Unsatisfiable) if mode is GenerationMode.NEGATIVE else nullcontext():
-            assert_conforming(operation, mode)
+            assert_conforming(operation, mode, examples)
 
 
 def asking_for_more(operations: list[schemathesis.APIOperation]) -> Iterator[schemathesis.APIOperation]:
@@ -65,11 +65,11 @@ def asking_for_more(operations: list[schemathesis.APIOperation]) -> Iterator[sch
         known |= asked
 
 
-def assert_conforming(operation: schemathesis.APIOperation, mode: GenerationMode) -> None:
+def assert_conforming(operation: schemathesis.APIOperation, mode: GenerationMode, examples: int) -> None:
     """Sends generated requests and holds every answer to the description."""
 
     @settings(
-        max_examples=FEWER.get(operation.path, EXAMPLES[mode]),
+        max_examples=examples,
         derandomize=True,
         deadline=None,
         database=None,

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
+import pytest
 
 from tests.patience import LONG
 from tests.service.commands.conftest import COMMAND, READY, ROOT
@@ -63,6 +64,7 @@ def test_the_upload_at_hand_is_stored_the_next_one_is_refused_and_the_end_comes_
     assert (found.status, json.loads(found.body)["unit"]) == (201, "BA-017")
 
 
+@pytest.mark.slow
 def test_the_end_comes_in_time_whatever_is_at_hand(tmp_path: Path) -> None:
     content = session_bytes()
     with service(tmp_path, seconds=0.2) as (process, address), connected(address) as connection:

@@ -22,6 +22,7 @@ def limits(where: Scene) -> dict[str, Limit]:
     return {x.cause: x for x in diagnose(where.measured(1)).limits}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", ["bias-ramp", "beta-scale"])
 def test_an_effect_at_its_limit_is_found(cause: str) -> None:
     world, (limit,) = WHERE.world, limits(WHERE)[cause].amplitude
@@ -30,6 +31,7 @@ def test_an_effect_at_its_limit_is_found(cause: str) -> None:
     assert sum(seen) >= 16, "95 % power: fewer than 16 of 20 has probability 3e-4"
 
 
+@pytest.mark.slow
 def test_half_the_limit_is_mostly_missed() -> None:
     world, (limit,) = WHERE.world, limits(WHERE)["beta-scale"].amplitude
     added = ACTED["beta-scale"](world, np.array([limit / 2]), 2, ()) - world.inputs(world.vectors())

@@ -14,6 +14,7 @@ def with_cause(session: CalibrationSession, cause: str) -> CalibrationSession:
     return with_readings(session, change(cause, WHERE) * WHERE.world.truth.scale)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cause", ["bias-temperature", "hysteresis", "beta-second-harmonic"])
 def test_a_lasting_cause_predicts_the_earlier_session_too(cause: str) -> None:
     earlier = [with_cause(h, cause) for h in WHERE.earlier(3)]
@@ -38,6 +39,7 @@ def test_without_history_there_is_no_other_session_and_nothing_is_called_new() -
     assert found.gain.session is None
 
 
+@pytest.mark.slow
 def test_the_score_of_the_other_session_knows_the_amplitudes_uncertainty() -> None:
     """χ² per degree of freedom of what the amplitude predicts stays near one over many sessions."""
     shares = []

@@ -59,6 +59,7 @@ def test_the_covariance_is_that_of_one_dense_fit() -> None:
     assert np.isclose(diagnosis.findings[0].sigma[0], dense[-1], rtol=0.01)
 
 
+@pytest.mark.slow
 def test_amplitudes_are_unbiased_and_honest() -> None:
     findings = [diagnose(hidden(seed)).findings[0] for seed in range(14)]
     pulls = [(f.amplitude[0] - amplitude()) / f.sigma[0] for f in findings]

@@ -86,6 +86,7 @@ def test_alternatives_come_with_a_measurement_that_tells_them_apart(pair: Pair) 
     assert said.now < 4 < said.then
 
 
+@pytest.mark.slow
 @every_pair
 def test_the_measurement_carried_out_tells_them_apart_as_far_as_promised(pair: Pair) -> None:
     said = promise(measured(pair, pair.session, 1), pair.rival)

@@ -32,6 +32,7 @@ def named(found: Diagnosis) -> list[tuple[str, tuple[str, ...]]]:
     return [(f.cause, f.sensors) for f in found.findings]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [3, 4, 6])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_clipped_sensor_is_named_with_its_limit(m: int, side: float) -> None:
@@ -62,6 +63,7 @@ def test_the_other_parameters_are_those_of_the_session_without_clipping() -> Non
         assert abs(a.bias.value - b.bias.value) < 3 * b.bias.sigma
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [3, 4, 6])
 def test_sound_sessions_have_no_clipped_sensor_however_coarse(m: int) -> None:
     for seed in range(12):

@@ -57,6 +57,7 @@ def test_a_quadratic_term_that_changed_is_structure_of_its_sensor_and_no_cause()
     ]
 
 
+@pytest.mark.slow
 def test_a_sensor_that_drifted_in_its_quadratic_term_too_has_drifted() -> None:
     session = WHERE.measured(1)
     bent = 3e-4 * session.readings[:, 2] ** 2 / 0.12 + 0.12 * 2e-3

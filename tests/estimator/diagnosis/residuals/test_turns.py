@@ -84,6 +84,7 @@ def test_a_block_turned_by_degrees_is_named_as_turned_and_nothing_else(seed: int
     assert np.abs(pull).max() < stats.norm.isf(1e-4 / 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, 5))
 def test_a_sensor_that_turned_alone_beside_the_block_is_named_alone(seed: int) -> None:
     found = {f.cause: f.sensors for f in named(seed, 6e-5).findings}

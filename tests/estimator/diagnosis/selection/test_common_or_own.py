@@ -37,6 +37,7 @@ def swaying(size: float) -> Array:
     return turned(setting, size * np.cos(2 * setting.beta + 0.3) * (1 + setting.flipped))
 
 
+@pytest.mark.slow
 def test_an_error_of_the_stand_that_no_cause_describes_gets_no_name() -> None:
     begun = start(OWN, swaying(2e-4))
     left = with_likelier_vector_course(begun, fitting_causes(begun), fitting_causes)

@@ -32,6 +32,7 @@ def sound(seed: int) -> CalibrationSession:
     return simulate(FEW, truth_of(FEW), np.random.default_rng([61, seed]), noise=NOISE)
 
 
+@pytest.mark.slow
 def test_errors_of_one_sensor_three_times_too_small_give_it_no_other_name() -> None:
     """Eleven readings beyond the parameters: too few to say that the noise is wrong, few enough to find a shape in."""
     found = [diagnose(stated(sound(seed), 1 / 3, SECOND)).findings for seed in range(30)]
@@ -84,6 +85,7 @@ def test_noise_that_hides_behind_the_stand_is_seen_in_the_whole_session() -> Non
     assert np.median(whole) > 1.5 * np.median(own)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strength", [0.0, 1.0])
 def test_a_factor_common_to_sensors_is_found_beside_a_stand_and_a_named_effect(strength: float) -> None:
     """Restricted likelihood: what all share of a row hides part of a noise that is believed too much."""

@@ -128,6 +128,7 @@ def test_white_residuals_are_not_autocorrelated() -> None:
     assert with_autocorrelation(start(FEW)).autocorrelated == ()
 
 
+@pytest.mark.slow
 def test_smoothness_must_be_significant_among_all_sensors() -> None:
     """A course whose chance is below the level for one sensor, and above it for one of four."""
     place = np.linspace(-1, 1, ROWS)

@@ -48,6 +48,7 @@ def test_wrong_standard_errors_are_said_and_nothing_else(factor: float) -> None:
     assert scale.factor == pytest.approx(1 / factor, rel=0.25)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.1, 1 / 3, 3.0])
 @pytest.mark.parametrize("identifier", ["bias-jump", "bias-ramp", "beta-second-harmonic"])
 def test_a_cause_is_named_whatever_the_errors_are_stated_as(identifier: str, factor: float) -> None:
@@ -164,6 +165,7 @@ def test_where_repeats_agree_with_the_stated_noise_misfit_is_no_noise() -> None:
     assert doubted(begin(baseline_of(stated(session, 0.2)), (), ()))
 
 
+@pytest.mark.slow
 def test_a_course_of_the_applied_vector_is_no_wrong_claim() -> None:
     assert diagnose(measured(swaying(2e-4))).noise == ()
     assert diagnose(stated(measured(swaying(2e-4)), 0.3)).noise[0].factor == pytest.approx(1 / 0.3, rel=0.25)

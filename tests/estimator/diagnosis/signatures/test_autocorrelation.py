@@ -19,6 +19,7 @@ def with_scatter(course: Array, seed: int) -> Diagnosis:
     return diagnose(with_readings(WHERE.measured(seed), course[:, None] * WHERE.noise[0] * np.eye(6)[1]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_noise_above_the_stated_one_is_excess_noise(seed: int) -> None:
     found = with_scatter(5 * np.random.default_rng(seed).standard_normal(ROWS), seed)
@@ -26,6 +27,7 @@ def test_noise_above_the_stated_one_is_excess_noise(seed: int) -> None:
     assert not found.unexplained
 
 
+@pytest.mark.slow
 def test_random_walks_are_no_noise() -> None:
     """One walk in some dozens happens to look like noise."""
     walks = [12 * np.cumsum(np.random.default_rng(seed).standard_normal(ROWS)) for seed in range(8)]

@@ -55,6 +55,7 @@ def test_no_more_than_expected_is_no_evidence() -> None:
     assert bayes_factor(2.9, 3) == bayes_factor(0.1, 3) < 0.0
 
 
+@pytest.mark.slow
 def test_unknown_noise_names_no_cause_in_sound_sessions() -> None:
     where = scene(ACCELEROMETER, 0)
     for seed in range(6):

@@ -30,6 +30,7 @@ def switched(seed: int) -> tuple[Array, Array]:
     return 8 * states + rng.standard_normal(ROWS), states
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("least", [0.0, 1.0])
 def test_noise_reaches_no_more_evidence_than_chance_allows(least: float) -> None:
     drawn = [told_of(6 * RNG.standard_normal(ROWS), least)[0] for _ in range(300)]
