@@ -14,6 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from benchmarks.details import in_full, publish, published, whole_of
 from benchmarks.shared_causes.departing import departing
 from benchmarks.shared_causes.gained import gained
+from benchmarks.shared_causes.history import with_history
 from benchmarks.shared_causes.lines import OTHERS, PAGE, head, sections
 from benchmarks.shared_causes.recorded import recorded
 from benchmarks.shared_causes.unlike import Line, noisier, tails
@@ -25,6 +26,7 @@ PARTS: dict[str, Callable[[int, int], Iterator[Line]]] = {
     "tails": tails,
     "noisier": noisier,
     "gain": gained,
+    "history": with_history,
 }
 TITLE = "Causes that sensors share: every target"
 INTRODUCTION = (

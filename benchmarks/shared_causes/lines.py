@@ -15,6 +15,7 @@ TITLES = {
     "tails": "Errors with tails",
     "noisier": "Unequal noise",
     "gain": "Gain in one sentence",
+    "history": "A unit with earlier sessions",
 }
 RESTS = "block, tilt"
 """Head of the table of `benchmarks.rests`."""
@@ -31,6 +32,8 @@ WHY = {
     "stated errors over true ones, gyro bias": "A rotation that gyros share counts as the noise of each: its slow part "
     "cannot be separated from theirs within the rests.",
     "95 % intervals": "Slow flicker within the rests, whose spectrum three sensors hardly determine.",
+    "the course and that sensor": "What a zero settles to is hardly known while it settles: its sensor seems to depart "
+    "from the course, by a time constant of its own, or to have changed no more than its course leaves open.",
     "times noisier": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
     "time of a diagnosis": "A course is weighed against each sensor's own, against wandering biases and in every fold.",
     "seasons, line: units flagged": "One unit of twenty.",

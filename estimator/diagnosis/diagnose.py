@@ -29,11 +29,12 @@ from estimator.diagnosis.record.silent import refuse_silent
 from estimator.diagnosis.record.turned import expected_axes
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.common_start import baselines
+from estimator.diagnosis.residuals.common_start import about_their_flips, baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.selection.acceptance import accepted
 from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.selection.settling import settling, settling_in, with_open_change
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.turntable import diagnose_alignment
 from estimator.session import ROTATION_ALIGNMENT, CalibrationSession
@@ -145,6 +146,13 @@ def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
 
 
 def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
-    """The residuals of a session, and nothing sought in them yet."""
+    """The residuals of a session, and nothing sought in them yet.
+
+    A course that sensors share shows within the session: that several have changed since the history is none.
+    """
     baseline, earlier = baselines(right, history)
-    return begin(baseline, earlier, catalogue)
+    if not history:
+        return begin(baseline, earlier, catalogue)
+    own, known = settling_in(baseline, tuple(catalogue)), settling(about_their_flips(list(history)), tuple(catalogue))
+    state = begin(*with_open_change(baseline, earlier, [own, *known]), catalogue)
+    return replace(state, apart=own is None)

@@ -149,6 +149,48 @@ def draw_settling_at(block: Block, shares: Array, each: float, rng: np.random.Ge
     return Driven(_document(block, world, up, time, added, rng), names, (each,) * len(shares), (), 0.0)
 
 
+SOUND, COLD, BOTH, CHANGED = "sound", "cold start", "cold start, one sensor changed for good", "two to four changed"
+WARM = 6.0
+"""Time constants that a session begins after switching on at least, if it is no cold start: 0.2 % are left."""
+CHANGE = 15.0
+"""Standard errors of a mean by which a zero changes for good; twice as many of what it settles to beside a course."""
+
+
+@dataclass(frozen=True, eq=False)
+class Life:
+    """Session files of one unit, oldest first, and what is true of the last."""
+
+    sessions: tuple[dict[str, Any], ...]
+    tau: float
+    """s, of a cold start; 0 where it is none."""
+    changed: tuple[str, ...]
+    """Sensors whose zeros have changed for good."""
+
+
+def draw_life(block: Block, kind: str, each: float, rng: np.random.Generator, *, earlier: int = 3) -> Life:
+    """So many ``earlier`` sessions of a warm unit, one a month, then one that is sound, a ``COLD`` start that moves
+    every sensor, about ``each`` by so many standard errors, or one in which sensors have changed for good."""
+    world, up, time = _world(block, rng)
+    m, tau = world.unit.size, float(np.ptp(time) * rng.uniform(0.3, 0.8))
+    shape, error = np.exp(-time / tau), np.hypot(world.noise.reading, world.noise.repeatability) / np.sqrt(len(time))
+    seen = np.array([float(strength_left(block, world, up, i, shape[:, None])[0]) for i in range(m)])
+    size = rng.choice([-1.0, 1.0], m) * each * np.exp(SPREAD * rng.standard_normal(m)) / seen
+    count = {BOTH: 1, CHANGED: int(rng.integers(2, 5))}.get(kind, 0)
+    moved, change = np.sort(rng.choice(m, count, replace=False)), np.zeros(m)
+    alike = float(np.mean(shape) ** 2 / np.mean(shape**2)) if kind == BOTH else 0.0
+    known = error[moved] / np.sqrt(1 - alike)
+    change[moved] = rng.choice([-1.0, 1.0], count) * CHANGE * known * (2.0 if kind == BOTH else 1.0)
+    cold, sessions = kind in (COLD, BOTH), list[dict[str, Any]]()
+    for month in range(1, earlier + 2):
+        last = month > earlier
+        since = tau * (rng.uniform(0.02, 0.2) if last and cold else rng.uniform(WARM, 2 * WARM))
+        added = np.exp(-since / tau) * shape[:, None] * size + change * last
+        dated = replace(world, started_at=f"2026-{month:02d}-01T09:00:00Z")
+        document = _document(block, dated, directions(rng), time, added, rng)
+        sessions.append(document | {"time_since_power_on_s": round(since, 1)})
+    return Life(tuple(sessions), tau if cold else 0.0, tuple(world.unit.names[i] for i in moved))
+
+
 def _share_left(block: Block, world: Session, up: Array, sensors: Array, shape: Array) -> float:
     """Least share, over some sensors, of a step (R,) that the calibration leaves."""
     error = np.hypot(world.noise.reading, world.noise.repeatability)

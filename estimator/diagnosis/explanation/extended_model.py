@@ -128,7 +128,10 @@ def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
     response = residuals.response @ residuals.whitened(np.concatenate(columns, axis=-1))
     factors = state.baseline.parameters.si_factors(state.baseline.setting.norm)
     response = response * factors[:, None]
-    return enlarged(plain, response @ fitted.covariance @ response.T, baseline.parameters.axis_tangents)
+    more = response @ fitted.covariance @ response.T
+    if baseline.unsettled is not None and any(f.event for f in state.detections):
+        more += np.diag((baseline.unsettled.ravel() * factors) ** 2)
+    return enlarged(plain, more, baseline.parameters.axis_tangents)
 
 
 def enlarged(calibration: Calibration, more: Array, frames: Array) -> Calibration:

@@ -135,6 +135,8 @@ class Baseline:
     """(3,) rotation vector, rad, of an earlier session: it was turned by this into the frame of the one diagnosed."""
     sits_otherwise: bool = False
     """Whether the block sat otherwise than in the latest earlier session, so that its frame shows no common turn."""
+    unsettled: Array | None = None
+    """(m, 5) dimensionless: one sigma by which parameters may lie off those of the unit's settled sessions."""
 
     @property
     def parameters(self) -> SensorParameters:
@@ -185,6 +187,11 @@ class Baseline:
         normal = (full / scale).T @ (full / scale) + np.diag(ridge / scale**2)
         covariance = np.linalg.inv(normal)[:q, :q] / scale[:q, None] / scale[:q]
         return np.asarray(keep @ covariance @ keep.T)
+
+    @property
+    def covariance_between(self) -> Array:
+        """(5 m, 5 m) the same with how far they may lie off those of settled sessions, dimensionless."""
+        return self.covariance if self.unsettled is None else self.covariance + np.diag(self.unsettled.ravel() ** 2)
 
 
 def block_columns(by_sensor: Array) -> Array:

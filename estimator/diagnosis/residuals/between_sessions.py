@@ -75,7 +75,7 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
         return None
     steps = [deviation(p, h.parameters, now.setting.norm).reshape(-1) for h in alike]
     maps = [carried(p, h.parameters.axis_tangents) for h in alike]
-    known = [observable.T @ map @ h.covariance @ map.T @ observable for h, map in zip(alike, maps, strict=True)]
+    known = [observable.T @ map @ h.covariance_between @ map.T @ observable for h, map in zip(alike, maps, strict=True)]
     information = [(root := inverse_root(covariance)).T @ root for covariance in known]
     turn = observable.T @ turn_response(p)
     information = [
@@ -83,7 +83,7 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
     ]
     covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
     shares = [observable @ covariance @ part @ observable.T for part in information]
-    whiten = observable @ inverse_root(covariance + observable.T @ now.covariance @ observable) @ observable.T
+    whiten = observable @ inverse_root(covariance + observable.T @ now.covariance_between @ observable) @ observable.T
     steps = [step + map @ effect_of_turns(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
     earlier = tuple(

@@ -96,15 +96,16 @@ def absorbed_before(
 ) -> Array | None:
     """(P, S·q) dimensionless: what the history's calibrations absorbed of the same effects; None if that is unknown.
 
-    It is known on a stand, of causes of one sensor that may act in every session at every row. ``columns_of``: the
-    columns (R, m, S·q) of the shapes in a session, m/s² (rad/s), where they are not the cause's own.
+    It is known on a stand, of causes of one sensor that may act in every session at every row; in orientations of what
+    settles after switching on, which depends on nothing but the time. ``columns_of``: the columns (R, m, S·q) of the
+    shapes in a session, m/s² (rad/s), where they are not the cause's own.
     """
     change = residuals.change
     if change is None or cause.nameless or not shapes[0].sensors or "row" in cause.nonlinear_units:
         return None
     absorbed = np.zeros((len(change.deviation), 1))
     for setting, absorbs in alike(change, RECORDED if columns_of else RECORDED & cause.needs):
-        if setting.beta is None or not cause.available(setting):
+        if (setting.beta is None and not cause.since_power_on) or not cause.available(setting):
             return None
         if columns_of is None and isinstance(cause, SensorCause):
             each = [absorbed_terms(absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
