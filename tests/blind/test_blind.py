@@ -80,6 +80,7 @@ def test_wrongly_stated_noise_names_nothing_and_hides_nothing(factor: float):
     assert enough([a.offered for a in answers if a.wish.hidden], 0.95)
 
 
+@pytest.mark.slow
 def test_two_effects_are_both_named_or_listed():
     outcomes = examined("two", [(k, None) for k in range(6)])
     assert enough([all(o.named) for o in outcomes if o.separated], 0.90)

@@ -17,6 +17,7 @@ def test_every_recording_has_its_page_and_its_place_in_the_index(name: str) -> N
     assert f"recordings/{name}.md" in (PUBLISHED / "recordings.md").read_text()
 
 
+@pytest.mark.slow
 def test_the_page_of_one_recording_is_made(tmp_path: Path) -> None:
     if not folder().is_dir():
         pytest.skip(f"no recordings in {folder()}; set IMU_HEALTH_RECORDINGS to their folder")

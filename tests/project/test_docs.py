@@ -113,6 +113,6 @@ def test_every_command_of_the_readme_exists() -> None:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_links_inside_the_project_lead_somewhere(page: Path) -> None:
-    targets = re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8"))
+    targets = set(re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")))
     missing = [t for t in targets if "://" not in t and not (page.parent / t).exists()]
     assert not missing

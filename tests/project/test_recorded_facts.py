@@ -31,6 +31,7 @@ def with_errors(session: CalibrationSession, factor: float) -> Diagnosis:
     return diagnose(replace(session, standard_errors=factor * session.standard_errors))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [1 / 3, 1.0, 3.0])
 def test_gyros_that_answer_to_gravity_are_named_whatever_their_errors_are_stated_as(factor: float) -> None:
     (found,) = with_errors(xsens(), factor).findings
@@ -38,6 +39,7 @@ def test_gyros_that_answer_to_gravity_are_named_whatever_their_errors_are_stated
     assert found.ranking[0].probability > 0.99
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [1 / 3, 1.0, 3.0])
 def test_a_zero_that_wanders_at_random_is_unexplained_and_has_no_name(factor: float) -> None:
     diagnosis = with_errors(adis16405(), factor)

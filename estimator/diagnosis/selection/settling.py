@@ -98,7 +98,7 @@ def settling_in(session: Baseline, catalogue: tuple[Cause, ...]) -> Settling | N
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class Comparable:
     """A session as others see it. m sensors."""
 
     free: Baseline
@@ -109,13 +109,13 @@ class Seen:
     """Whether it has a course of its own."""
 
     @classmethod
-    def of(cls, session: Baseline, own: Settling | None, known: Sequence[Settling]) -> "Seen":
+    def of(cls, session: Baseline, own: Settling | None, known: Sequence[Settling]) -> "Comparable":
         """With its ``own`` course and all that are ``known`` of the unit."""
         tell = [c.offset(session.setting) for c in known if c is own or c.holds_in(session.setting)]
         reach = np.max([np.zeros(len(session.unstated)), *tell], axis=0)
         return cls(session if own is None else own.left_free(session), reach, own is not None)
 
-    def opened(self, session: Baseline, settled: "Seen") -> Baseline:
+    def opened(self, session: Baseline, settled: "Comparable") -> Baseline:
         """Its ``session`` with how far its parameters may lie off those of one that has settled more."""
         return replace(session, unsettled=np.sqrt(variance_between(self, settled))) if self.reach.any() else session
 
@@ -130,13 +130,13 @@ def with_open_change(
     known = [course for k in alike if (course := courses[k]) is not None]
     if not known or len(alike) < 2:
         return now, list(history)
-    seen = {k: Seen.of(sessions[k], courses[k], known) for k in alike}
+    seen = {k: Comparable.of(sessions[k], courses[k], known) for k in alike}
     earlier = [seen[k].opened(seen[k].free, seen[0]) if k in seen else s for k, s in enumerate(sessions)][1:]
     settled = min((seen[k] for k in reversed(alike) if k), key=lambda one: float(one.reach.sum()))
     return seen[0].opened(now, settled), earlier
 
 
-def variance_between(one: Seen, other: Seen) -> Array:
+def variance_between(one: Comparable, other: Comparable) -> Array:
     """(m, 5) dimensionless: of how parameters of two sessions lie apart beyond their noise, each kind by itself."""
     p, setting = one.free.parameters, one.free.setting
     moved = deviation(p, other.free.parameters, setting.norm)

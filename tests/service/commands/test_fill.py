@@ -34,6 +34,7 @@ def folder(run: Run, tmp_path: Path) -> Path:
     return tmp_path / "data"
 
 
+@pytest.mark.slow
 def test_it_fills_an_empty_database_only(run: Run, folder: Path) -> None:
     again = run("fill", "--units", 3, "--data-folder", folder)
     assert (again.code, "empty database" in again.err) == (1, True)

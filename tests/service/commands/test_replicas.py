@@ -27,6 +27,7 @@ def replicas(postgresql: PostgresDatabases, tmp_path_factory: pytest.TempPathFac
         yield one, other
 
 
+@pytest.mark.slow
 def test_what_one_stores_the_other_shows(replicas: tuple[str, str]) -> None:
     one, other = replicas
     content = session_bytes()

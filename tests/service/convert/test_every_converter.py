@@ -70,6 +70,7 @@ def outcome(name, paths):
         return refused.problems
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 @given(cut=st.floats(0, 1), byte=st.integers(0, 255))
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -100,6 +100,7 @@ def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(filled: Filled) -> None
     assert finding.over_sessions.sessions == 12
 
 
+@pytest.mark.slow
 @one_engine
 def test_a_flag_is_raised_by_all_sessions_together_and_not_by_the_one_that_was_diagnosed_so(filled: Filled) -> None:
     with filled(twelve_with_the_last_diagnosed).database.reading() as store:

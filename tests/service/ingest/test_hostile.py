@@ -62,7 +62,14 @@ def limited():
     limits.use(usual)
 
 
-@pytest.mark.parametrize("hostile", HOSTILE, ids=lambda hostile: hostile.name)
+LARGE = {"parquet-many-rows", "hdf5-many-columns", "mat-unpacks"}
+"""They take seconds to make or to read."""
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    [pytest.param(one, id=one.name, marks=[pytest.mark.slow] * (one.name in LARGE)) for one in HOSTILE],
+)
 def test_a_file_made_to_do_harm_is_refused_with_a_reason(hostile: Hostile, limited):
     if "endless" in hostile.name:
         limited(seconds=1)

@@ -30,6 +30,7 @@ def test_memory_does_not_grow_with_the_log(memory, tmp_path: Path, write, rows: 
     assert read_upload(tmp_path / "log", "log").readings.shape == (24, 6)
 
 
+@pytest.mark.slow
 def test_the_same_log_read_whole_is_more_than_that_memory(memory, tmp_path: Path) -> None:
     memory(128)
     write_parquet(tmp_path / "log", 3_000_000)

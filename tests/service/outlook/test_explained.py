@@ -86,6 +86,7 @@ def test_what_the_stand_did_is_taken_off_and_what_is_left_is_as_uncertain_as_tha
     assert flagged(storage) == {}
 
 
+@pytest.mark.slow
 @one_engine
 def test_a_sensor_that_jumps_while_the_stand_is_at_fault_is_flagged_with_its_own_jump(storage: Storage) -> None:
     diagnose(storage, measure(storage, a3_moved=40.0), NOW)

@@ -209,6 +209,7 @@ def test_the_command_s_exit_code_says_it(run: Run, printed: bytes, tmp_path: Pat
     assert run("verify", tmp_path / "none.xml", tmp_path / "s.json").code == 2
 
 
+@pytest.mark.slow
 def test_another_build_of_the_linear_algebra_agrees(printed: bytes, tmp_path: Path) -> None:
     """That of a processor without wide registers, which every other one can run."""
     (tmp_path / "c.xml").write_bytes(printed)

@@ -102,6 +102,7 @@ def test_the_same_content_in_another_format_is_the_same_session(storage: Storage
     assert (again.id, again.created) == (first.id, False)
 
 
+@pytest.mark.slow
 def test_a_clock_of_1970_moves_nothing_unless_an_engineer_accepts_it(storage: Storage) -> None:
     for month in (3, 4, 5):
         measured(storage, month, 5.0 * month)

@@ -116,6 +116,7 @@ def test_flags_that_every_unit_had_of_its_own_become_the_stand_s_one(shifted: St
     assert flagged(shifted)[1].changes[-1].text == OF_STAND
 
 
+@pytest.mark.slow
 def test_an_open_flag_whose_shift_is_dated_anew_stays_one_flag_and_closes_with_it(storage: Storage) -> None:
     """Raised when the shift was dated to before June; by what was measured since it is dated to July."""
     for number in range(4):

@@ -91,6 +91,7 @@ def test_a_backup_restores_everything_into_either_engine(full: Settings, other: 
     assert files(tmp_path / "new") == files(full.files) != {}
 
 
+@pytest.mark.slow
 @across
 def test_noise_at_rest_is_restored_into_either_engine(
     storage: Storage, settings: Settings, other: Databases, tmp_path: Path
@@ -321,6 +322,7 @@ def test_a_new_schema_holds_no_rows_that_a_restore_would_meet(databases: Databas
     assert {name for name, found in rows(databases.migrated()).items() if found} == set()
 
 
+@pytest.mark.slow
 @across
 def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_path: Path) -> None:
     url = other.empty()

@@ -75,7 +75,7 @@ def every(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Recorded]:
     return {way: Recorded(way, before[way], list(calls(text, str(folder / way)))) for way in WAYS}
 
 
-@pytest.fixture(params=WAYS)
+@pytest.fixture(params=[pytest.param(way, marks=[pytest.mark.slow] * (way == "landed")) for way in WAYS])
 def recorded(request: pytest.FixtureRequest, every: dict[str, Recorded]) -> Recorded:
     """An upload in one of the ways."""
     return every[request.param]

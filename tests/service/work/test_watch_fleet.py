@@ -82,6 +82,7 @@ def test_a_fault_is_logged_with_what_was_done_and_where(two_units: Storage, writ
     assert all("Traceback" in line["exception"] for line in failed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("column", "broken"), [("value", "7"), ("covariance", '[["x"], [2.0], [null]]')])
 def test_a_stand_is_watched_although_a_motion_on_another_is_damaged(storage: Storage, column: str, broken: str) -> None:
     for number in range(4):
