@@ -34,6 +34,8 @@ WHY = {
     "95 % intervals": "Slow flicker within the rests, whose spectrum three sensors hardly determine.",
     "the course and that sensor": "What a zero settles to is hardly known while it settles: its sensor seems to depart "
     "from the course, by a time constant of its own, or to have changed no more than its course leaves open.",
+    "these called changed": "A zero that changed before the session looks like one that jumps or settles in its first "
+    "rows: one name comes first, the other is listed beside it.",
     "times noisier": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",
     "time of a diagnosis": "A course is weighed against each sensor's own, against wandering biases and in every fold.",
     "seasons, line: units flagged": "One unit of twenty.",
