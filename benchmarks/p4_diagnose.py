@@ -30,8 +30,8 @@ PEER = "scipy.optimize.least_squares once per cause and sensor"
 EARLIER = "the same with ten earlier sessions, {}"
 ALONE = "the same without"
 NOTE = """
-P4 misses its target by a factor of three to four. The peer refits once per cause and sensor; ours scores every place and
-shape of the catalogue, states a detection limit for each cause and measures the gain on positions held out. By
+P4 misses its target by a factor of three to four. The peer refits once per cause and sensor; ours scores every place
+and shape of the catalogue, states a detection limit for each cause and measures the gain on positions held out. By
 profile a quarter of its time makes and whitens the thousand signatures and their inner products, a fifth scores them
 in some ten rounds, a sixth looks for structure in place of names and for smooth courses, a tenth predicts positions
 held out: sixty thousand calls in all, of which none stands out. A hundredth of the peer's time leaves room for a
@@ -39,16 +39,16 @@ third of them.
 
 P4h misses its target by little: it takes 2.1 times as long where the process has read the earlier sessions before,
 1.8 to 1.9 without the first step, which asks whether the sensors of the session share a course by themselves. Fits of
-earlier sessions, also the ones near the session that observes most, and their statistics are remembered. By profile a third of what history adds is
-the search, which scores every signature three times (as lasting, as new, and with the sensor's change left open); a
-fifth makes those signatures and what the earlier sessions absorbed of them; a fifth turns the sessions into this one's
-frame; and a quarter is this session's statistics and the pool of all. Where this session itself observes most, the
-earlier ones are fitted anew near it: that takes 2.0 times as long.
+earlier sessions, also the ones near the session that observes most, and their statistics are remembered. By profile a
+third of what history adds is the search, which scores every signature three times (as lasting, as new, and with the
+sensor's change left open); a fifth makes those signatures and what the earlier sessions absorbed of them; a fifth
+turns the sessions into this one's frame; and a quarter is this session's statistics and the pool of all. Where this
+session itself observes most, the earlier ones are fitted anew near it: that takes 2.0 times as long.
 
-Where the earlier sessions are new to the process it takes 3.0 times as long. Every new session costs 2 ms
-for its own fit and the one near the best, and 4 ms for the statistics of its 140 candidates. Ten of them take as long
-as the diagnosis does, so that twice its time would leave nothing for what they add to it. The service makes the
-statistics when a session comes, and keeps them in its store.
+Where the earlier sessions are new to the process it takes 3.0 times as long. Every new session costs 2 ms for its own
+fit and the one near the best, and 4 ms for the statistics of its 140 candidates. Ten of them take as long as the
+diagnosis does, so that twice its time would leave nothing for what they add to it. The service makes the statistics
+when a session comes, and keeps them in its store.
 """
 
 
