@@ -10,7 +10,7 @@ from typing import TypeVar
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from benchmarks.blind.answer import Look, Threshold, causes_told, looks
+from benchmarks.blind.answer import Look, Threshold, causes_given, looks
 from benchmarks.blind.entrants import ENTRANTS, OURS
 from benchmarks.blind.folder import Answers, drawn, numbers, read_answers, read_secret, write
 from benchmarks.blind.marks import compared, marked_table, outcomes
@@ -77,11 +77,11 @@ def answers_by(name: str, options: argparse.Namespace, looked: list[Look], sound
     """In the order of the sessions."""
     if name == OURS:
         return [look[name] for look in looked]
-    told: list[list[str]] = [[] for _ in looked]
-    if ENTRANTS[name].is_told:
-        told = causes_told(read_secret(options.secret or secret_of(options.folder), options.folder), looked, name)
+    acting: list[list[str]] = [[] for _ in looked]
+    if ENTRANTS[name].is_given_cause:
+        acting = causes_given(read_secret(options.secret or secret_of(options.folder), options.folder), looked, name)
     threshold = Threshold.of(name, sound)
-    return [threshold.answer(look[name], causes) for look, causes in zip(looked, told, strict=True)]
+    return [threshold.answer(look[name], causes) for look, causes in zip(looked, acting, strict=True)]
 
 
 def mark(options: argparse.Namespace) -> str:

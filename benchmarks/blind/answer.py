@@ -80,26 +80,30 @@ class Threshold:
 
     @classmethod
     def of(cls, name: str, sound: Sequence[Look]) -> "Threshold":
-        """That `ALARMS` of sound sessions pass; of a rival that is told the cause, of all causes in all of them."""
+        """That `ALARMS` of sound sessions pass; of a rival that is given the cause, of all causes in all of them."""
         entrant = ENTRANTS[name]
         values = [[claim[0] for claim in look[name]["claims"]] for look in sound]
-        each = [s for own in values for s in own] if entrant.is_told else [max(own, default=-np.inf) for own in values]
+        each = (
+            [s for own in values for s in own]
+            if entrant.is_given_cause
+            else [max(own, default=-np.inf) for own in values]
+        )
         return cls(entrant, float(np.quantile(each, 1 - ALARMS, method="higher")))
 
-    def answer(self, look: Mapping[str, Any], told: Sequence[str]) -> dict[str, Any]:
-        """``told``: the causes that act, for the rival that knows them."""
+    def answer(self, look: Mapping[str, Any], acting: Sequence[str]) -> dict[str, Any]:
+        """``acting``: the causes that act, for the rival that knows them."""
         claims = [Claim(*claim) for claim in look["claims"]]
-        if self.entrant.is_told:
-            claims = [claim for claim in claims if claim.finding and claim.finding["cause"] in told]
+        if self.entrant.is_given_cause:
+            claims = [claim for claim in claims if claim.finding and claim.finding["cause"] in acting]
         passed = [claim.finding for claim in claims if claim.statistic > self.level]
         return {"findings": [*look["record"], *filter(None, passed)], "unexplained": None in passed}
 
 
-def causes_told(secret: Secret, looked: Sequence[Look], name: str) -> list[list[str]]:
+def causes_given(secret: Secret, looked: Sequence[Look], name: str) -> list[list[str]]:
     """The causes that act in every session; where none of the catalogue's does, one of those looked for, in turn."""
-    told = []
+    acting = []
     for k, ((_, case), look) in enumerate(zip(secret.cases(), looked, strict=True)):
         known = [claim[1]["cause"] for claim in look[name]["claims"]]
         acts = [truth.effect.cause for truth in case.truths] if case.kind != "outside" else []
-        told.append(acts or known[k % max(len(known), 1) :][:1])
-    return told
+        acting.append(acts or known[k % max(len(known), 1) :][:1])
+    return acting

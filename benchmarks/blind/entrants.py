@@ -21,8 +21,8 @@ class Entrant:
     """Claims, the surest name first; a session that it cannot judge has none."""
     puts_right: bool = True
     """Whether the diagnosis's first step, which puts the record right, goes before it and is part of its answer."""
-    is_told: bool = False
-    """Whether it is told the cause that acts."""
+    is_given_cause: bool = False
+    """Whether it is given the cause that acts."""
 
 
 ENTRANTS: Mapping[str, Entrant] = {
@@ -34,5 +34,5 @@ ENTRANTS: Mapping[str, Entrant] = {
     "sprt": Entrant("SPRT of each parameter over the history", sprt, puts_right=False),
     "neural": Entrant("neural posterior, learned from simulated sessions", neural),
     "bayes": Entrant("limit: exhaustive Bayes with the generator's prior", bayes),
-    "given-cause": Entrant("limit: matched subspace that is told the cause", given_cause, is_told=True),
+    "given-cause": Entrant("limit: matched subspace that is given the cause", given_cause, is_given_cause=True),
 }

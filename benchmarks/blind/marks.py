@@ -13,7 +13,7 @@ from tests.blind.score import Outcome, score
 SILENT: dict[str, Any] = {"findings": [], "unexplained": False}
 """Of a session without an answer."""
 NAMED = "one effect, separated from every rival: cause named"
-NEAR = "one effect, near a rival: named, or cannot tell and lists it"
+NEAR = "one effect, near a rival: named, or listed where it is not sure"
 WRONG = "one effect: a wrong name without the right one beside it"
 SOUND = "sound session: something named"
 TWO = "two effects: both named, or listed beside the first name"

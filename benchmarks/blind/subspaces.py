@@ -67,7 +67,7 @@ def bayes(given: Given) -> list[Claim]:
 
 
 def given_cause(given: Given) -> list[Claim]:
-    """The best of each cause, for somebody who is told which one acts, the surest first; noise, by each sensor's χ²."""
+    """The best of each cause, for somebody who knows which one acts, the surest first; noise, by each sensor's χ²."""
     state = given.state
     seen = scores(state.residuals, state.traces, state.attributed())
     sure, cause = surprise(state, seen), causes_of(state, seen)

@@ -1,4 +1,4 @@
-"""Flags over HTTP, and the webhooks of programs that are told of them."""
+"""Flags over HTTP, and the webhooks of programs that hear of them."""
 
 from dataclasses import replace
 from typing import Annotated

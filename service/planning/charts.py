@@ -85,14 +85,14 @@ def _spec(across: str) -> Json:
     colour = alt.Color("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=COLOURS))
     dash = alt.StrokeDash("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=DASHES))
     base = alt.Chart(points).encode(x=x, y=y, color=colour)
-    told = hints({"x:Q": across, "y:Q": "value", "series:N": "part"})
+    shown = hints({"x:Q": across, "y:Q": "value", "series:N": "part"})
     return specification(
         [
             alt.Chart(chosen).mark_rule(color="var(--ink)", strokeDash=[2, 2]).encode(x="x:Q"),
             base.mark_line(strokeWidth=1.5).encode(strokeDash=dash),
             base.transform_filter("datum.series != 'tolerance'")
             .mark_point(filled=True, opacity=1, size=20)
-            .encode(tooltip=told),
+            .encode(tooltip=shown),
         ],
         HEIGHT,
     )
@@ -131,11 +131,11 @@ def _drift_spec() -> Json:
     points, limits = (alt.NamedData(name=name) for name in (DATA_FORM, "allowed"))
     x = alt.X("x:Q", title="minutes", axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
     y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=False))
-    told = hints({"x:Q": "minutes", "y:Q": "change"})
+    shown = hints({"x:Q": "minutes", "y:Q": "change"})
     line = alt.Chart(limits).mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y=y)
     dots = (
         alt.Chart(points)
         .mark_point(filled=True, opacity=1, size=14, color="var(--accent)")
-        .encode(x=x, y=y, tooltip=told)
+        .encode(x=x, y=y, tooltip=shown)
     )
     return specification([line, dots], READINESS_HEIGHT)

@@ -92,7 +92,7 @@ def specification(layers: "list[alt.Chart]", height: int) -> Json:
 
 
 def hints(titles: Mapping[str, str]) -> "list[alt.Tooltip]":
-    """What pointing at a mark tells: fields with their titles."""
+    """What pointing at a mark shows: fields with their titles."""
     return [alt.Tooltip(field, title=title) for field, title in titles.items()]
 
 

@@ -96,7 +96,7 @@ def test_one_in_a_hundred_sound_sessions_passes() -> None:
     assert 0.005 <= np.mean([bool(a["findings"]) for a in passing]) <= ALARMS
 
 
-def test_who_is_told_the_cause_names_no_other() -> None:
+def test_who_is_given_cause_the_cause_names_no_other() -> None:
     threshold = Threshold.of("given-cause", [claiming([0.0, 1.0])])
     look = claiming([5.0])["given-cause"]
     assert threshold.answer(look, ["bias-ramp"])["findings"] == [{"cause": "bias-ramp"}]

@@ -7,8 +7,8 @@ warms moves scale factors and axes too.
 Theory
 ------
 With h(t; ψ) the course and β_i its sizes, a session finds b_i + o_i of a zero, o_i = β_i·mean h. Where h → 0, as after
-switching on, b_i is what other sessions find; else o_i is as large as what is seen of it. Time constant and sizes that
-one session tells hold for others, where these say when the unit was switched on. Real courses are not quite of their
+switching on, b_i is what other sessions find; else o_i is as large as what is seen of it. Time constant and sizes
+found in one session hold for others, where these say when the unit was switched on. Real courses are not quite of their
 formula, and boards not quite of one course: b_i repeats up to a share f ≤ 1 of o_i; scale factor, square term and axis
 up to a spread s, of all sensors of a kind. With δ_i ± σ_i the difference of two sessions whose own courses are left
 free,
@@ -64,7 +64,7 @@ class Settling:
         return found
 
     def holds_in(self, setting: Setting) -> bool:
-        """Whether it tells how far another session had settled."""
+        """Whether it shows how far another session had settled."""
         return self.cause.since_power_on and setting.switched_on is not None and self.cause.available(setting)
 
     def left_free(self, session: Baseline) -> Baseline:
@@ -111,8 +111,8 @@ class Comparable:
     @classmethod
     def of(cls, session: Baseline, own: Settling | None, known: Sequence[Settling]) -> "Comparable":
         """With its ``own`` course and all that are ``known`` of the unit."""
-        tell = [c.offset(session.setting) for c in known if c is own or c.holds_in(session.setting)]
-        reach = np.max([np.zeros(len(session.unstated)), *tell], axis=0)
+        offsets = [c.offset(session.setting) for c in known if c is own or c.holds_in(session.setting)]
+        reach = np.max([np.zeros(len(session.unstated)), *offsets], axis=0)
         return cls(session if own is None else own.left_free(session), reach, own is not None)
 
     def opened(self, session: Baseline, settled: "Comparable") -> Baseline:
