@@ -72,7 +72,7 @@ def kind_of(shape: tuple[float, ...]) -> int:
 
 
 def leading(covariance: Array) -> Array:
-    """(R, w) dimensionless: the strongest waves of a covariance (R, R) about its mean."""
+    """(R, w) dimensionless: the strongest waves of a covariance (R, R) about its mean, all beginning below it."""
     about = covariance - covariance.mean(axis=0) - covariance.mean(axis=1)[:, None] + covariance.mean()
     size, wave = eigh(about * len(about) / np.trace(about))
-    return np.asarray(wave[:, -WAVES:] * np.sqrt(np.maximum(size[-WAVES:], 0.0)))
+    return np.asarray(wave[:, -WAVES:] * -np.sign(wave[0, -WAVES:]) * np.sqrt(np.maximum(size[-WAVES:], 0.0)))

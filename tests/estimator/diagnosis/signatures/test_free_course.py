@@ -37,7 +37,7 @@ def test_noise_has_none() -> None:
 
 def test_courses_of_each_its_own_are_not_one() -> None:
     rng = np.random.default_rng(5)
-    own = walking_rate(ROWS) @ rng.standard_normal((WAVES, SENSORS)) * 5
+    own = walking_rate(ROWS) @ rng.standard_normal((WAVES, SENSORS)) * 20
     z = (own - own.mean(axis=0)).ravel() + rng.standard_normal(ROWS * SENSORS)
     found = FreeCourse.of(traces(walking_rate(ROWS)), z, SENSORS)
     left = z - traces(walking_rate(ROWS)) @ np.outer(found.sizes, found.waves).ravel()
