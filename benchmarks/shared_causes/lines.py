@@ -20,10 +20,7 @@ TITLES = {
 RESTS = "block, tilt"
 """Head of the table of `benchmarks.rests`."""
 WHY = {
-    "kth exp_1": "Its gyros settle with several time constants: beside one exponential for all, some scatter more than "
-    "stated, and biases that wander each by itself are as likely.",
-    "kth exp_6: held": "A1z, A3z, A4z and G8x stay off by about twice their standard errors: one exponential is "
-    "nearly, not wholly, their course.",
+    "kth exp_1": "Its gyros settle with several time constants: some follow one, others have names of their own.",
     "one shared course": "Slow rooms and ramps: biases that wander each by itself are about as likely.",
     "the same, where an oracle": "The same; the oracle knows the course and lacks only the sizes.",
     "the same: one time constant": "Time constants that happen to lie close together.",
@@ -33,7 +30,7 @@ WHY = {
     "cannot be separated from theirs within the rests.",
     "95 % intervals": "Slow flicker within the rests, whose spectrum three sensors hardly determine.",
     "the course and that sensor": "What a zero settles to is hardly known while it settles: its sensor seems to depart "
-    "from the course, by a time constant of its own, or to have changed no more than its course leaves open.",
+    "from the course, by a time constant or a ramp of its own.",
     "these called changed": "A zero that changed before the session looks like one that jumps or settles in its first "
     "rows: one name comes first, the other is listed beside it.",
     "times noisier": "A pattern or a smooth course is about as likely as noise in twenty-four rows.",

@@ -34,7 +34,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.selection.acceptance import accepted
 from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.selection.settling import settling, settling_in, with_open_change
+from estimator.diagnosis.selection.settling import beside_history, settling, settling_in, with_open_change
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.turntable import diagnose_alignment
 from estimator.session import ROTATION_ALIGNMENT, CalibrationSession
@@ -154,5 +154,8 @@ def initial_state(right: Baseline, history: Sequence[Baseline], catalogue: Seque
     if not history:
         return begin(baseline, earlier, catalogue)
     own, known = settling_in(baseline, tuple(catalogue)), settling(about_their_flips(list(history)), tuple(catalogue))
+    if own is not None:
+        own = beside_history(own, *own.beside(right.session, history), tuple(catalogue))
+        baseline, earlier = own.beside(right.session, history)
     state = begin(*with_open_change(baseline, earlier, [own, *known]), catalogue)
     return replace(state, apart=own is None)

@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
+from estimator.diagnosis.residuals.fitted import readings_without
 from estimator.diagnosis.residuals.turns import turned_baseline, turned_session
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import Detection, SearchState
@@ -21,7 +22,7 @@ from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.least_squares import FAINT, FLAT, least_squares, orthonormal
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.rotations import turn_of
-from estimator.session import ACCELEROMETER, Array, CalibrationSession
+from estimator.session import Array, CalibrationSession
 
 RIDGE = 1e-12
 """Added to the correlation matrix of the traces, so that two equal ones (lasting and new) can be fitted together."""
@@ -81,11 +82,7 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
         for f, part in zip(state.detections, fitted.slices, strict=True)
         if not (f.best.cause.moves_parameters or f.best.cause.turns_block or f.best.cause.turns_flipped_run)
     ]
-    readings = session.readings
-    if inside:
-        pulsed = np.array([s.kind != ACCELEROMETER for s in session.sensors])
-        period = np.where(pulsed, session.count_time or 1.0, 1.0)
-        readings = readings - np.sum(inside, axis=0) * p.scale * period
+    readings = readings_without(session, p.scale, np.sum(inside, axis=0)) if inside else session.readings
     return replace(session, readings=readings, standard_errors=true_errors(state))
 
 

@@ -135,6 +135,8 @@ class Baseline:
     """(3,) rotation vector, rad, of an earlier session: it was turned by this into the frame of the one diagnosed."""
     sits_otherwise: bool = False
     """Whether the block sat otherwise than in the latest earlier session, so that its frame shows no common turn."""
+    course: Array | None = None
+    """(R, m) an effect beside which it was fitted, m/s² (rad/s); it is in the residuals. None where there is none."""
     unsettled: Array | None = None
     """(m, 5) dimensionless: one sigma by which parameters may lie off those of the unit's settled sessions."""
 

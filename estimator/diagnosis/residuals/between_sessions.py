@@ -14,7 +14,7 @@ import numpy as np
 from estimator.arrays import eigh
 from estimator.causes.fixture import turned
 from estimator.diagnosis.residuals.baseline import Baseline, observable_directions, turn_response
-from estimator.diagnosis.residuals.flipped_run import flip_effect
+from estimator.diagnosis.residuals.refitted import fitted_about
 from estimator.diagnosis.residuals.whitened import (
     EarlierSession,
     ParameterChange,
@@ -84,22 +84,23 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
     covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
     shares = [observable @ covariance @ part @ observable.T for part in information]
     whiten = observable @ inverse_root(covariance + observable.T @ now.covariance_between @ observable) @ observable.T
-    steps = [step + map @ effect_of_turns(h) for h, step, map in zip(alike, steps, maps, strict=True)]
+    steps = [step + map @ effect_left_out(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
     earlier = tuple(
         EarlierSession(WhitenedResiduals.of(h), share @ map, replace(h.setting, parameters=p))
         for h, share, map in zip(alike, shares, maps, strict=True)
     )
-    return ParameterChange(whiten @ (effect_of_turns(now) - step), whiten, earlier)
+    return ParameterChange(whiten @ (effect_left_out(now) - step), whiten, earlier)
 
 
-def effect_of_turns(baseline: Baseline) -> Array:
-    """(P,) dimensionless: what the turns that a baseline is linear about would make of its parameters if left in."""
+def effect_left_out(baseline: Baseline) -> Array:
+    """(P,) dimensionless: what the turns and the course that a baseline is linear about would make of its parameters if
+    left in."""
     setting = baseline.setting
-    if not (setting.turn.any() or setting.flip_turn.any()):
+    if not (setting.turn.any() or setting.flip_turn.any() or baseline.course is not None):
         return np.zeros(5 * len(setting.kinds))
     residuals = WhitenedResiduals.of(baseline)
-    columns = setting.through(turned(setting.n)) @ setting.turn + flip_effect(setting)
+    columns = setting.through(turned(setting.n)) @ setting.turn + fitted_about(baseline)
     return residuals.response @ residuals.whitened(columns[..., None])[:, 0]
 
 

@@ -39,6 +39,12 @@ def baseline_of(session: CalibrationSession, start: SensorParameters | None = No
     return on_stand(session, start) if session.programme == TWO_AXIS_STAND else in_orientations(session)
 
 
+def readings_without(session: CalibrationSession, scale: Array, effect: Array) -> Array:
+    """(R, m) the readings of a session without an ``effect`` (R, m) at the input, m/s² (rad/s), with ``scale`` (m,)."""
+    pulsed = np.array([s.kind != ACCELEROMETER for s in session.sensors])
+    return session.readings - effect * scale * np.where(pulsed, session.count_time or 1.0, 1.0)
+
+
 def unstated_noise(session: CalibrationSession) -> Array:
     """(m,) bool, no unit: sensors for which the file states no standard errors."""
     return np.asarray(np.isnan(session.standard_errors).any(axis=0))

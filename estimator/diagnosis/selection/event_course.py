@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.arrays import eigh
-from estimator.causes.contract import Shape
+from estimator.causes.contract import SensorCause, Shape
 from estimator.causes.shared import KINDS, SharedCourse, of_kind
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.selection.shared_shape import at_its_best
 from estimator.diagnosis.signatures.free_course import FreeCourse
+from estimator.diagnosis.signatures.lasting import lengths
 from estimator.diagnosis.signatures.products import Products
-from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
+from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces, sensors_of
 from estimator.diagnosis.signatures.wandering import wanderings
 from estimator.session import Array
 
@@ -46,14 +48,33 @@ class EventCourse:
         """Those of some numbers."""
         return replace(self, numbers=tuple(numbers))
 
-    def with_others(self, numbers: Sequence[int]) -> "EventCourse":
-        """Those and some others of the same cause."""
-        return self.of([*self.numbers, *numbers])
-
     def scored(self, k: int) -> Scored:
         """The shape of one number, still to be scored."""
         shape, trace = self.traces.whole(k)
-        return Scored(self.traces.cause, shape, self.traces.lasting[k], trace, 0.0, 0, 0.0, 1.0, 1)
+        return Scored(self.traces.cause, shape, self.traces.lasting[k], trace, 0.0, 0, 0.0, 1.0, 1, shared=True)
+
+
+def between_tried(residuals: WhitenedResiduals, course: EventCourse, beside: Array) -> EventCourse:
+    """A course at the nonlinear parameter, near the one that it has, that its sensors show best ``beside`` (n, f)
+    orthonormal traces; its traces hold those that were tried too."""
+    traces, cause = course.traces, course.traces.cause
+    assert isinstance(cause, SensorCause)
+    known, lasting = traces.shapes[course.numbers[0]], traces.lasting[course.numbers[0]]
+    shapes, columns = at_its_best(residuals, cause, course.sensors, known, beside, lasting=lasting)
+    if not shapes:
+        return course
+    every, trace = (*traces.shapes, *shapes), np.concatenate([traces.columns, columns.T[..., None]])
+    raw = lengths(residuals.whitened(np.concatenate([shape.columns for shape in shapes], axis=-1)))
+    both = replace(
+        traces,
+        shapes=every,
+        lasting=(*traces.lasting, *(lasting for _ in shapes)),
+        sensor=sensors_of(every),
+        columns=trace,
+        raw=np.concatenate([traces.raw, raw[:, None]]),
+        products=Products.of(residuals, trace),
+    )
+    return replace(course, traces=both, numbers=tuple(range(len(traces.shapes), len(every))))
 
 
 def courses(residuals: WhitenedResiduals, traces: Traces) -> list[EventCourse]:
@@ -92,15 +113,20 @@ def free_course(start: SearchState, kind: int, waves: Array) -> list[EventCourse
     return [replace(course, tried=len(KINDS) * found.tried) for course in courses(residuals, traces)]
 
 
-def energies(residuals: WhitenedResiduals, every: Sequence[EventCourse]) -> tuple[Array, Array]:
-    """(C,) T and (C,) int its degrees of freedom of courses, each with a size of every sensor."""
-    pairs = [energy_of(residuals, course) for course in every]
+def energies(
+    residuals: WhitenedResiduals, every: Sequence[EventCourse], beside: Array | None = None
+) -> tuple[Array, Array]:
+    """(C,) T and (C,) int its degrees of freedom of courses, each with a size of every sensor, ``beside`` (n, f)
+    orthonormal traces of something else."""
+    pairs = [energy_of(residuals, course, beside) for course in every]
     return np.array([energy for energy, _ in pairs]), np.array([freedom for _, freedom in pairs])
 
 
-def energy_of(residuals: WhitenedResiduals, course: EventCourse) -> tuple[float, int]:
+def energy_of(residuals: WhitenedResiduals, course: EventCourse, beside: Array | None = None) -> tuple[float, int]:
     """T and its degrees of freedom of one course."""
     unit = unit_traces(course)
+    if beside is not None:
+        unit = unit - beside @ (beside.T @ unit)
     size, turn = eigh(unit.T @ unit)
     independent = size > OVERLAP
     along = (turn.T @ (unit.T @ residuals.z))[independent]

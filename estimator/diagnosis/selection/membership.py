@@ -26,7 +26,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import gammaln, logsumexp
+from scipy.special import gammaln
 
 from estimator.session import Array
 
@@ -110,8 +110,8 @@ class Loadings:
         change = 0.5 * ahead**2 / np.maximum(spread, 1e-12) - 0.5 * np.log(SIZES[:, None] * np.maximum(spread, 1e-12))
         own = np.diagonal(P, axis1=1, axis2=2)
         change[:, inside] = -0.5 * (P @ y) ** 2 / own + 0.5 * np.log(SIZES[:, None] / own)
-        mean = logsumexp(of_set[:, None] + change, axis=0) - np.log(len(SIZES))
-        return np.asarray(mean), float(logsumexp(of_set) - np.log(len(SIZES)))
+        mean = np.logaddexp.reduce(of_set[:, None] + change, axis=0) - np.log(len(SIZES))
+        return np.asarray(mean), float(np.logaddexp.reduce(of_set) - np.log(len(SIZES)))
 
     def log_prior(self, chosen: set[int]) -> float:
         """ln p(k) of a set; 0 of none, which is what all are held against."""

@@ -39,7 +39,8 @@ def strongest(state: SearchState, traces: Sequence[Traces], without: Detection |
         traces = [t.at(without.best.sensors) for t in traces]
     closed = {s.sensor for s in state.autocorrelated if s.plain}
     given = scores_given(state, traces, without)
-    order = [(k, e) for k, e in given.ranked() if given.sensor[k] not in closed and given.group(k) not in state.refuted]
+    had = state.refuted | {f.best.group for f in state.detections if f.event and f is not without}
+    order = [(k, e) for k, e in given.ranked() if given.sensor[k] not in closed and given.group(k) not in had]
     for best in (given.scored(k) for k, _ in order[:TRIED]):
         p_family = family_p_value(best, families)
         if p_family < level:

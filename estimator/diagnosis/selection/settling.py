@@ -10,38 +10,52 @@ With h(t; ψ) the course and β_i its sizes, a session finds b_i + o_i of a zero
 switching on, b_i is what other sessions find; else o_i is as large as what is seen of it. Time constant and sizes
 found in one session hold for others, where these say when the unit was switched on. Real courses are not quite of their
 formula, and boards not quite of one course: b_i repeats up to a share f ≤ 1 of o_i; scale factor, square term and axis
-up to a spread s, of all sensors of a kind. With δ_i ± σ_i the difference of two sessions whose own courses are left
-free,
+up to a spread s, of all sensors of a kind. With d (5m,) the difference of the parameters of two sessions whose own
+courses are left free, and C its covariance, which is far from diagonal (a course is much like a scale factor or a turn
+where the head turns with time),
 
-    δ_i²/(σ_i² + f²o_i²)    and    δ_i²/(σ_i² + s²)
+    d ~ N(0, C + V),   V = diag(f²o_i²) of zeros and diag(s²) of the others
 
-have the median of χ²₁ over the sensors, so that one that changed for good does not widen them: it stands out.
+and f² and each s² are the likeliest, by steps v ← v·√(d'Q P Q d / tr(Q P)), Q = (C + V)⁻¹, P the place of each. A turn
+or a scale that all sensors of a kind have in common is no part of it. One sensor that changed for good would pass for a
+wide V: those that the others make out to have changed are left out.
+
+Time constant and sizes are those of the session's rows and its history together: a zero that is known beforehand is
+where its course ends. A course of hundreds of standard errors also moves a fit by more than is linear, so the session
+is fitted with the course taken off, which is then put back as the effect that it is.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtri
 
 from estimator.causes.contract import Cause, SensorCause, Setting, Shape
 from estimator.content import each_remembered
-from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.between_sessions import deviation
+from estimator.diagnosis.residuals.baseline import Baseline, turn_response
+from estimator.diagnosis.residuals.between_sessions import parameter_change
+from estimator.diagnosis.residuals.common_start import baselines
+from estimator.diagnosis.residuals.fitted import baseline_of, readings_without
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.shared_event import shared_event
+from estimator.diagnosis.selection.shared_event import shared_event, significant_course
 from estimator.diagnosis.selection.start import begin
+from estimator.diagnosis.signatures.traces import Scored
 from estimator.least_squares import FAINT, least_squares
-from estimator.session import Array
+from estimator.session import Array, CalibrationSession
 from estimator.significance import p_value
 
 FITS = 0.01
 """p-value of a session's residuals above which no course is looked for: it fits."""
 NEGLIGIBLE = 0.01
 """Standard errors of a zero that has settled."""
-MEDIAN = float(chdtri(1, 0.5))
-SCALE, SQUARE, AXES = [0], [2], [3, 4]
+CHANGED = 1e-3
+"""p-value of a sensor by the others, any of them, below which it has changed for good."""
+SUSPECTS = 3
+"""Sensors, by either measure, of which it is asked whether they have changed."""
+STEPS = 25
+"""Of the multiples: each brings what is nothing to a half or less."""
+SCALE, ZERO, SQUARE, AXES = [0], [1], [2], [3, 4]
 PARTS = (SCALE, SQUARE, AXES)
 """Parameters that have one spread, by their places; what all scale factors have in common is no part of it."""
 
@@ -62,6 +76,17 @@ class Settling:
         course = self.cause.term(setting, sensors[0], self.shapes[0].nonlinear)[:, 0]
         found[sensors] = np.abs(self.size * (course.mean() if self.cause.since_power_on else np.ptp(course)))
         return found
+
+    def beside(self, session: CalibrationSession, history: Sequence[Baseline]) -> tuple[Baseline, list[Baseline]]:
+        """Its session and the earlier ones as `baselines` fits them, the session without the course, which is put back
+        into what is left: a course of hundreds of standard errors moves a fit by more than is linear."""
+        columns = [shape.columns[..., 0] * size for shape, size in zip(self.shapes, self.size, strict=True)]
+        effect = np.sum(columns, axis=0)
+        scale = baseline_of(session).parameters.scale
+        without = baseline_of(replace(session, readings=readings_without(session, scale, effect)))
+        fitted, earlier = baselines(without, history)
+        whole = replace(fitted.session, readings=session.readings)
+        return replace(fitted, session=whole, residual=fitted.residual + effect, course=effect), earlier
 
     def holds_in(self, setting: Setting) -> bool:
         """Whether it shows how far another session had settled."""
@@ -91,10 +116,28 @@ def settling_in(session: Baseline, catalogue: tuple[Cause, ...]) -> Settling | N
     event = shared_event(begin(session, (), catalogue, patterns=()))
     if not event or not isinstance(event[0].best.cause, SensorCause):
         return None
-    traces = [f.best.trace for f in event]
+    return sized(event[0].best.cause, [f.best for f in event], (), residuals.z)
+
+
+def sized(cause: SensorCause, event: Sequence[Scored], beside: Sequence[Scored], z: Array) -> Settling:
+    """A course with the sizes that residuals z (n,) show ``beside`` something else."""
+    traces = [s.trace for s in (*event, *beside)]
     first = np.cumsum([0, *(t.shape[1] for t in traces[:-1])])
-    size = least_squares(np.concatenate(traces, axis=1), residuals.z, FAINT).value[first]
-    return Settling(event[0].best.cause, tuple(f.best.shape for f in event), size)
+    size = least_squares(np.concatenate(traces, axis=1), z, FAINT).value[first]
+    return Settling(cause, tuple(s.shape for s in event), size[: len(event)])
+
+
+def beside_history(
+    own: Settling, session: Baseline, history: Sequence[Baseline], catalogue: tuple[Cause, ...]
+) -> Settling:
+    """The course of a session as its own rows and its history show it together: what the history knows of a zero is
+    known of where the course ends."""
+    start = begin(session, history, (own.cause, *(c for c in catalogue if c.moves_parameters)), patterns=())
+    found = significant_course(start)
+    if found is None or not {i for shape in own.shapes for i in shape.sensors} <= set(found[0].course.sensors):
+        return own
+    followed, event = found
+    return sized(own.cause, event, followed.changed, start.residuals.z)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,21 +182,88 @@ def with_open_change(
 def variance_between(one: Comparable, other: Comparable) -> Array:
     """(m, 5) dimensionless: of how parameters of two sessions lie apart beyond their noise, each kind by itself."""
     p, setting = one.free.parameters, one.free.setting
-    moved = deviation(p, other.free.parameters, setting.norm)
-    noise = np.diagonal(one.free.covariance + other.free.covariance).reshape(moved.shape)
-    reach, found = np.maximum(one.reach, other.reach) / setting.norm, np.zeros(moved.shape)
-    for kind in set(setting.kinds):
-        own = np.array(setting.kinds) == kind
-        own_reach = own & (reach > NEGLIGIBLE * np.sqrt(noise[:, 1]))
-        if own_reach.any():
-            share = typical(moved[own_reach, 1], noise[own_reach, 1], reach[own_reach])
-            found[own_reach, 1] = min(share, 1.0) * reach[own_reach] ** 2
-        for parts in PARTS if one.moves or other.moves else ():
-            about = moved[own][:, parts] - np.median(moved[own][:, parts]) * (parts == SCALE)
-            found[np.ix_(own, parts)] = typical(about, noise[own][:, parts], 1.0)
+    sigma = np.sqrt(np.diagonal(one.free.covariance + other.free.covariance)).reshape(-1, 5)
+    reach, kinds = np.maximum(one.reach, other.reach) / setting.norm, np.array(setting.kinds)
+    common, parts = [turn_response(p)], list[Array]()
+    for kind in dict.fromkeys(setting.kinds):
+        of_kind = kinds == kind
+        parts.append(at_places(np.where(of_kind & (reach > NEGLIGIBLE * sigma[:, 1]), reach, 0.0), ZERO))
+        parts += [at_places(1.0 * of_kind, places) for places in (PARTS if one.moves or other.moves else ())]
+        common.append(at_places(1.0 * of_kind, SCALE).reshape(-1, 1))
+    change = parameter_change(one.free, [other.free])
+    shown = [part.ravel() / sigma.ravel() for part in parts if part.any()]
+    if change is None or not shown:
+        return np.zeros(sigma.shape)
+    root = change.inverse_root * sigma.ravel()
+    known = Difference(root.T @ root, root.T @ change.deviation)
+    found = spread(known.without(np.concatenate(common, axis=1) / sigma.reshape(-1, 1)), np.array(shown) ** 2)
+    return np.asarray(found.reshape(sigma.shape) * sigma**2)
+
+
+def at_places(value: Array, places: Sequence[int]) -> Array:
+    """(m, 5) of which some places of every sensor have its ``value`` (m,), and the others none."""
+    found = np.zeros((len(value), 5))
+    found[:, places] = value[:, None]
     return found
 
 
-def typical(moved: Array, noise: Array, size: Array | float) -> float:
-    """The variance, in units of ``size`` squared, that changes with the variance ``noise`` have beside it."""
-    return max(float(np.median((moved**2 / MEDIAN - noise) / size**2)), 0.0)
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """What two sessions tell of how the parameters of one lie off those of the other, P of them in standard errors."""
+
+    information: Array
+    """(P, P) of its noise; none along what neither tells."""
+    score: Array
+    """(P,) information times difference."""
+
+    def without(self, directions: Array) -> "Difference":
+        """What is known of the rest where nothing is known along ``directions`` (P, k)."""
+        along = self.information @ directions
+        kept = along @ np.linalg.pinv(directions.T @ along, hermitian=True)
+        return Difference(self.information - kept @ along.T, self.score - kept @ (directions.T @ self.score))
+
+    def beyond(self, variance: Array) -> "Difference":
+        """The same where it varies by a ``variance`` (P,) more."""
+        more = np.eye(len(variance)) + self.information * variance
+        return Difference(np.linalg.solve(more, self.information), np.linalg.solve(more, self.score))
+
+    def multiples(self, parts: Array) -> Array:
+        """(k,) the likeliest of ``parts`` (k, P) of a variance, by steps that only make them likelier (Hunter & Lange,
+        The American Statistician 58, 2004)."""
+        value = 1e4 / parts.max(axis=1)
+        for _ in range(STEPS):
+            beyond = self.beyond(value @ parts)
+            size = parts @ np.diagonal(beyond.information)
+            value = value * np.sqrt(parts @ beyond.score**2 / np.where(size > 0, size, np.inf))
+        return value
+
+    def of_sensors(self) -> Array:
+        """(m,) χ² of every sensor's five parameters, given the others'."""
+        m, score = len(self.score) // 5, self.score.reshape(-1, 5)
+        blocks = self.information.reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)]
+        return np.asarray((score[:, None, :] @ np.linalg.pinv(blocks, hermitian=True) @ score[..., None])[:, 0, 0])
+
+
+def spread(known: Difference, parts: Array) -> Array:
+    """(P,) the likeliest sum of multiples of ``parts`` (k, P) by which parameters vary beyond their noise.
+
+    A sensor that has changed for good by what the others show takes no part.
+    """
+    m, others, left = len(known.score) // 5, known, list(range(len(known.score) // 5))
+    found = known.multiples(parts) @ parts
+    while len(left) > (m + 1) // 2:
+        as_noisy, as_varied = known.of_sensors(), known.beyond(found).of_sensors()
+        suspects = dict.fromkeys(
+            i for each in (as_noisy, as_varied) for i in sorted(left, key=lambda i: -each[i])[:SUSPECTS]
+        )
+        tried = []
+        for i in suspects:
+            rest = others.without(np.eye(5 * m)[:, 5 * i : 5 * i + 5])
+            again = rest.multiples(parts) @ parts
+            tried.append((float(known.beyond(again).of_sensors()[i]), i, rest, again))
+        distance, worst, rest, again = max(tried, key=lambda one: one[0])
+        if p_value(distance, 5) * m > CHANGED:
+            break
+        left.remove(worst)
+        others, found = rest, again
+    return found

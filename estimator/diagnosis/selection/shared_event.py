@@ -10,7 +10,7 @@ the sensors side by side, what the calibration absorbs projected out, and X̂ an
 χ² without the course, with as many degrees of freedom as sensors (the traces of sensors overlap where a row's β error
 or an unknown direction is common to them). Of the n_ψ shapes of every cause those are looked at closely by which most
 sensors, or a few, show most. Which sensors follow is chosen there (`membership.py`), and which of them rather have a
-shape of their own (`shared_shape.py`); then ψ is moved to its best.
+shape of their own or have changed for good (`departing.py`); then ψ is moved to its best.
 
 The course is weighed as one finding against what was found sensor by sensor, against zeros that wander, each by
 itself, beside it or instead of it, and against a block that turned (`wandering.py`).
@@ -18,7 +18,7 @@ Any cause may be shared: those with a sentence for it (`Cause.shared_sentence`) 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,20 +28,20 @@ from estimator.causes.shared import SharedCourse
 from estimator.content import once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER, backward_elimination
+from estimator.diagnosis.selection.departing import Followed, basis_of, without_departing
 from estimator.diagnosis.selection.event_course import (
     OVERLAP,
     EventCourse,
     courses,
     energies,
-    energy_of,
     unit_traces,
     without_formula,
 )
 from estimator.diagnosis.selection.forward import forward_selection, with_structures
-from estimator.diagnosis.selection.membership import SIZES, SURE, CauseMembers, Loadings, counts_of, log_sets
+from estimator.diagnosis.selection.membership import SIZES, SURE, Loadings, counts_of, log_sets
 from estimator.diagnosis.selection.ranking import conditional_log_evidence, extended_basis, scores_given
 from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Detection, SearchState
-from estimator.diagnosis.selection.shared_shape import APART, log_shared, powers, refined_together
+from estimator.diagnosis.selection.shared_shape import refined_together
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import Scored
 from estimator.diagnosis.signatures.wandering import (
@@ -63,22 +63,6 @@ MOST = 1e15
 """Shapes and sets of sensors that are counted: nothing that was chosen among more is believed."""
 RULED_OUT = 20.0
 """ln evidence by which a rival of a course is out of the question: no list shows a share of 1e-9."""
-
-
-@dataclass(frozen=True, eq=False)
-class Followed:
-    """A course with the sensors that follow it."""
-
-    course: EventCourse
-    """Of these sensors alone."""
-    departing: EventCourse
-    """The shapes of sensors that would follow but for one of their own."""
-    sure: frozenset[int]
-    """Sensors that can be named alone."""
-    log_evidence: float
-    """Against no effect, the choice of shape and sensors paid for."""
-    shape_in_doubt: bool
-    """Whether a shape of its own for every sensor may explain as much (`shared_shape.py`)."""
 
 
 def with_shared_event(
@@ -152,8 +136,8 @@ def departures(start: SearchState) -> tuple[Detection, ...]:
     candidate = significant_course(start)
     if candidate is None:
         return ()
-    departing, nothing = candidate[0].departing, np.zeros((len(start.residuals.z), 0))
-    scored = [rescored(start.residuals, departing.scored(k), nothing) for k in departing.numbers]
+    nothing = np.zeros((len(start.residuals.z), 0))
+    scored = [rescored(start.residuals, shape, nothing) for shape in candidate[0].departing]
     return tuple(Detection(s, s.p_value, ()) for s in scored)
 
 
@@ -195,50 +179,6 @@ def likeliest(start: SearchState, near: Sequence[EventCourse]) -> Followed | Non
     return without_departing(start, course, members)
 
 
-def without_departing(start: SearchState, course: EventCourse, members: CauseMembers) -> Followed | None:
-    """A course with its members, but for those that have a shape of their own; None where all fit better apart.
-
-    A shape that is left out would pull what all sensors share of a row: every one found stays beside the others.
-    """
-    every = courses(start.residuals, course.traces)
-    kept, departing = course.of([course.numbers[k] for k in members.chosen]), course.of(())
-    while len(kept.numbers) > 1:
-        others = [other.on(kept.sensors) for other in every if set(kept.sensors) <= set(other.sensors)]
-        apart, own = powers_apart(start, kept, others, unit_traces(departing))
-        gained = [0.5 * float(values.max() - known) for values, known in zip(apart, own, strict=True)]
-        worst = int(np.argmax(gained))
-        if gained[worst] - np.log(course.tried) < FURTHER:
-            break
-        departing = departing.with_others(others[int(np.argmax(apart[worst]))].numbers[worst : worst + 1])
-        kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
-    if len(kept.numbers) < 2:
-        return None
-    together = energies(start.residuals, [other.with_others(departing.numbers) for other in others])[0]
-    shared = energy_of(start.residuals, kept.with_others(departing.numbers))[0]
-    log_one_shape = log_shared(together, shared, apart, own)
-    if log_one_shape < APART:
-        return None
-    sure = {course.sensors[k] for k in members.sure} & set(kept.sensors)
-    in_doubt = len(together) > 1 and log_one_shape < -APART
-    log_evidence = members.log_evidence - float(np.log(course.tried))
-    return Followed(kept, departing, frozenset(sure), log_evidence, in_doubt)
-
-
-def powers_apart(
-    start: SearchState, course: EventCourse, others: Sequence[EventCourse], departing: Array
-) -> tuple[list[Array], list[float]]:
-    """What each sensor of a course explains by its shape in every one of ``others`` beside what the rest of them share
-    and ``departing`` (n, d) traces, and by the one that it shares with them."""
-    shared, every, own = unit_traces(course), list[Array](), list[float]()
-    for k in range(len(course.sensors)):
-        of_sensor = course.traces.columns[[other.numbers[k] for other in others], :, 0].T
-        beside = np.column_stack([np.delete(shared, k, axis=1), departing])
-        values = powers(start.residuals.z, np.column_stack([shared[:, k], of_sensor]), beside)
-        every.append(values[1:])
-        own.append(float(values[0]))
-    return every, own
-
-
 def loadings(start: SearchState, course: EventCourse) -> Loadings:
     """What the sensors show along a course, in the noise that it leaves where none is known."""
     unit, kinds = unit_traces(course), start.baseline.setting.kinds
@@ -271,7 +211,7 @@ def priced(start: SearchState, followed: Followed) -> tuple[Scored, ...]:
     course = followed.course
     strength = np.abs(unit_traces(course).T @ start.residuals.z)
     order = [course.numbers[k] for k in np.argsort(-strength, kind="stable").tolist()]
-    basis, scored = orthonormal(unit_traces(followed.departing), NEW_DIRECTION), list[Scored]()
+    basis, scored = basis_of(start, (*followed.changed, *followed.departing)), list[Scored]()
     for member in refined_together(start.residuals, [course.scored(k) for k in order], basis):
         scored.append(rescored(start.residuals, member, basis))
         basis = extended_basis(basis, scored[-1].trace)
@@ -292,19 +232,19 @@ def has_likelier_rival(start: SearchState, followed: Followed) -> bool:
 
     Zeros that wander are a misfortune more at least, but where a course has no formula or the noise is not known, which
     lets many things pass for a course. Beside zeros that wander a course must be plain. Where most sensors follow it,
-    those that depart from it have their own shapes beside it, each of them a misfortune more.
+    those that depart from it have their own shapes beside it, each of them a misfortune more. What changed since the
+    history did so beside either.
     """
-    course, price = followed.course, float(np.log(places_of(start, followed.course)))
-    departing = followed.departing.numbers
-    if len(departing) < len(course.numbers):
-        price += len(departing) * (FURTHER + float(np.log(course.tried)))
-        course = course.with_others(departing)
-    unit = unit_traces(course)
+    course, departing = followed.course, followed.departing
+    departing = departing if len(departing) < len(course.numbers) else ()
+    price = float(np.log(places_of(start, course))) + len(departing) * (FURTHER + float(np.log(course.tried)))
+    price += sum(change.log_evidence for change in followed.changed)
+    unit = np.column_stack([unit_traces(course), basis_of(start, (*departing, *followed.changed))])
     alone = log_mean(log_marginal(start.residuals, unit, SIZES)) - price
     wandering, beside = log_beside_wandering(start.residuals, unit, SIZES)
     if log_turning(start.residuals, SIZES) > max(alone, beside - price):
         return True
-    has_formula = not isinstance(followed.course.traces.cause, SharedCourse)
+    has_formula = not isinstance(course.traces.cause, SharedCourse)
     margin = FURTHER if has_formula and not start.baseline.unstated.any() else 0.0
     return alone < wandering - margin and beside - price - SURE < wandering
 
@@ -318,7 +258,7 @@ def ranked(start: SearchState, followed: Followed, event: Sequence[Scored]) -> t
     sensors = followed.course.sensors
     power, freedom = sum(s.statistic for s in event), sum(s.freedom for s in event)
     whole = float(bayes_factor(power, freedom)) - float(np.log(followed.course.tried))
-    rivals = shared_rivals(start, event, sensors)
+    rivals = shared_rivals(start, event, sensors, basis_of(start, followed.changed))
     if any(log_evidence > whole for course, log_evidence in rivals if not course.traces.cause.shared_sentence):
         return ()
     rivals = [(course, min(evidence, whole)) for course, evidence in rivals if evidence > whole - RULED_OUT]
@@ -345,9 +285,10 @@ def ranked(start: SearchState, followed: Followed, event: Sequence[Scored]) -> t
 
 
 def shared_rivals(
-    start: SearchState, event: Sequence[Scored], sensors: Sequence[int]
+    start: SearchState, event: Sequence[Scored], sensors: Sequence[int], beside: Array
 ) -> list[tuple[EventCourse, float]]:
-    """Every other cause that all sensors of a course may share, at its best shape, with its ln evidence."""
+    """Every other cause that all sensors of a course may share, at its best shape, with its ln evidence ``beside``
+    (n, f) orthonormal traces."""
     best: dict[str, tuple[EventCourse, float]] = {}
     for traces in start.traces:
         if traces.common or traces.cause.between or traces.nuisance is not None or traces.cause is event[0].cause:
@@ -355,7 +296,7 @@ def shared_rivals(
         every = [c.on(sensors) for c in courses(start.residuals, traces)]
         every = [c for c in every if len(c.numbers) == len(sensors)]
         if every and isinstance(traces.cause, SensorCause):
-            energy, freedom = energies(start.residuals, every)
+            energy, freedom = energies(start.residuals, every, beside)
             values = bayes_factor(energy, freedom) - np.log(len(every))
             k, name = int(np.argmax(values)), traces.cause.identifier
             if name not in best or values[k] > best[name][1]:

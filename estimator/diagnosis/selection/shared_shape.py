@@ -23,13 +23,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.causes.contract import SensorCause, Setting, Shape
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import NEW_DIRECTION
 from estimator.diagnosis.signatures.lasting import absorbed_before
 from estimator.diagnosis.signatures.traces import Scored
+from estimator.diagnosis.signatures.wandering import log_mean
 from estimator.least_squares import FAINT, least_squares, orthonormal
 from estimator.session import Array
 
@@ -57,6 +57,38 @@ def explained(columns: Array, z: Array, attributed: Array) -> float:
     return float(((orthonormal(new, NEW_DIRECTION).T @ z) ** 2).sum())
 
 
+def at_its_best(
+    residuals: WhitenedResiduals,
+    cause: SensorCause,
+    sensors: Sequence[int],
+    known: Shape,
+    attributed: Array,
+    *,
+    lasting: bool,
+) -> tuple[list[Shape], Array]:
+    """The shapes of sensors with the nonlinear parameter near the ``known`` one that explains most beside
+    ``attributed`` (n, f), and their traces (n, k): the top of a parabola through the best that were tried. None where
+    nothing is continuous."""
+
+    def tried(nonlinear: tuple[float, ...]) -> tuple[float, list[Shape], Array]:
+        shapes = at(cause, residuals.baseline.setting, sensors, nonlinear)
+        columns = traces_at(residuals, cause, shapes, lasting=lasting)
+        return explained(columns, residuals.z, attributed), shapes, columns
+
+    near = [shape.nonlinear for shape in cause.neighbours(residuals.baseline.setting, known)]
+    if not near:
+        return [], np.zeros((len(residuals.z), 0))
+    each = [tried(nonlinear) for nonlinear in near]
+    best = int(np.argmax([value for value, _, _ in each]))
+    if 0 < best < len(near) - 1:
+        before, top, after = (each[k][0] for k in (best - 1, best, best + 1))
+        step = 0.5 * (before - after) / min(before - 2 * top + after, -1e-300)
+        ahead, behind = np.log(near[best + 1]), np.log(near[best - 1])
+        between = np.asarray(near[best] * np.exp(step * (ahead - behind) / 2)).tolist()
+        each.append(tried(tuple(between)))
+    return max(each, key=lambda one: one[0])[1:]
+
+
 def refined_together(residuals: WhitenedResiduals, members: Sequence[Scored], attributed: Array) -> list[Scored]:
     """Sensors of a course with their shape moved to its best, its derivative appended to the first one's.
 
@@ -65,13 +97,11 @@ def refined_together(residuals: WhitenedResiduals, members: Sequence[Scored], at
     cause, setting = members[0].cause, residuals.baseline.setting
     assert isinstance(cause, SensorCause)
     sensors, lasting = [s.sensors[0] for s in members], members[0].lasting
-    near = [s.nonlinear for s in cause.neighbours(setting, members[0].shape.first(len(cause.units)))]
-    if not near:
+    shapes, columns = at_its_best(
+        residuals, cause, sensors, members[0].shape.first(len(cause.units)), attributed, lasting=lasting
+    )
+    if not shapes:
         return list(members)
-    tried = [at(cause, setting, sensors, nonlinear) for nonlinear in near]
-    traces = [traces_at(residuals, cause, shapes, lasting=lasting) for shapes in tried]
-    best = int(np.argmax([explained(columns, residuals.z, attributed) for columns in traces]))
-    shapes, columns = tried[best], traces[best]
     each = [
         replace(s, shape=shape, trace=columns[:, k : k + 1])
         for k, (s, shape) in enumerate(zip(members, shapes, strict=True))
@@ -128,9 +158,5 @@ def log_shared(together: Array, shared: float, apart: Sequence[Array], own: Sequ
     every sensor.
     """
     g = max(float(np.mean(own)) - 1.0, 1.0)
-    each = [_log_mean(0.5 * g / (1 + g) * (values - known)) for values, known in zip(apart, own, strict=True)]
-    return _log_mean(0.5 * g / (1 + g) * (together - shared)) - sum(each)
-
-
-def _log_mean(values: Array) -> float:
-    return float(logsumexp(values) - np.log(len(values)))
+    each = [log_mean(0.5 * g / (1 + g) * (values - known)) for values, known in zip(apart, own, strict=True)]
+    return log_mean(0.5 * g / (1 + g) * (together - shared)) - sum(each)

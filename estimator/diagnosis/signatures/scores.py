@@ -45,8 +45,9 @@ ALONE = 1e-4
 catalogue of some forty. What is only seen because the sensor changed since the history is a change, and no such cause.
 """
 
-TOO_FAINT = 4.0
-"""Standard errors that an effect of the size fitted leaves in the session's own rows below which it need not show."""
+CONTRARY = 4.0
+"""Standard errors by which the session's own rows must differ from the size fitted for an effect that they do not show
+by themselves to be ruled out."""
 
 OCCAM = 0.7
 """ln evidence that every amplitude beyond the first costs, a factor of two: it balances simple causes against richer
@@ -155,6 +156,7 @@ class Scores:
             float(self.log_evidence[k]),
             float(self.p_value[k]),
             max(traces.places, 1),
+            traces.shared,
         )
 
     def group(self, k: int) -> Group:
@@ -232,7 +234,9 @@ def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) ->
     columns = scored.trace[None]
     products = Products.of(residuals, columns)
     whence = (scored.lasting,), sensors_of([scored.shape])
-    alone = Traces(scored.cause, (scored.shape,), *whence, columns, raw[None], scored.places, products)
+    alone = Traces(
+        scored.cause, (scored.shape,), *whence, columns, raw[None], scored.places, products, shared=scored.shared
+    )
     again = next(iter(score(residuals, [alone], attributed)), None)
     if again is None:
         return replace(scored, statistic=0.0, log_evidence=-float(np.log(scored.places)), p_value=1.0)
@@ -245,19 +249,21 @@ def is_visible_within(
     """(S,) bool: whether shapes of causes that act within the session show there, and not only in what changed since
     the history.
 
-    ``raw`` (S, q) as in `Traces`, ``sensor`` (S,) int. What is too faint there to show is asked nothing, unless the
-    sensor's change was left open, which explains any change by itself.
+    ``raw`` (S, q) as in `Traces`, ``sensor`` (S,) int. What the session's own rows do not contradict need not show in
+    them, unless the sensor's change was left open, which explains any change by itself.
     """
     if projected.residuals.change is None or not len(sensor):
         return np.ones(len(sensor), dtype=bool)
     parts = fit.products.parts
     within = Products(parts.square[:-1], parts.along[:-1])
     amplitude = np.where(raw > 0, fit.value, 0.0)
-    seen = (amplitude[:, None, :] @ within.whole[0] @ amplitude[..., None])[:, 0, 0]
-    exempt = np.array([t.cause.between or t.cause.nameless for t in traces])
-    exempt |= (raw > 0).all(axis=1) & (seen < TOO_FAINT**2)
-    places = np.array([max(t.places, 1) for t in traces])
     rest = ScoreFit.of(within, amplitude != 0, ALIKE)
+    missing = np.where(raw > 0, amplitude - rest.value, 0.0)
+    contrary = (missing[:, None, :] @ within.whole[0] @ missing[..., None])[:, 0, 0] > CONTRARY**2
+    exempt = np.array([t.cause.between or t.cause.nameless or t.shared for t in traces]) | (
+        (raw > 0).all(axis=1) & ~contrary
+    )
+    places = np.array([max(t.places, 1) for t in traces])
     return np.asarray(exempt | (rest.tested(projected, sensor)[1] * places < ALONE))
 
 

@@ -43,6 +43,8 @@ class Traces:
     """Of the columns, those beside them included, with one another and with the residuals."""
     nuisance: Nuisance | None = None
     """Columns that are no amplitudes of the cause, but left open; None where there are none."""
+    shared: bool = False
+    """Whether they are of a course that several sensors show: that it acts in the session is shown by all of them."""
 
     @property
     def common(self) -> bool:
@@ -97,6 +99,8 @@ class Scored:
     """Of this shape alone."""
     places: int
     """Number of shapes the cause was tried with."""
+    shared: bool = False
+    """As in `Traces`."""
 
     @property
     def sensors(self) -> tuple[int, ...]:

@@ -10,8 +10,8 @@ from estimator.causes.catalogue import CATALOGUE
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.common_start import baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.settling import Settling, settling_in, with_open_change
-from tests.blind.courses import BLOCKS, CHANGED, COLD, Life, draw_life
+from estimator.diagnosis.selection.settling import Difference, Settling, settling_in, spread, with_open_change
+from tests.blind.courses import BLOCKS, BOTH, CHANGED, COLD, Life, draw_life
 from tests.blind.steps import Block
 
 STAND, TWELVE = BLOCKS[0], BLOCKS[2]
@@ -30,17 +30,50 @@ def changed(found: Diagnosis) -> set[str]:
 
 
 @pytest.mark.parametrize("block", [STAND, TWELVE], ids=["stand", "orientations"])
-@pytest.mark.parametrize("kind", [COLD, CHANGED])
+@pytest.mark.parametrize("kind", [COLD, BOTH, CHANGED])
 def test_a_cold_start_is_one_course_and_lasting_changes_are_of_their_sensors(block: Block, kind: str) -> None:
     life = draw_life(block, kind, 15.0, np.random.default_rng((61, 3)))
     found = found_in(life)
     courses = [f for f in found.findings if f.shared is not None]
     assert changed(found) <= set(life.changed)
-    assert bool(changed(found)) == (kind == CHANGED)
-    assert [f.cause for f in courses] == ["warm-up"] * (kind == COLD)
-    assert kind == CHANGED or len(found.findings) == 1
+    assert bool(changed(found)) == (kind != COLD)
+    assert [f.cause for f in courses] == ["warm-up"] * (kind != CHANGED)
+    assert kind == CHANGED or len(found.findings) == 1 + len(life.changed)
     for shared in (f.shared for f in courses if f.shared is not None):
         assert abs(shared.shape["s"] - life.tau) < 4 * shared.shape_sigma["s"]
+
+
+def differing(rng: np.random.Generator, sensors: int, zeros: float) -> Difference:
+    """Two sessions whose noise is much the same in all parameters, and whose zeros vary by so many of its sigmas."""
+    P = 5 * sensors
+    mixed = rng.standard_normal((P, P)) / np.sqrt(P)
+    noise = np.eye(P) + 20 * mixed @ mixed.T
+    moved = rng.multivariate_normal(np.zeros(P), noise)
+    moved[ZERO::5] += zeros * rng.standard_normal(sensors)
+    information = np.linalg.inv(noise)
+    return Difference(information, information @ moved)
+
+
+def places(sensors: int) -> np.ndarray:
+    """(1, P) of the zeros of all sensors."""
+    return np.array([np.tile(np.arange(5) == ZERO, sensors) * 1.0])
+
+
+@pytest.mark.parametrize("zeros", [0.0, 3.0, 30.0])
+def test_how_far_zeros_vary_is_found_in_correlated_noise(zeros: float) -> None:
+    rng = np.random.default_rng(11)
+    found = [float(differing(rng, 12, zeros).multiples(places(12))[0]) for _ in range(40)]
+    assert np.sqrt(np.mean(found)) == pytest.approx(zeros, rel=0.15, abs=1.5)
+
+
+def test_a_sensor_that_changed_for_good_does_not_widen_what_the_others_may() -> None:
+    rng, widest = np.random.default_rng(12), []
+    for _ in range(10):
+        known = differing(rng, 6, 0.0)
+        change = np.zeros(30)
+        change[5 * 3 + ZERO] = 40.0
+        widest.append(spread(Difference(known.information, known.score + known.information @ change), places(6)).max())
+    assert np.median(widest) < 5
 
 
 def openness(session: Baseline) -> float:
