@@ -19,6 +19,7 @@ from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER, penalised_log_evidence
+from estimator.diagnosis.selection.chosen_together import units
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.lack_of_fit import MISFIT
@@ -74,14 +75,15 @@ MOST_LIKELY = 2
 
 
 def drop_overfitted_causes(state: SearchState, held_there: Set[Group]) -> SearchState:
-    """The state without a crowd of names that parity space does not bear out, where none explains half of what they do.
+    """The state without a crowd of names that parity space does not bear out, where none, a course that sensors share
+    being one, explains half of what they do.
 
     ``held_there``: what holds in parity space.
     """
     if not is_overfitted(state):
         return state
     loose = [f for f in state.detections if f.best.group not in held_there]
-    share = [f.best.statistic for f in loose]
+    share = [sum(f.best.statistic for f in unit) for unit in units(loose)]
     if len({f.best.cause.identifier for f in loose}) <= MOST_LIKELY or max(share) > 0.5 * sum(share):
         return state
     detections = tuple(f for f in state.detections if f not in loose)
