@@ -158,9 +158,15 @@ class Comparable:
         reach = np.max([np.zeros(len(session.unstated)), *offsets], axis=0)
         return cls(session if own is None else own.left_free(session), reach, own is not None)
 
+    @property
+    def has_settled(self) -> bool:
+        """Whether no course moves its zeros."""
+        sigma = np.sqrt(np.diagonal(self.free.covariance)[ZERO[0] :: 5]) * self.free.setting.norm
+        return not (self.moves or (self.reach > NEGLIGIBLE * sigma).any())
+
     def opened(self, session: Baseline, settled: "Comparable") -> Baseline:
         """Its ``session`` with how far its parameters may lie off those of one that has settled more."""
-        return replace(session, unsettled=np.sqrt(variance_between(self, settled))) if self.reach.any() else session
+        return session if self.has_settled else replace(session, unsettled=np.sqrt(variance_between(self, settled)))
 
 
 def with_open_change(
@@ -225,7 +231,8 @@ class Difference:
     def beyond(self, variance: Array) -> "Difference":
         """The same where it varies by a ``variance`` (P,) more."""
         more = np.eye(len(variance)) + self.information * variance
-        return Difference(np.linalg.solve(more, self.information), np.linalg.solve(more, self.score))
+        both = np.linalg.solve(more, np.column_stack([self.information, self.score]))
+        return Difference(both[:, :-1], both[:, -1])
 
     def multiples(self, parts: Array) -> Array:
         """(k,) the likeliest of ``parts`` (k, P) of a variance, by steps that only make them likelier (Hunter & Lange,
