@@ -1,4 +1,4 @@
-"""Pieces stay small, no file over 400 lines and no function over 60, and so does the whole (decisions/by-subject.md)."""
+"""Pieces stay small, no file over 400 lines and no function over 60, and so does the whole."""
 
 import ast
 import re
