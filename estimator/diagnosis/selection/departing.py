@@ -33,6 +33,9 @@ from estimator.diagnosis.signatures.traces import Scored
 from estimator.least_squares import orthonormal
 from estimator.session import Array
 
+NEAREST = 3
+"""Sensors whose own shapes, of those tried, gain most, of which these are moved to their best."""
+
 
 @dataclass(frozen=True, eq=False)
 class Followed:
@@ -65,9 +68,11 @@ def without_departing(start: SearchState, course: EventCourse, members: CauseMem
         beside, every = basis_of(start, (*departing, *changed)), courses(start.residuals, kept.traces)
         others = [other.on(kept.sensors) for other in every if set(kept.sensors) <= set(other.sensors)]
         apart, own = powers_apart(start, kept, others, beside)
-        gained = [0.5 * float(values.max() - known) for values, known in zip(apart, own, strict=True)]
-        worst = int(np.argmax(gained))
-        of_shape = gained[worst] - float(np.log(course.tried))
+        if is_between:
+            worst, shape, gained = best_own_shape(start, kept, others, (apart, own), beside)
+        else:
+            gained = 0.5 * max(float(values.max() - known) for values, known in zip(apart, own, strict=True))
+        of_shape = gained - float(np.log(course.tried))
         change, moved, of_change = likeliest_change(start, kept, beside)
         if max(of_shape, of_change) < FURTHER:
             break
@@ -76,9 +81,8 @@ def without_departing(start: SearchState, course: EventCourse, members: CauseMem
         elif of_change > of_shape:
             kept, changed = moved, [*changed, *change]
         else:
-            shape = others[int(np.argmax(apart[worst]))]
-            departing.append(shape.scored(shape.numbers[worst]))
-            kept = kept.of([number for k, number in enumerate(kept.numbers) if k != worst])
+            departing.append(shape.scored(shape.numbers[0]))
+            kept, is_between = kept.of([number for k, number in enumerate(kept.numbers) if k != worst]), False
     if len(kept.numbers) < 2:
         return None
     log_one_shape = log_shared(
@@ -90,6 +94,31 @@ def without_departing(start: SearchState, course: EventCourse, members: CauseMem
     in_doubt = len(others) > 1 and log_one_shape < -APART
     log_evidence = members.log_evidence - float(np.log(course.tried))
     return Followed(kept, tuple(departing), tuple(changed), frozenset(sure), log_evidence, in_doubt)
+
+
+def own_shape(others: Sequence[EventCourse], apart: Sequence[Array], k: int) -> EventCourse:
+    """The shape, of those tried, that the k-th sensor of a course shows best."""
+    course = others[int(np.argmax(apart[k]))]
+    return course.of([course.numbers[k]])
+
+
+def best_own_shape(
+    start: SearchState,
+    kept: EventCourse,
+    others: Sequence[EventCourse],
+    powers_of_each: tuple[Sequence[Array], Sequence[float]],
+    beside: Array,
+) -> tuple[int, EventCourse, float]:
+    """The sensor of a course that a shape of its own, moved to its best too, suits best: its place, that shape, and
+    half of what it explains more; ``powers_of_each`` as `powers_apart` gives them."""
+    apart, own = powers_of_each
+    tried = []
+    for k in np.argsort([known - values.max() for values, known in zip(apart, own, strict=True)])[:NEAREST].tolist():
+        rest = kept.of([number for i, number in enumerate(kept.numbers) if i != k])
+        basis = extended_basis(beside, unit_traces(rest))
+        shape = between_tried(start.residuals, own_shape(others, apart, k), basis)
+        tried.append((k, shape, 0.5 * (energy_of(start.residuals, shape, basis)[0] - own[k])))
+    return max(tried, key=lambda one: one[2])
 
 
 def likeliest_change(
