@@ -149,7 +149,7 @@ def draw_all(page: Page) -> None:
     """
     fetched(page)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    page.wait_for_function(DRAWN, polling=100)
+    expect(page.locator(UNDRAWN)).to_have_count(0, timeout=1000 * LONG)
 
 
 def open_all(page: Page) -> None:
@@ -165,4 +165,8 @@ def fetched(page: Page) -> None:
 
 
 OPEN_ALL = "document.querySelectorAll('details').forEach((one) => { one.open = true; })"
-DRAWN = "[...document.querySelectorAll('.chart:not(.drawn)')].every((c) => c.closest('details:not([open])'))"
+UNDRAWN = (
+    "xpath=//div[contains(concat(' ', @class, ' '), ' chart ')]"
+    "[not(contains(@class, 'drawn') or ancestor::details[not(@open)])]"
+)
+"""A function to wait for is text that the page's own policy does not let run, so a locator waits."""

@@ -1,6 +1,7 @@
 """Every page, wide and narrow: quiet console, only our own requests, nothing wider than the screen."""
 
 import itertools
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.resources import files
@@ -8,9 +9,10 @@ from typing import Any, Literal
 
 import axe_playwright_python
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from tests.end_to_end.browser.conftest import Site, Witness, draw_all, follow, open_all, opened
+from tests.patience import LONG
 
 pytestmark = pytest.mark.browser
 
@@ -266,7 +268,7 @@ def test_a_folded_chart_is_drawn_when_it_comes_near(chromium: Browser, site: Sit
         open_all(page)
         assert not page.evaluate(f"{last}.classList.contains('drawn')")
         page.evaluate(f"{last}.scrollIntoView({{ behavior: 'instant' }})")
-        page.wait_for_function(f"{last}.classList.contains('drawn')", polling=100)
+        expect(page.locator(".chart").last).to_have_class(re.compile("drawn"), timeout=1000 * LONG)
 
 
 def test_every_page_names_its_json_twin(chromium: Browser, site: Site) -> None:
