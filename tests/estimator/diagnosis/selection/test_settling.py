@@ -43,6 +43,16 @@ def test_a_cold_start_is_one_course_and_lasting_changes_are_of_their_sensors(blo
         assert abs(shared.shape["s"] - life.tau) < 4 * shared.shape_sigma["s"]
 
 
+@pytest.mark.parametrize("block", [STAND, TWELVE], ids=["stand", "orientations"])
+@pytest.mark.parametrize("kind", [COLD, BOTH])
+def test_the_same_where_nobody_says_when_it_was_switched_on(block: Block, kind: str) -> None:
+    life = draw_life(block, kind, 15.0, np.random.default_rng((61, 3)))
+    silent = [{k: v for k, v in file.items() if k != "time_since_power_on_s"} for file in life.sessions]
+    found = found_in(replace(life, sessions=tuple(silent)))
+    assert [f.cause for f in found.findings if f.shared is not None] == ["warm-up"]
+    assert changed(found) == set(life.changed)
+
+
 def differing(rng: np.random.Generator, sensors: int, zeros: float) -> Difference:
     """Two sessions whose noise is much the same in all parameters, and whose zeros vary by so many of its sigmas."""
     P = 5 * sensors
