@@ -1,8 +1,9 @@
-# The two commands of the README are `make run` and `make test`; `make setup` is what both share.
+# The two commands of the README are `make run` and `make test`; `make setup` installs what either needs.
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
-STAMP := .venv/.complete
+SERVICE := .venv/.service
+TESTS := .venv/.tests
 DOCS := .venv/.docs
 BENCH := .venv/.bench
 # Sessions are small matrices: several threads of BLAS only get in each other's way.
@@ -15,17 +16,30 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8
 
 .PHONY: setup run test test-all lint format words bench papers study backtest dates stands tails lives fuzz-numbers pictures docs browser lock clean
 
-setup: $(STAMP)
+setup: $(TESTS)
 
-$(STAMP): requirements.lock pyproject.toml
+# uv takes seconds where pip takes minutes; where only pip knows the way to the packages, pip installs them.
+# Compiled now, or the first start would compile everything.
+define install
+$(BIN)/uv pip install --quiet --compile-bytecode --python $(BIN)/python $(1) \
+	|| $(BIN)/pip install --quiet --disable-pip-version-check $(1)
+endef
+
+$(SERVICE): requirements.lock pyproject.toml
 	@test -n "$(PYTHON)" || { echo "imu-health needs Python 3.11 or newer" >&2; exit 1; }
-	@echo "Setting up .venv, once; this takes a minute or two."
-	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements.lock
-	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
-	touch $@
+	@echo "Setting up .venv, once: installing what the service needs, about half a minute."
+	@$(PYTHON) -m venv .venv
+	@$(BIN)/pip install --quiet --disable-pip-version-check --constraint requirements.lock uv
+	@$(call install,-r requirements.lock)
+	@$(call install,--no-deps --no-build-isolation -e .)
+	@touch $@
 
-run: setup
+$(TESTS): $(SERVICE) requirements-test.lock
+	@echo "Installing what the tests need besides, once: another half a minute."
+	@$(call install,-r requirements-test.lock)
+	@touch $@
+
+run: $(SERVICE)
 	@$(BIN)/imu-health serve --demo
 
 browser:
@@ -58,8 +72,8 @@ bench: $(BENCH)
 	$(BIN)/python -m benchmarks $(if $(ONLY),--only $(ONLY))
 
 # A rival is installed for comparison only.
-$(BENCH): $(STAMP) requirements-bench.lock
-	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements-bench.lock
+$(BENCH): $(TESTS) requirements-bench.lock
+	$(call install,-r requirements-bench.lock)
 	touch $@
 
 papers: setup
@@ -101,15 +115,18 @@ pictures: setup browser
 docs: $(DOCS)
 	$(BIN)/python -m docs.site
 
-$(DOCS): $(STAMP) requirements-docs.lock
-	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements-docs.lock
+$(DOCS): $(TESTS) requirements-docs.lock
+	$(call install,-r requirements-docs.lock)
 	touch $@
 
+# Each lock adds to the ones before it.
+COMPILE := $(BIN)/uv pip compile --quiet --upgrade --no-emit-index-url --no-header --no-annotate pyproject.toml
 lock: setup
-	$(BIN)/pip install --quiet uv
-	$(BIN)/uv pip compile --quiet --upgrade --extra test --no-emit-index-url --no-header --no-annotate pyproject.toml -o requirements.lock
-	$(BIN)/uv pip compile --quiet --upgrade --extra docs --constraint requirements.lock --no-emit-index-url --no-header --no-annotate pyproject.toml | grep -vxFf requirements.lock > requirements-docs.lock
-	$(BIN)/uv pip compile --quiet --upgrade --extra bench --constraint requirements.lock --no-emit-index-url --no-header --no-annotate pyproject.toml | grep -vxFf requirements.lock > requirements-bench.lock
+	$(COMPILE) --extra setup --extra logs --extra oidc --extra sign -o requirements.lock
+	$(COMPILE) --constraint requirements.lock --extra test | grep -vxFf requirements.lock > requirements-test.lock
+	mkdir -p build && cat requirements.lock requirements-test.lock > build/both.lock
+	$(COMPILE) --constraint build/both.lock --extra docs | grep -vxFf build/both.lock > requirements-docs.lock
+	$(COMPILE) --constraint build/both.lock --extra bench | grep -vxFf build/both.lock > requirements-bench.lock
 
 clean:
 	rm -rf .venv build dist *.egg-info

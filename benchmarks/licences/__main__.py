@@ -9,8 +9,8 @@ from benchmarks.details import PROJECT, RESULTS
 PAGE = RESULTS / "security" / "licences.md"
 HEAD = """# Dependencies and their licences
 
-Made by `python -m benchmarks.licences` from `requirements.lock` and what the packages say of themselves. The tests' own
-tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
+Made by `python -m benchmarks.licences` from `requirements.lock`, `requirements-test.lock` and what the packages say of
+themselves. What `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
 what `make bench` adds (`requirements-bench.lock`: imucal, pandas and jax) MIT, BSD and Apache.
 
 """
@@ -34,7 +34,8 @@ def licence(name: str) -> str:
 
 def main() -> None:
     """Writes the page."""
-    pinned = re.findall(r"(?m)^([\w.-]+)==", (PROJECT / "requirements.lock").read_text(encoding="utf-8"))
+    locks = [(PROJECT / name).read_text(encoding="utf-8") for name in ("requirements.lock", "requirements-test.lock")]
+    pinned = sorted(name for lock in locks for name in re.findall(r"(?m)^([\w.-]+)==", lock))
     found = defaultdict[str, list[str]](list)
     for name in pinned:
         found[licence(name)].append(name)

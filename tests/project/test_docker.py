@@ -69,6 +69,23 @@ def test_the_image_holds_the_program_and_nothing_that_built_it() -> None:
     assert not [line for line in last_stage(IMAGE) if "pip" in line or "apt" in line]
 
 
+def test_the_image_can_do_what_the_service_can_do_elsewhere() -> None:
+    """Every extra that the service asks for by name where it is missing is installed, and so the lock has it."""
+    sources = [path.read_text("utf-8") for path in (ROOT / "service").rglob("*.py")]
+    asked = {name for text in sources for name in re.findall(r"imu-health\[(\w+)\]", text)} - {"dask"}
+    (installed,) = re.findall(r"'\.\[([\w,]+)\]'", IMAGE)
+    assert asked
+    assert asked <= set(installed.split(","))
+    make = (ROOT / "Makefile").read_text("utf-8")
+    assert all(f"--extra {extra}" in make for extra in installed.split(","))
+
+
+def test_the_image_is_compiled_when_it_is_built() -> None:
+    """It may not write where it runs, so that every process would compile everything anew."""
+    assert "--no-compile" not in IMAGE
+    assert IMAGE.index("PYTHONDONTWRITEBYTECODE") > IMAGE.rindex("FROM ")
+
+
 def test_what_the_image_copies_is_sent_to_the_build() -> None:
     sent = {line[1:] for line in IGNORED if line.startswith("!")}
     taken = {name for line in IMAGE.splitlines() if line.startswith("COPY ") for name in line.split()[1:-1]}
