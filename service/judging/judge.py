@@ -10,15 +10,16 @@ from estimator.health.parity import RULE as PARITY_RULE
 from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
 from estimator.health.temperature_law import NO_STEPS, Steps, at_reference
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.results import Calibration
 from service.judging.calibrate import ReferenceComparison
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
 from service.models.records import MovedParameter, MovedVerdict
-from service.sessions.decision import Decision, Judged, Opening, Verdict
+from service.sessions.decision import Decision, Judged, Opening, Verdict, worst_of
 from service.sessions.records import ParameterValue, StoredSession
 from service.sessions.words.advice import too_few
+from service.sessions.words.motion import beyond_in_words
 from service.types.records import UnitType
 from service.types.rules import tolerances_of
 
@@ -47,12 +48,14 @@ def judge(
     decisions = _decisions(found, RULE, unit_type)
     blind = too_few(calibration)
     first = reference is None and not blind
+    motions = tuple(split.motion for split in splits)
+    together = () if worst_of(decisions) is None else beyond_in_words(motions, coverage_factor)
     return Judged(
         calibration=calibration,
         decisions=decisions,
-        reason=first_in_words(calibration, opening) if first else reason(decisions, blind),
+        reason=first_in_words(calibration, opening) if first else joined(" ", (reason(decisions, blind), *together)),
         is_reference=first,
-        motions=tuple(split.motion for split in splits),
+        motions=motions,
     )
 
 
