@@ -1,6 +1,7 @@
 """Step: a calibrated session → a decision on every parameter, and on the session by the worst of them."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import dist
 
 from estimator.health import ParameterJudgement
@@ -13,6 +14,7 @@ from estimator.health.temperature_law import NO_STEPS, Steps, at_reference
 from estimator.message import joined, say
 from estimator.results import Calibration
 from service.judging.calibrate import ReferenceComparison
+from service.judging.temperature_words import far_from_reference
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
 from service.models.records import MovedParameter, MovedVerdict
@@ -70,15 +72,33 @@ def decisions_of(
     return judge(calibration, reference, unit_type, coverage_factor, steps=steps).decisions
 
 
+FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+"""Verdicts that raise a flag."""
+
+
 @outside_writing
 def judge_recording(
-    moved: Calibration, found: ReferenceComparison, unit_type: UnitType, coverage_factor: float
+    moved: Calibration,
+    found: ReferenceComparison,
+    unit_type: UnitType,
+    coverage_factor: float,
+    celsius: float | None = None,
 ) -> Judged:
-    """Every parameter that parity sees, judged, and the recording by its worst."""
+    """Every parameter that parity sees, judged, and the recording by its worst.
+
+    Far from the temperatures of its calibration, ``celsius``, a change may be temperature's: it decides nothing.
+    """
     tolerances = tolerances_of(unit_type)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
     decisions = _decisions(seen, PARITY_RULE, unit_type)
-    return Judged(moved, decisions, recording_in_words(found.result, decisions), is_reference=False)
+    said, away = recording_in_words(found.result, decisions), far_from_reference(celsius, found.reference.residuals)
+    if away and any(decision.verdict in FAILS for decision in decisions):
+        said = joined(" ", (said, away))
+        decisions = tuple(
+            replace(decision, verdict=Verdict.UNDECIDABLE) if decision.verdict in FAILS else decision
+            for decision in decisions
+        )
+    return Judged(moved, decisions, said, is_reference=False)
 
 
 def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:

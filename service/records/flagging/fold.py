@@ -20,6 +20,7 @@ from service.diagnosis.words.findings import summed_up
 from service.flags.records import Concern, Flag, Matter, NoticeKind
 from service.flags.store import Flags, Notices
 from service.fleet.store import Fleet, Refreshed
+from service.judging.judge import FAILS
 from service.judging.records import FlagEvidence, Key, Moment, SessionEvidence
 from service.judging.store import Derivations
 from service.judging.words import reason, verdict_in_words
@@ -37,8 +38,6 @@ from service.sessions.words.motion import beyond_in_words
 from service.storage.queries import Store
 from service.units.store import Units
 
-FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
-"""Verdicts that raise a flag."""
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
