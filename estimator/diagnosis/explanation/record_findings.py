@@ -24,7 +24,6 @@ from estimator.message import joined, say
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CalibrationSession
 
-
 SCALED = (
     "All scale factors{of_kind} changed together by {change} % since the earlier sessions, more than gravity, latitude "
     "or a clock can do."
@@ -32,7 +31,9 @@ SCALED = (
 ONE_PLACE_ADVICE = (
     "The sessions state one place, where gravity is the same: if it was measured elsewhere, correct the record."
 )
-SCALED_ADVICE = "Check the supply voltage, the converter's reference, the range setting and the temperature, and repeat the session."
+SCALED_ADVICE = (
+    "Check the supply voltage, the converter's reference, the range setting and the temperature; repeat the session."
+)
 
 
 def clip_findings(
