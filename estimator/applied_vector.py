@@ -43,6 +43,33 @@ def gravity(site: Site) -> float:
     return float(normal - 2 * 1.543e-6 * site.height)
 
 
+EARTH = 9.76, 9.84
+"""m/s²: gravity anywhere on the Earth's surface, from 9.764 on a mountain at the equator to 9.834 at sea level in the
+Arctic (Hirt et al. 2013), rounded outwards."""
+ONE_PLACE = 1e-5
+"""Relative: gravity at one place, on any floor of a building of thirty metres. Tides change it by 3e-7."""
+CLOCK = 1e-4
+"""Relative: what an ordinary quartz clock that times counts may be wrong by without anybody's saying so; the Earth's
+rate itself is the same to 1e-8."""
+
+
+def common_factors(kind: str, now: Site | None, before: Site | None) -> tuple[float, float]:
+    """The least and the largest relative change, dimensionless, of all scale factors of a kind of sensor together that
+    the applied vector of two sessions can make.
+
+    Gravity at one place, as stated, is the same. Where two places are stated, or one is not known, an entry may be
+    wrong: then gravity by the one or by the other is any that the Earth has.
+    """
+    if kind != ACCELEROMETER:
+        return -CLOCK, CLOCK
+    if now is None or before is None:
+        return EARTH[0] / EARTH[1] - 1, EARTH[1] / EARTH[0] - 1
+    if now == before:
+        return -ONE_PLACE, ONE_PLACE
+    here, there = gravity(now), gravity(before)
+    return min(EARTH[0] / here, there / EARTH[1]) - 1, max(EARTH[1] / here, there / EARTH[0]) - 1
+
+
 SCHEDULES = 32
 """Schedules whose geometry is remembered, those used last: a laboratory has a few, of some 100 kB each."""
 

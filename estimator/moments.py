@@ -1,4 +1,5 @@
-"""Moments as session files state them: ISO 8601 with an offset from UTC. Everything inside is UTC."""
+"""Moments as session files state them: ISO 8601 with an offset from UTC. Everything inside is UTC, but for the start of
+a session, which keeps its offset: the day in the place where it was measured."""
 
 from datetime import UTC, datetime
 from math import ceil
@@ -14,8 +15,18 @@ def moment(stated: str) -> datetime:
     ValueError : it is no date and time.
     OverflowError : in UTC it lies before the year 1 or after 9999.
     """
+    return local_moment(stated).astimezone(UTC)
+
+
+def local_moment(stated: str) -> datetime:
+    """The same with the offset that is stated; ValueError where it is no date and time."""
     at = datetime.fromisoformat(stated)
-    return (at if at.tzinfo else at.replace(tzinfo=UTC)).astimezone(UTC)
+    return at if at.tzinfo else at.replace(tzinfo=UTC)
+
+
+def as_stated(at: datetime) -> str:
+    """``2026-03-02T08:30:00+13:00``, and Z where the offset is none; ``at`` with an offset."""
+    return at.isoformat() if at.utcoffset() else written(at)
 
 
 def written(at: datetime) -> str:

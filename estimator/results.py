@@ -12,7 +12,7 @@ from estimator.codec import DEGREES, RUN, Document, named
 from estimator.coverage import coverage_factor
 from estimator.curves import ThermalCurves
 from estimator.json_object import Json
-from estimator.session import Array
+from estimator.session import Array, Site
 
 ARCSEC = np.pi / 180 / 3600
 """rad."""
@@ -181,13 +181,13 @@ class Calibration(
     format="imu-calibration/1",
     order=(
         "unit", "method", "sensors", "fit", "gauge", "names", "units", "covariance", "repeatability", "residuals",
-        "parity", "thermal",
+        "site", "parity", "thermal",
     ),
     keys={
         "names": "covariance.names", "units": "covariance.units",
         "covariance": "covariance.total", "repeatability": "covariance.repeatability",
     },
-    optional=("parity", "thermal"),
+    optional=("site", "parity", "thermal"),
 ):  # fmt: skip
     """The calibration of one block: m sensors, P = 5 m parameters with their joint covariance."""
 
@@ -207,6 +207,8 @@ class Calibration(
     residuals: Residuals
     gauge: str
     """What holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all axes)."""
+    site: Site | None = None
+    """Where the session was measured, as stated, SI; None of a result of an earlier version."""
     parity: Json | None = None
     """``imu-parity/1``, where the calibration is a reference moved by what a recording shows."""
     thermal: ThermalCurves | None = None

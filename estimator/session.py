@@ -162,7 +162,7 @@ class CalibrationSession:
     """(R,) consecutive counts in the mean of a row; None where every row is one count."""
     unit_type: str | None = None
     started_at: str | None = None
-    """ISO 8601, in UTC; None when the file does not say."""
+    """ISO 8601, with the offset from UTC of the place; None when the file does not say."""
     switched_on: float | None = None
     """s, by the clock of ``time``: when the unit was switched on; None when the file does not say. Where no time is
     recorded the clock begins with the first row."""

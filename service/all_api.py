@@ -82,7 +82,7 @@ ROUTERS = (
     groups.router, remarks.attachments_router, sessions.router, records.router, papers.router, onboard.router,
     papers.printing_router, diagnoses.router, records.events_router, register.router, units.usable_router,
     papers.labels_router, units.router, unit_types.router, models.router, plans.router, stands.router,
-    uploads.templates_router, uploads.layouts_router, uploads.router, flags.router, people.views_router,
+    uploads.templates_router, uploads.layouts_router, uploads.router, flags.router,
     remarks.router, flags.webhooks_router, feeds.router, due.router, review.router, fleet.router, work.router,
     people.router,
 )  # fmt: skip

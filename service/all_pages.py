@@ -11,7 +11,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from service.diagnosis import pages as diagnoses
 from service.flags import pages as flags
 from service.models import pages as models
-from service.pages import help, routes, saved
+from service.pages import help, routes
 from service.pages.due import pages as due
 from service.pages.review import pages as review
 from service.pages.session import list_pages as sessions
@@ -34,7 +34,7 @@ from service.web.problem_pages import ProblemPages, unexpected_pages
 from service.work import pages as work
 
 PARTS = (
-    routes, due, review, account_pages, admin_pages, papers, diagnoses, flags, saved, layouts, models, records,
+    routes, due, review, account_pages, admin_pages, papers, diagnoses, flags, layouts, models, records,
     remarks, oidc_pages, before_pages, plan_pages, sessions, stands, types, arrivals_pages, help, work,
     assets,
 )  # fmt: skip

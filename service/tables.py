@@ -21,7 +21,6 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
                    └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
 group_diagnoses                                what the sessions of a unit, a unit type or a stand show together
-saved_views                                    lists as people asked for them, under a name
 work                                           what is still to be done in the background, and who is at it
 jobs                                           long work that somebody asked for, and how far it has come
 accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts

@@ -16,12 +16,16 @@ from estimator.diagnosis.explanation.findings import findings, noise_scales, not
 from estimator.diagnosis.explanation.gain import gain
 from estimator.diagnosis.explanation.record_findings import (
     clip_findings,
+    doubted_at_one_place,
     entry_finding,
+    is_beyond_gravity,
     record_error_finding,
+    scale_findings,
     wrong_record,
 )
 from estimator.diagnosis.explanation.temperature import temperatures, with_temperature
 from estimator.diagnosis.record.clipping import Clip, earlier_baseline, unclipped
+from estimator.diagnosis.record.common_scale import CommonScale, is_one_place, on_one_scale
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
 from estimator.diagnosis.record.record_error import RecordError
@@ -76,7 +80,9 @@ class PutRight:
     """What of the record was corrected."""
     right: Baseline
     earlier: tuple[Baseline, ...]
-    """Of the history, oldest first, without clipped readings."""
+    """Of the history, oldest first, without clipped readings, on the scale of the session."""
+    scales: tuple[CommonScale, ...]
+    """What all scale factors did together since, beyond what the applied vector can do."""
 
 
 def put_right(
@@ -88,7 +94,8 @@ def put_right(
     clips, whole = unclipped(rows, catalogue)
     earlier = tuple(earlier_baseline(switched_on_like(h, session), tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
-    return PutRight(rows, tuple(clips), tuple(errors), right, earlier)
+    scales, earlier = on_one_scale(right, earlier, tuple(catalogue))
+    return PutRight(rows, tuple(clips), tuple(errors), right, earlier, scales)
 
 
 def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -> CalibrationSession:
@@ -102,7 +109,19 @@ def switched_on_like(earlier: CalibrationSession, session: CalibrationSession) -
 
 
 def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
-    """What the simulation gets wrong about a session whose record is corrected."""
+    """What the simulation gets wrong about a session whose record is corrected.
+
+    What looks like gravity and cannot be is a factor of all sensors: the history is then brought to their scale.
+    """
+    found = diagnosed_so(session, catalogue)
+    if not any(map(is_beyond_gravity, found.findings)):
+        return found
+    scales, earlier = on_one_scale(session.right, session.earlier, tuple(catalogue), least=0.0)
+    return diagnosed_so(replace(session, scales=scales, earlier=earlier), catalogue) if scales else found
+
+
+def diagnosed_so(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
+    """The same, with the history as it is."""
     rows, right, earlier = session.rows, session.right, session.earlier
     wrong = impossible_axes(right, earlier, catalogue)
     state = initial_state(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
@@ -112,6 +131,9 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     fitted = amplitudes(state)
     new = are_new(state, fitted)
     calibration = extended_calibration(state, fitted)
+    changes = (*scale_findings(session.scales, right.session), *findings(state, fitted, new))
+    if is_one_place(right, earlier):
+        changes = tuple(map(doubted_at_one_place, changes))
     warmth = temperatures(right.session.temperature, [b.session.temperature for b in earlier])
     return Diagnosis(
         unit=right.session.unit,
@@ -119,7 +141,7 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
             *clip_findings(session.clips, rows, state.baseline, calibration),
             *(record_error_finding(e, rows) for e in session.errors),
             *([] if entry is None else [entry_finding(entry)]),
-            *with_temperature(findings(state, fitted, new), warmth),
+            *with_temperature(changes, warmth),
         ),
         structures=(*wrong_record(wrong, right.session), *structures(state)),
         gain=gain(state, baseline_of(rows) if session.clips or session.errors else None, fitted, new),

@@ -27,8 +27,9 @@ likelihood, (Eᵀ·W·y)ᵀ(EᵀWE)⁻¹(EᵀWy) with W = V − VA(AᵀVA)⁻¹A
 sensor has rows), is beyond the level α = 0.1 % over all m sensors (Šidák). A sensor that would do instead of one of
 them nearly as well (χ² higher by less than 2·ln 100) may be the one that moved and is left out too. The sensors that
 remain must be more than half of all; if they are not, nobody can tell who moved: nothing is taken off and every sensor
-is judged on its whole change. Axes of fewer than four sensors, and scales of fewer than three, never tell: of two axes
-that have parted, either may have moved.
+is judged on its whole change. So it is on a common factor beyond what the applied vector can have done to all scales
+(`common_factors`: gravity at one place is the same), at the same level: it is the unit's, or of what reads it. Axes of
+fewer than four sensors, and scales of fewer than three, never tell: of two axes that have parted, either may have moved.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,10 +37,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.applied_vector import common_factors
 from estimator.coverage import known_to
 from estimator.health.changes import AxisPairs, Changes, axis_pairs, scale_changes
 from estimator.health.deviation import Deviation
-from estimator.health.moved import fit, moved
+from estimator.health.moved import LEVEL, fit, moved
 from estimator.health.who_moved import Sets, residuals
 from estimator.results import NOMINAL_AXES, Calibration
 from estimator.rotations import common_turn, left_jacobian, turn_of, vector_of
@@ -47,7 +49,7 @@ from estimator.session import Array
 from estimator.significance import p_value
 
 AXES, SCALES = "axes", "scales"
-SEPARATED, TOO_FEW, UNCLEAR = "separated", "too-few-sensors", "unclear"
+SEPARATED, TOO_FEW, UNCLEAR, BEYOND = "separated", "too-few-sensors", "unclear", "beyond-input"
 SCATTERS = (0.0, 0.025, 0.05, 0.1, 0.2)
 """τ as parts of the tolerance, the least first, because it leaves the smallest drifts out; beyond a fifth a drift of
 the whole tolerance, 4.2 τ at the level, would pass for wander."""
@@ -74,9 +76,10 @@ class CommonMotion:
     quantity: str
     """``axes`` or ``scales``."""
     state: str
-    """``separated``; otherwise nothing was taken off: ``too-few-sensors``, or ``unclear`` which of them moved."""
+    """``separated``; otherwise nothing was taken off: ``too-few-sensors``, ``unclear`` which of them moved, or a common
+    factor that is ``beyond-input``, more than the applied vector can have changed."""
     value: tuple[float, ...]
-    """Rotation vector in block axes, rad (3), or relative change of all scales (1); empty unless separated."""
+    """Rotation vector in block axes, rad (3), or relative change of all scales (1); empty where it is not known."""
     covariance: tuple[tuple[float, ...], ...]
     """Of the value, total, of both sessions."""
     p_value: float | None
@@ -134,7 +137,8 @@ def common_motion(
         if axes is not None:
             splits.append(split_axes(kind, axes, allowed.get((kind, "axis"), 0.0), is_seen=is_framed))
         if scales is not None:
-            splits.append(_split_scales(kind, scales, allowed.get((kind, "scale"), 0.0)))
+            bounds = common_factors(kind, current.site, reference.site)
+            splits.append(_split_scales(kind, scales, allowed.get((kind, "scale"), 0.0), bounds))
     return tuple(splits)
 
 
@@ -179,14 +183,18 @@ def split_axes(kind: str, pairs: AxisPairs, tolerance: float, *, is_seen: bool) 
     return _separated((kind, AXES), agreed, value, slope @ agreed.covariance @ slope.T, is_seen=is_seen)
 
 
-def _split_scales(kind: str, changes: Changes, tolerance: float) -> Split:
-    """The common factor and the rest."""
+def _split_scales(kind: str, changes: Changes, tolerance: float, bounds: tuple[float, float]) -> Split:
+    """The common factor and the rest; ``bounds``: what the applied vector can have changed it by, relative."""
     if not _is_separable(SCALES, changes):
         return Split(_nothing(kind, SCALES, TOO_FEW, changes.names), {})
     agreed = _agreed(changes, tolerance)
     if agreed is None:
         return Split(_nothing(kind, SCALES, UNCLEAR, changes.names), {})
-    return _separated((kind, SCALES), agreed, agreed.value, agreed.covariance, is_seen=True)
+    split = _separated((kind, SCALES), agreed, agreed.value, agreed.covariance, is_seen=True)
+    excess = float(agreed.value[0] - np.clip(agreed.value[0], *bounds)) / split.motion.sigma
+    if p_value(excess**2, 1, known_to(agreed.changes.dof)) >= LEVEL:
+        return split
+    return Split(replace(split.motion, state=BEYOND), {})
 
 
 def _is_separable(quantity: str, changes: Changes) -> bool:

@@ -40,6 +40,7 @@ def parity_calibration(result: ParityResult, reference: Calibration) -> Calibrat
             temperature=None,
         ),
         gauge="parity",
+        site=reference.site,
         parity=result.to_dict(),
     )
 

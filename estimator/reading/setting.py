@@ -6,7 +6,7 @@ from datetime import datetime
 
 import numpy as np
 
-from estimator.moments import DAY, moment, written
+from estimator.moments import DAY, as_stated, moment
 from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import vector
 from estimator.reading.fields import Fields
@@ -92,7 +92,7 @@ def read_mounting(document: Fields) -> Array:
 
 
 def read_moment(document: Fields, key: str) -> str | None:
-    """A moment in UTC, ISO 8601; None when not given."""
+    """A moment with its offset from UTC, ISO 8601; None when not given."""
     text = document.optional_text(key)
     if text is None:
         return None
@@ -106,7 +106,7 @@ def read_moment(document: Fields, key: str) -> str | None:
     elif at.year not in YEARS:
         document.add(key, "is in the year {year}; must be {years}", year=at.year, years=YEARS)
     else:
-        return written(at)
+        return as_stated(at)
     return None
 
 

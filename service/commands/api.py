@@ -1,4 +1,4 @@
-"""Commands that call a running service: records, services, notes, flags, customers, saved views, usability of a unit.
+"""Commands that call a running service: records, services, notes, flags, customers, usability of a unit.
 Each is a row of one table at the end of this file; those that need more than one call are functions."""
 
 import re
@@ -264,16 +264,6 @@ FLAG_CELLS = {
     "where": lambda flag: escape(translated(place_in_words(flag["place"], flag["subject"] or flag["unit"]))),
     "what": lambda flag: escape(translated(f"{flag['summary']} {flag['proposal']}".strip())),
 }
-VIEWS = ListColumns(
-    "views",
-    "No view is saved yet.",
-    {
-        "view": lambda view: str(view["id"]),
-        "page": lambda view: view["page"],
-        "name": lambda view: escape(view["name"]),
-        "address": lambda view: escape(f"{view['server'].rstrip('/')}{view['url']}"),
-    },
-)
 AFFECTED = ListColumns(
     "certificates",
     "No certificate rests on it.",
@@ -362,6 +352,5 @@ COMMANDS: dict[str, Row] = {
         has_json=True,
         is_failure=lambda answer: not answer["usable"],
     ),
-    "views": Call("GET /views", {}, VIEWS),
     "open": open_page,
 }

@@ -43,7 +43,6 @@ flags acknowledge 3 --by "K. Ito" --why "replacement ordered"  # somebody knows 
 flags resolve 3 --by "K. Ito" --why "A3 replaced"  # the matter is settled
 flags assign 3 5 --to "M. Sato" --by "K. Ito"  # given to somebody
 stand-affected ODG-1 --since 2026-01-01  # what to look at again where the stand was found bad
-views  # saved views with their addresses
 models  # what was accepted, newest first
 models accept stand S1 beta-eccentricity --by "K. Ito" --why "encoder looked at"  # every session on it is computed anew
 models show 7  # how far that is, and what moved

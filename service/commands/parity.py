@@ -9,10 +9,12 @@ from rich.table import Table
 from rich.text import Text
 
 from estimator import calibrate
+from estimator.message import joined
 from estimator.parity import ParityAccumulator, ParityResult
 from estimator.parity.results import Sight
 from service.commands.console import AsJson, print_json, screen, usable
 from service.ingest.stream import open_recording, session_in
+from service.judging.temperature_words import far_from_reference
 from service.judging.words import found_in_words
 from service.kit.measures import COVERAGE, in_words
 
@@ -31,15 +33,16 @@ def parity(
     """Judge a recording in service by what the redundant sensors say of one another; no stand needed."""
     if motion not in ("auto", "still", "any"):
         raise typer.BadParameter(f"motion is {motion!r}; choose auto, still or any")
-    result = _result(file, reference, motion, false_alarm)
+    result, away = _result(file, reference, motion, false_alarm)
     if as_json:
         print_json(result.to_dict())
     else:
-        screen().print(parity_view(result))
+        screen().print(parity_view(result, away))
 
 
-def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> ParityResult:
-    """Exit code 2 with one line when either file cannot be used."""
+def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> tuple[ParityResult, str]:
+    """The result, and that it was recorded far from the calibration's temperatures; exit code 2 with one line when
+    either file cannot be used."""
     with usable(reference):
         calibration = calibrate(session_in(reference))
     with usable(file):
@@ -56,11 +59,14 @@ def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> Par
         )
         for chunk in recording.chunks:
             accumulator.add(chunk)
-        return accumulator.result(motion=motion, false_alarm=false_alarm)
+        celsius = None if head.temperature is None else float(head.temperature.mean())
+        away = far_from_reference(celsius, calibration.residuals)
+        return accumulator.result(motion=motion, false_alarm=false_alarm), away
 
 
-def parity_view(result: ParityResult) -> RenderableType:
-    """The finding in a sentence, then every sensor: its apparent change, and the detection limit."""
+def parity_view(result: ParityResult, away: str = "") -> RenderableType:
+    """The finding in a sentence, what temperature leaves of it, then every sensor: its apparent change, and the
+    detection limit."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for heading in ("sensor", "visible", *(f"{name}{part}" for name in PARAMETERS for part in ("", ", seen from"))):
         table.add_column(heading, justify="left" if heading == "sensor" else "right", no_wrap=True)
@@ -68,7 +74,7 @@ def parity_view(result: ParityResult) -> RenderableType:
         cells = [cell for name in PARAMETERS for cell in _cells(result.kind, name, getattr(sensor, name))]
         table.add_row(sensor.name, f"{100 * sensor.visible_share:.0f} %", *cells)
     return Group(
-        Text.assemble((result.unit, "bold"), f": {found_in_words(result)}."),
+        Text.assemble((result.unit, "bold"), joined(" ", filter(None, (f": {found_in_words(result)}.", away)))),
         Text(f"χ² {result.chi2:.1f} of {result.dof} numbers, p = {result.p_value:.3g}; {_used(result)}."),
         table,
     )

@@ -17,11 +17,8 @@ from service.flags.view import ME, FlagsView, active_names, assignee_meant, choi
 from service.flags.view import STATES as CHOICES
 from service.groups.words import place_in_words
 from service.models.records import Scope
-from service.pages.saved import Saved, saved
 from service.people.admission import PersonOf
 from service.people.dependencies import SEE_OTHER, By, Number, OptionalText, StorageOf, Why
-from service.people.view_store import SavedViews
-from service.people.views import ListPage
 from service.queue.store import PendingWork
 from service.queue.words import pending_in_words
 from service.sessions.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
@@ -110,8 +107,6 @@ class FlagsPage:
     """Whose flags can be asked for: what stands in the address, and the name or words."""
     people: tuple[str, ...]
     """Whom a flag can be given to; empty where anybody may be named."""
-    saved: Saved
-    """Views of the list that were kept."""
     pending: str
     """What is still being worked out, and may change the list; empty where nothing is."""
 
@@ -121,7 +116,6 @@ def flags_page(
     view: FlagsView,
     assigned: Mapping[str, str],
     people: Sequence[str],
-    kept: Saved,
     pending: str = "",
 ) -> FlagsPage:
     """One page of open flags."""
@@ -134,7 +128,6 @@ def flags_page(
         states=CHOICES,
         assigned=assigned,
         people=tuple(people),
-        saved=kept,
         pending=pending,
     )
 
@@ -176,10 +169,9 @@ def show_flags(request: Request, store: Reading, person: PersonOf, view: Asking)
     if view.assigned == ME and not person.login:
         view = view.model_copy(update={"assigned": ""})
     found = Flags(store).page(view.query(assignee_meant(store, view.assigned, person)))
-    kept = saved(SavedViews(store).of(person.login, ListPage.FLAGS), view, ListPage.FLAGS, person)
     assigned = choices_of(Flags(store).assignees(), is_signed_in=bool(person.login))
     pending = pending_in_words(PendingWork(store).counts())
-    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), kept, pending))
+    return render(request, "flags.html", flags_page(found, view, assigned, active_names(store), pending))
 
 
 @router.post("/assign")

@@ -49,7 +49,7 @@ class FleetRows(Queries):
         """The session that the verdict of each of some units is of, by serial number."""
         latest = (SessionRow.id, SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.is_reference)
         query = (
-            select(UnitRow.serial, UnitRow.id, *latest, SessionRow.verdict)
+            select(UnitRow.serial, UnitRow.id, *latest, SessionRow.temperature, SessionRow.verdict)
             .select_from(ConditionRow)
             .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
             .join(SessionRow, SessionRow.id == ConditionRow.last_session)

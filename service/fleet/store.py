@@ -28,6 +28,7 @@ from service.fleet.condition import FleetCondition, UnitKnown, UnitSummary
 from service.fleet.records import UNCALIBRATED, FleetChoices, FleetQuery, Tally
 from service.fleet.tables import ConditionRow, FleetTallyRow
 from service.fleet.wanted_store import UNITS
+from service.kit.moments import local
 from service.models.records import Scope
 from service.outlook.store import outlook_of, overdue_count
 from service.outlook.tables import OutlookRow
@@ -224,6 +225,7 @@ def _held(name: str, column: InstrumentedAttribute[str]) -> Select[str, str]:
 
 LAST = (
     SessionRow.started_at,
+    SessionRow.utc_offset,
     SessionRow.verdict,
     SessionRow.is_reference,
     SessionRow.reason,
@@ -311,7 +313,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         simulated=unit.simulated,
         sessions=condition.sessions,
         last_session=last.id,
-        last_at=last.started_at,
+        last_at=local(last.started_at, last.utc_offset),
         verdict=Verdict(last.verdict),
         is_reference=last.is_reference,
         reason=last.reason,

@@ -4,7 +4,7 @@ the effect and with it.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from functools import cache
 from math import degrees, isfinite
 from statistics import median
@@ -244,7 +244,7 @@ def _picture_spec(title: str, *, by_angle: bool) -> Json:
 
 
 def _iso(at: datetime) -> str:
-    return f"{at:%Y-%m-%dT%H:%M:%SZ}"
+    return f"{at.astimezone(UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def _short(value: float) -> float:

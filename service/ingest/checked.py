@@ -8,7 +8,7 @@ from pathlib import Path
 
 from estimator.errors import FormatError, Problem, problem_at
 from estimator.message import say
-from estimator.moments import moment, written
+from estimator.moments import local_moment, written
 from estimator.session import CalibrationSession
 from service.ingest import read_upload
 from service.ingest.digest import readings_digest
@@ -26,7 +26,7 @@ class Checked:
 
     session: CalibrationSession
     measured_at: datetime
-    """UTC; the upload's time when the file does not say."""
+    """With the offset that the file states; the upload's time, UTC, when it does not say."""
     type_name: str
     """Name of the unit's type for its first session: from the file, or a description."""
     stand: str | None
@@ -81,7 +81,7 @@ def plain_filename(filename: str) -> str:
 
 
 def _measured_at(session: CalibrationSession, now: datetime) -> datetime:
-    return now if session.started_at is None else moment(session.started_at)
+    return now if session.started_at is None else local_moment(session.started_at)
 
 
 def _described(session: CalibrationSession) -> str:

@@ -1,6 +1,7 @@
 """Step: a calibrated session → a decision on every parameter, and on the session by the worst of them."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import dist
 
 from estimator.health import ParameterJudgement
@@ -10,15 +11,17 @@ from estimator.health.parity import RULE as PARITY_RULE
 from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
 from estimator.health.temperature_law import NO_STEPS, Steps, at_reference
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.results import Calibration
 from service.judging.calibrate import ReferenceComparison
+from service.judging.temperature_words import far_from_reference
 from service.judging.words import first_in_words, reason, recording_in_words
 from service.kit.lock_order import outside_writing
 from service.models.records import MovedParameter, MovedVerdict
-from service.sessions.decision import Decision, Judged, Opening, Verdict
+from service.sessions.decision import Decision, Judged, Opening, Verdict, worst_of
 from service.sessions.records import ParameterValue, StoredSession
 from service.sessions.words.advice import too_few
+from service.sessions.words.motion import beyond_in_words
 from service.types.records import UnitType
 from service.types.rules import tolerances_of
 
@@ -47,12 +50,14 @@ def judge(
     decisions = _decisions(found, RULE, unit_type)
     blind = too_few(calibration)
     first = reference is None and not blind
+    motions = tuple(split.motion for split in splits)
+    together = () if worst_of(decisions) is None else beyond_in_words(motions, coverage_factor)
     return Judged(
         calibration=calibration,
         decisions=decisions,
-        reason=first_in_words(calibration, opening) if first else reason(decisions, blind),
+        reason=first_in_words(calibration, opening) if first else joined(" ", (reason(decisions, blind), *together)),
         is_reference=first,
-        motions=tuple(split.motion for split in splits),
+        motions=motions,
     )
 
 
@@ -67,15 +72,33 @@ def decisions_of(
     return judge(calibration, reference, unit_type, coverage_factor, steps=steps).decisions
 
 
+FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+"""Verdicts that raise a flag."""
+
+
 @outside_writing
 def judge_recording(
-    moved: Calibration, found: ReferenceComparison, unit_type: UnitType, coverage_factor: float
+    moved: Calibration,
+    found: ReferenceComparison,
+    unit_type: UnitType,
+    coverage_factor: float,
+    celsius: float | None = None,
 ) -> Judged:
-    """Every parameter that parity sees, judged, and the recording by its worst."""
+    """Every parameter that parity sees, judged, and the recording by its worst.
+
+    Far from the temperatures of its calibration, ``celsius``, a change may be temperature's: it decides nothing.
+    """
     tolerances = tolerances_of(unit_type)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
     decisions = _decisions(seen, PARITY_RULE, unit_type)
-    return Judged(moved, decisions, recording_in_words(found.result, decisions), is_reference=False)
+    said, away = recording_in_words(found.result, decisions), far_from_reference(celsius, found.reference.residuals)
+    if away and any(decision.verdict in FAILS for decision in decisions):
+        said = joined(" ", (said, away))
+        decisions = tuple(
+            replace(decision, verdict=Verdict.UNDECIDABLE) if decision.verdict in FAILS else decision
+            for decision in decisions
+        )
+    return Judged(moved, decisions, said, is_reference=False)
 
 
 def _decisions(judgements: Iterable[ParameterJudgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:

@@ -17,7 +17,7 @@ from estimator.results import SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.ingest.checked import Checked
 from service.judging.reference import KnownUnit
-from service.kit.measures import day_of
+from service.kit.measures import day_of, zone_of
 from service.sessions.doubt import Doubt, FileCorrection, Remedy
 from service.sessions.history_store import History
 from service.sessions.records import ParameterValue, StoredSession
@@ -292,7 +292,7 @@ def of_moment(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[
 
 def _moment(at: datetime) -> str:
     """``1 May 2026, 09:00:00 UTC``."""
-    return say("{day}, {time} UTC", day=day_of(at), time=f"{at:%H:%M:%S}")
+    return say("{day}, {time} {zone}", day=day_of(at), time=f"{at:%H:%M:%S}", zone=zone_of(at))
 
 
 def _are_apart(known: KnownUnit, rival: StoredSession, new: Checked) -> bool:

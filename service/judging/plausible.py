@@ -15,11 +15,12 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.diagnosis.record.silent import dead_channels
 from estimator.message import joined, say
 from estimator.results import Calibration, SensorCalibration
-from estimator.session import CALIBRATIONS, Array, CalibrationSession, Sensor
+from estimator.session import ACCELEROMETER, CALIBRATIONS, GYROSCOPE, IN_SERVICE, Array, CalibrationSession, Sensor
 from service.ingest.checked import Checked
-from service.judging.beside_type import MOST, beside_type, type_of_references
+from service.judging.beside_type import ANOTHER, MOST, beside_type, type_of_references
 from service.judging.origin import of_date, of_moment, of_unit
 from service.judging.reference import KnownUnit
+from service.kit.measures import in_words
 from service.sessions.doubt import Doubt, FileCorrection, Remedy
 from service.sessions.history_store import History
 from service.storage.queries import Store
@@ -38,8 +39,17 @@ FAR, NEAR = np.cos(np.radians(20.0)), np.cos(np.radians(10.0))
 """An input axis lies within some degrees of its nominal one: beyond 20° it is another one, within 10° it is that."""
 ROUNDED = np.cos(np.radians(1.0))
 """A nominal axis is written to a degree or better."""
+LARGEST_BIAS = {ACCELEROMETER: 2 * STANDARD_GRAVITY, GYROSCOPE: np.radians(100.0)}
+"""m/s² (rad/s): ten times what makers allow of the coarsest sensors, 0.2 g and 10 °/s."""
+WITHOUT_OFFSET = frozenset({"m/s²", "m/s^2", "m/s2", "g", "mg", "µg", "rad/s", "°/s", "deg/s", "dps", "°/h", "deg/h"})
+"""Units of readings that stand for what is measured: raw ones may have an offset of half the range."""
+MOST_ROWS = 10_000
+"""Of a recording, spread evenly, whose median size of the specific force is taken."""
 TOO_QUIET = 1e-4
 """χ² a degree of freedom: standard errors that are stated a hundred times larger than the readings scatter."""
+
+
+Found = list[tuple[Sensor, SensorCalibration]]
 
 
 def doubts(known: KnownUnit, new: Checked, calibration: Calibration, but: Collection[str]) -> tuple[Doubt, ...]:
@@ -54,12 +64,15 @@ def doubts(known: KnownUnit, new: Checked, calibration: Calibration, but: Collec
 
 
 def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) -> Iterator[Doubt]:
+    if new.session.programme == IN_SERVICE:
+        yield from _of_recording(known, new)
     if new.session.programme not in CALIBRATIONS:
         return
     found = list(zip(new.session.sensors, calibration.sensors, strict=True))
     reference = known.reference(new.session.block, new.session.programme, new.measured_at)
     beyond = (*_of_scale(found, "nominal value", {s.name: s.nominal_scale for s, _ in found}), *_of_axes(found))
     yield from beyond
+    yield from _of_bias(found)
     yield from _of_dead(new.session)
     if not beyond and reference is None:
         yield from _beside_its_type(known.store, new, found, calibration)
@@ -75,14 +88,42 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
         )
 
 
+def _of_bias(found: Found) -> Iterator[Doubt]:
+    """Zeros that no sensor has whose readings are without an offset, or have the one that the file states."""
+    for sensor, estimates in found:
+        bias = estimates.bias.value
+        is_known = sensor.nominal_offset is not None or sensor.reading_unit.strip() in WITHOUT_OFFSET
+        if is_known and bias is not None and abs(bias) > LARGEST_BIAS[sensor.kind]:
+            size = in_words(sensor.kind, "bias", bias, signed=True)
+            yield Doubt(say("The bias of {name} is {size}", name=sensor.name, size=size), ANOTHER)
+
+
+def _of_recording(known: KnownUnit, new: Checked) -> Iterator[Doubt]:
+    """A recording in service whose specific force is as many times g as a slip of units makes it."""
+    session = new.session
+    reference = known.reference(session.block, session.programme, new.measured_at)
+    sensors = () if reference is None else known.calibration(reference).sensors
+    by_name = {sensor.name: sensor for sensor in sensors if sensor.kind == ACCELEROMETER}
+    places = [i for i, sensor in enumerate(session.sensors) if sensor.name in by_name]
+    used = [by_name[session.sensors[i].name] for i in places]
+    if len(used) < 3 or any(s.axis is None or not s.scale.value or s.bias.value is None for s in used):
+        return
+    rows = session.readings[:: len(session.readings) // MOST_ROWS + 1][:, places]
+    offset = np.array([session.sensors[i].nominal_offset or 0.0 for i in places])
+    inputs = (rows - offset) / [s.scale.value for s in used] - [s.bias.value for s in used]
+    force = inputs @ np.linalg.pinv(np.array([s.axis for s in used])).T
+    ratio = float(np.nanmedian(np.linalg.norm(force, axis=1))) / STANDARD_GRAVITY
+    for factor in (*IN_G, *THOUSANDS):
+        if factor / LIKE < ratio < factor * LIKE:
+            problem = say("The specific force of the recording is {ratio} g throughout", ratio=f"{ratio:.3g}")
+            yield Doubt(problem, "the readings are not in the unit of the calibration")
+
+
 def _of_dead(session: CalibrationSession) -> Iterator[Doubt]:
     """Channels that read the same at every position of a stand."""
     for name in dead_channels(session):
         problem = say("{name} has the same reading in every row, although its input changes", name=name)
         yield Doubt(problem, "the sensor is dead, or its channel is not connected")
-
-
-Found = list[tuple[Sensor, SensorCalibration]]
 
 
 def _beside_its_type(store: Store, new: Checked, found: Found, calibration: Calibration) -> Iterator[Doubt]:

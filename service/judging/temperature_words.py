@@ -4,11 +4,13 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from estimator.diagnosis.explanation.temperature import LEAST_DIFFERENCE
 from estimator.health.temperature_law import TemperatureCorrection
-from estimator.message import joined, say
+from estimator.message import capitalised, joined, say
+from estimator.results import Residuals
 from estimator.session import Array
 from estimator.wording import counted
-from service.judging.covered import CoveredTemperatures
+from service.judging.covered import CoveredTemperatures, covered
 from service.kit.measures import HARD, PARAMETER_NAMES, THIN, decimals, deviation_measure, in_measure, measured, number
 from service.sessions.decision import Decision
 
@@ -77,15 +79,28 @@ def _changes(decision: Decision, step: TemperatureCorrection) -> tuple[str, str]
     return as_measured, measured(step.corrected, step.expanded, measure)
 
 
-def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
+def elsewhere(outside: float, now: float, known: tuple[float, float], worth: str) -> str:
     """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
-    parts = {"temperature": in_degrees(now), "difference": in_degrees(abs(outside)), "earlier": _between(*covered)}
+    parts = {"temperature": in_degrees(now), "difference": in_degrees(abs(outside)), "earlier": _between(*known)}
     above = "it was measured at {temperature}, {difference} above its reference and earlier sessions ({earlier})"
     below = "it was measured at {temperature}, {difference} below its reference and earlier sessions ({earlier})"
     away = say(above if outside > 0 else below, **parts)
     if worth:
         return say("{away}; temperature alone may account for {worth}", away=away, worth=worth)
     return say("{away}; temperature alone can cause or hide a change of unknown size", away=away)
+
+
+def far_from_reference(celsius: float | None, reference: Residuals) -> str:
+    """That a recording was made far from the temperatures of its calibration, and what to do, in a sentence; empty
+    where it was not, or where nothing says it."""
+    known = covered(reference, ())
+    if celsius is None or known is None:
+        return ""
+    outside = celsius - min(max(celsius, known.lowest), known.highest)
+    if abs(outside) <= LEAST_DIFFERENCE:
+        return ""
+    away = elsewhere(outside, celsius, (known.lowest, known.highest), "")
+    return say("{problem}: {advice}.", problem=capitalised(away), advice=at_about(known.reference))
 
 
 def worth_in(parameter: str, sensor: str, size: str) -> str:
@@ -112,9 +127,9 @@ def span_in_words(celsius: Array | None) -> str:
     return "not recorded" if celsius is None else _span(float(np.min(celsius)), float(np.max(celsius)))
 
 
-def covered_in_words(covered: CoveredTemperatures | None) -> str:
+def covered_in_words(known: CoveredTemperatures | None) -> str:
     """The same of what a unit's calibrations cover."""
-    return "not known" if covered is None else _span(covered.lowest, covered.highest)
+    return "not known" if known is None else _span(known.lowest, known.highest)
 
 
 def _span(low: float, high: float) -> str:

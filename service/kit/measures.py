@@ -246,8 +246,13 @@ def _written(year: int, month: int, day: int) -> str:
 
 
 def minute_of(at: datetime) -> str:
-    """``7 Mar 2026, 09:30 UTC``."""
-    return say("{day}, {time} UTC", day=day_of(at), time=f"{at:%H:%M}")
+    """``7 Mar 2026, 09:30 UTC``, or ``22:30 UTC+13:00`` where it is by the clock of a place."""
+    return say("{day}, {time} {zone}", day=day_of(at), time=f"{at:%H:%M}", zone=zone_of(at))
+
+
+def zone_of(at: datetime) -> str:
+    """``UTC+13:00``."""
+    return f"UTC{at.isoformat(timespec='minutes')[-6:]}" if at.utcoffset() else "UTC"
 
 
 def month_of(at: date) -> str:

@@ -1,6 +1,6 @@
 """Moments as numbers, and moments that people give, in UTC."""
 
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, timezone
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 MILLISECOND = timedelta(milliseconds=1)
@@ -16,6 +16,17 @@ def epoch_ms(moment: datetime) -> int:
 def aware(moment: datetime) -> datetime:
     """Without an offset it is UTC."""
     return moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+
+
+def offset_minutes(at: datetime) -> int | None:
+    """Of the place where it was, from UTC; None where it is UTC, or where nobody said."""
+    offset = at.utcoffset()
+    return (offset // timedelta(minutes=1) or None) if offset else None
+
+
+def local(at: datetime, offset: int | None) -> datetime:
+    """The same moment by the clock of the place: a day in Auckland is the one that its files and papers state."""
+    return at if offset is None else at.astimezone(timezone(timedelta(minutes=offset)))
 
 
 def in_utc(moment: datetime) -> datetime:

@@ -26,7 +26,6 @@ from service.outlook.rules.populations import fleet_standouts
 from service.outlook.store import Outlooks
 from service.pages.fleet.pages import MOST_STANDOUTS, fleet_page
 from service.pages.fleet.view import FleetView
-from service.pages.saved import saved
 from service.pages.session.pages import session_page
 from service.pages.unit.pages import unit_page
 from service.pages.unit.parameters import parameter_heads, parameter_page
@@ -36,8 +35,6 @@ from service.papers.certified import recent_history, session_report, traceabilit
 from service.papers.found_and_left import found_and_left
 from service.people.admission import PersonOf
 from service.people.dependencies import Key, StorageOf
-from service.people.view_store import SavedViews
-from service.people.views import ListPage
 from service.planning.pattern import type_names
 from service.queue.store import PendingWork
 from service.queue.words import pending_in_words
@@ -72,9 +69,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 
 @router.get("/")
-def show_fleet(
-    request: Request, store: ReadingFleet, now: Now, person: PersonOf, view: Annotated[FleetView, Query()]
-) -> HTMLResponse:
+def show_fleet(request: Request, store: ReadingFleet, now: Now, view: Annotated[FleetView, Query()]) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
     filling = application_of(request).find(Filling)
     being_filled = "" if filling is None else filling.in_words
@@ -93,7 +88,6 @@ def show_fleet(
         choices=Fleet(store).choices(),
         pending=being_filled or pending_in_words(PendingWork(store).counts()),
         follow=SOONEST if being_filled else None,
-        kept=saved(SavedViews(store).of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
     )
     return render(request, "fleet.html", shown)
 

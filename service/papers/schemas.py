@@ -32,7 +32,7 @@ class CorrectionDocument(BaseModel):
     unit: str = Field(description="Serial number of the unit.")
     session: str = Field(description="Id of the session.")
     sha256: str = Field(description="SHA-256 of its file.")
-    measured_at: datetime = Field(description="When it was measured, UTC.")
+    measured_at: datetime = Field(description="When it was measured, with the offset from UTC that the file states.")
     verdict: Verdict = Field(description="Of the session: a unit that failed can be corrected, but should it be used?")
     simulated: bool = Field(description="Whether it was simulated, not measured.")
     method: str = Field(description="How the parameters were estimated.")

@@ -57,8 +57,6 @@ GET /account
 POST /account/password
 POST /account/tokens
 POST /account/tokens/{{id}}/revoke
-POST /views
-POST /views/{{id}}/remove
 GET {API}/sessions
 GET {SESSION}
 GET {SESSION}/calibration
@@ -119,9 +117,6 @@ GET {API}/me
 GET {API}/tokens
 POST {API}/tokens
 DELETE {API}/tokens/{{id}}
-GET {API}/views
-POST {API}/views
-DELETE {API}/views/{{id}}
 """
 
 CREW = f"""

@@ -1,11 +1,11 @@
-"""Who somebody is, accounts, tokens, the audit trail and saved views of lists, over HTTP."""
+"""Who somebody is, accounts, tokens and the audit trail, over HTTP."""
 
 from dataclasses import dataclass
 from datetime import timedelta
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field
 
 from service.errors import ConflictError, ForbiddenError
 from service.kit.answer import answer
@@ -22,13 +22,10 @@ from service.people.changes import (
     revoke_token,
 )
 from service.people.dependencies import StorageOf
-from service.people.keep_view import remove_view, save_view
 from service.people.store import Accounts, Tokens
-from service.people.view_store import SavedViews
-from service.people.views import ListPage, NewView, SavedView
 from service.storage.audit import Audit, AuditCheck, AuditLine
 from service.web.dependencies import Now, Reading
-from service.web.fields import TEXT, Body, Limit, Name, NonBlankName, Number, Text
+from service.web.fields import TEXT, Body, Limit, NonBlankName, Number, Text
 from service.web.problem_document import errors
 
 Login = Annotated[str, Path(pattern=TEXT, max_length=60, description="The account's login.", examples=["k.ito"])]
@@ -189,58 +186,3 @@ def read_audit(
 def check_audit(store: Reading) -> AuditCheck:
     """Work out the chain of the whole trail again."""
     return Audit(store).check()
-
-
-ViewName = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=100)]
-ViewQuery = Annotated[str, StringConstraints(pattern=r"^[^\x00?#\s]*$", max_length=20_000)]
-
-
-class NewViewSchema(
-    Body,
-    json_schema_extra={
-        "example": {"page": "fleet", "name": "overdue on ODG-1", "query": "due=overdue&stand=ODG-1", "by": "K. Ito"}
-    },
-):
-    """A view to keep."""
-
-    page: ListPage = Field(description="Of which list.")
-    name: ViewName = Field(description="Its name.")
-    query: ViewQuery = Field(description="What stands behind the `?` of the list's address.")
-    shared: bool = Field(default=False, description="For everybody; where nobody signs in, every view is.")
-    by: Name = Field(description="Who keeps it.")
-
-
-class ViewList(BaseModel):
-    """Views of lists."""
-
-    views: tuple[SavedView, ...] = Field(description="The views, by list and name.")
-
-
-views_router = APIRouter(prefix="/views", tags=["views"])
-
-
-@views_router.get("", responses=errors(422))
-def list_views(
-    store: Reading, person: PersonOf, page: Annotated[ListPage | None, Query(description="Only of this list.")] = None
-) -> ViewList:
-    """Views that everybody has, and your own."""
-    return ViewList(views=SavedViews(store).of(person.login, page))
-
-
-@views_router.post("", status_code=201, responses=errors(400, 409, 422))
-def keep_view(new: NewViewSchema, storage: StorageOf, now: Now, person: PersonOf) -> SavedView:
-    """Keep a view; under a name that is there already it replaces the other."""
-    wanted = NewView(new.page, new.name.strip(), new.query, new.shared)
-    return save_view(storage, wanted, person, person.signs(new.by), now)
-
-
-@views_router.delete("/{id}", status_code=204, responses=errors(404, 422))
-def delete_view(
-    id: Number,
-    storage: StorageOf,
-    now: Now,
-    person: PersonOf,
-    by: Annotated[Name, Query(description="Who removes it.")],
-) -> None:
-    """Remove a view."""
-    remove_view(storage, id, person, person.signs(by), now)

@@ -1,4 +1,4 @@
-"""The tables of accounts and of saved views. Of every secret only a hash is stored."""
+"""The tables of accounts. Of every secret only a hash is stored."""
 
 from datetime import datetime
 
@@ -78,18 +78,3 @@ class IdentityRow(Base):
     issuer: Mapped[str] = mapped_column(String(500))
     subject: Mapped[str] = mapped_column(String(255))
     created_at: Mapped[datetime]
-
-
-class SavedViewRow(Base):
-    """Query of a list, under a name; names are unique among a person's own views and among the shared ones."""
-
-    __tablename__ = "saved_views"
-    __table_args__ = (UniqueConstraint("page", "owner", "name"),)
-    id: Mapped[int] = mapped_column(primary_key=True)
-    page: Mapped[str] = mapped_column(String(20))
-    name: Mapped[str] = mapped_column(String(100))
-    owner: Mapped[str] = mapped_column(String(60))
-    """Login of its owner; empty for a shared view."""
-    query: Mapped[str]
-    who: Mapped[str]
-    saved_at: Mapped[datetime]

@@ -278,7 +278,7 @@ def _of_recording(known: KnownUnit, rules: Judging, place: Place, unit_type: Uni
     reference = known.calibration(place.reference.id)
     found = ReferenceComparison(reference, parity_check(source, reference))
     moved = parity_calibration(found.result, reference)
-    decided = judge_recording(moved, found, unit_type, rules.coverage_factor)
+    decided = judge_recording(moved, found, unit_type, rules.coverage_factor, place.session.temperature)
     return Rejudgement(place.basis, unit_type, decided, made(moved))
 
 

@@ -75,7 +75,7 @@ class _StoredSession:
     notes: str
     """Notes of the file."""
     started_at: datetime
-    """When it was measured, UTC; the upload's time if the file does not say."""
+    """When it was measured, with the offset from UTC that the file states; the upload's time if it does not say."""
     uploaded_at: datetime
     """When it was uploaded, UTC."""
     verdict: Verdict

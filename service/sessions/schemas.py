@@ -117,8 +117,8 @@ class CommonMotionSchema(BaseModel):
     kind: str = Field(description="`accelerometer` or `gyroscope`.")
     quantity: str = Field(description="`axes` or `scales`.")
     state: str = Field(
-        description="`separated`; `too-few-sensors` or `unclear`: nothing was taken off, every sensor was judged on "
-        "its whole change."
+        description="`separated`; `too-few-sensors`, `unclear` or `beyond-input` (more than gravity or a clock can "
+        "do): nothing was taken off, every sensor was judged on its whole change."
     )
     value: list[float] = Field(description="Rotation vector in block axes, rad, or relative change of all scales.")
     covariance: list[list[float]] = Field(description="Of the value, both sessions.")

@@ -28,6 +28,7 @@ from service.diagnosis.tables import DiagnosisRow
 from service.errors import NotFoundError
 from service.kit.arriving_files import DEMONSTRATION
 from service.kit.copying import copied
+from service.kit.moments import local, offset_minutes
 from service.sessions.decision import Decision, Verdict
 from service.sessions.doubt import Reservation, Reservations
 from service.sessions.records import UNWEIGHED, DiagnosisState, Digests, SessionOrder, SessionQuery, StoredSession
@@ -111,6 +112,7 @@ class Sessions(Queries):
         values = asdict(record)
         del values["unit"], values["stand"], values["reservations"]
         more = {"unit_id": unit, "stand_id": stand, "block": block, **asdict(digests), "basis": NOT_JUDGED}
+        more["utc_offset"] = offset_minutes(record.started_at)
         self.insert_many(SessionRow, ({**values, **more},))
 
     def mark(self, id: str, **said: bool | str | None) -> None:
@@ -289,7 +291,8 @@ def session_record(
 ) -> StoredSession:
     """A stored session, of a row of `session_rows`."""
     said_with = reservations_from_list(diagnosed, reservations)
-    return copied(StoredSession, row, unit=unit, stand=stand, reservations=said_with)
+    at = local(row.started_at, row.utc_offset)
+    return copied(StoredSession, row, unit=unit, stand=stand, started_at=at, reservations=said_with)
 
 
 def decision_record(row: DecisionRow) -> Decision:

@@ -31,6 +31,8 @@ class SessionRow(Base):
     operator: Mapped[str]
     notes: Mapped[str]
     started_at: Mapped[datetime] = mapped_column(index=True)
+    utc_offset: Mapped[int | None]
+    """Minutes, of the place, as the file states it."""
     uploaded_at: Mapped[datetime]
     verdict: Mapped[str] = mapped_column(String(20))
     reason: Mapped[str] = mapped_column(Sentence)

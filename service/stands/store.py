@@ -6,7 +6,7 @@ from typing import Any
 
 from sqlalchemy import Integer, Select, cast, delete, func, select
 
-from estimator.health.common_motion import SEPARATED
+from estimator.health.common_motion import BEYOND, SEPARATED
 from estimator.json_object import Json
 from service.errors import NotFoundError
 from service.fleet.tables import ConditionRow
@@ -92,7 +92,7 @@ class Stands(Queries):
                 CommonMotionRow,
                 (CommonMotionRow.session_id == SessionRow.id)
                 & (CommonMotionRow.revision == SessionRow.revision)
-                & (CommonMotionRow.state == SEPARATED),
+                & CommonMotionRow.state.in_((SEPARATED, BEYOND)),
             )
             .where(
                 SessionRow.is_reference | CommonMotionRow.session_id.is_not(None),

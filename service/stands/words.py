@@ -25,7 +25,8 @@ def reason_of(
     lasting = [shift for shift in shifts if shift.until is None]
     shown = [_shift(shift) for shift in (*lasting, *(shift for shift in shifts if shift.until is not None))]
     advice = "Check stand and fixture." if lasting else "The shift has ended: record what was done to the stand."
-    return joined(" ", (*shown, advice, JUDGED, *_seating(seating)))
+    judged = [JUDGED] if all(shift.quantity == AXES for shift in shifts) else []
+    return joined(" ", (*shown, advice, *judged, *_seating(seating)))
 
 
 def _shift(shift: StandEvidence) -> str:

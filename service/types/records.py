@@ -94,6 +94,8 @@ class LatestSession:
     block: str
     programme: str
     is_reference: bool
+    temperature: float | None
+    """°C"""
     verdict: Verdict
 
 

@@ -83,12 +83,6 @@ class Works(Steps):
         if leaves and made:
             self.world.ask("DELETE", f"/api/v1/webhooks/{made['id']}", params={"by": BY["by"]})
 
-    @rule(shared=st.booleans())
-    def saves_a_view(self, shared: bool) -> None:
-        """A list as somebody narrowed it."""
-        new = {"page": "fleet", "name": f"view {shared}", "query": "condition=fail", "shared": shared, "by": "K. Ito"}
-        self.tries("/views", new)
-
     @rule(role=st.sampled_from(["viewer", "crew", "engineer"]), days=st.integers(1, 366))
     def makes_and_revokes_a_token(self, role: str, days: int) -> None:
         """The first one ends the time in which nobody needed to sign in."""

@@ -5,20 +5,35 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.applied_vector import ONE_PLACE, common_factors
+from estimator.causes.record import GravityEntry, SensorDrift
 from estimator.causes.sensor import ReadingOutlier
 from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
+from estimator.diagnosis.explanation.temperature import shared
 from estimator.diagnosis.record.clipping import Clip
+from estimator.diagnosis.record.common_scale import CommonScale
 from estimator.diagnosis.record.implausible import ImplausibleAxes
 from estimator.diagnosis.record.nominal import WrongEntry
 from estimator.diagnosis.record.record_error import RecordError
 from estimator.diagnosis.record.turned import LEAST
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.results import Finding, Rival, Structure
+from estimator.diagnosis.results import Finding, Rival, Separation, Structure
 from estimator.forward import measured
-from estimator.message import say
+from estimator.message import joined, say
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CalibrationSession
+
+SCALED = (
+    "All scale factors{of_kind} changed together by {change} % since the earlier sessions, more than gravity, latitude "
+    "or a clock can do."
+)
+ONE_PLACE_ADVICE = (
+    "The sessions state one place, where gravity is the same: if it was measured elsewhere, correct the record."
+)
+SCALED_ADVICE = (
+    "Check the supply voltage, the converter's reference, the range setting and the temperature; repeat the session."
+)
 
 
 def clip_findings(
@@ -107,6 +122,49 @@ def entry_finding(entry: WrongEntry) -> Finding:
         amplitude=(entry.amplitude,),
         sigma=(entry.sigma,),
         units=entry.cause.units,
+    )
+
+
+def scale_findings(scales: Sequence[CommonScale], session: CalibrationSession) -> tuple[Finding, ...]:
+    """A factor that all sensors of a kind share and the applied vector cannot have made, as the change that it is."""
+    return tuple(scale_finding(scale, session) for scale in scales)
+
+
+def scale_finding(scale: CommonScale, session: CalibrationSession) -> Finding:
+    """One factor."""
+    m, known = len(scale.sensors), SensorDrift()
+    several = len({sensor.kind for sensor in session.sensors}) > 1
+    of_kind = say(" of the {kind}s", kind=scale.kind) if several else ""
+    change = f"{100 * scale.factor:+.4g}".replace("-", "−")
+    return replace(
+        named_cause(known, tuple(session.sensors[i].name for i in scale.sensors), scale.p_value, 0.0),
+        sentence=say(SCALED, of_kind=of_kind, change=change),
+        advice=SCALED_ADVICE,
+        strength=abs(scale.factor) / scale.sigma,
+        amplitude=(scale.factor, 0.0, 0.0, 0.0) * m,
+        sigma=(scale.sigma, 0.0, 0.0, 0.0) * m,
+        units=tuple(u if scale.kind == ACCELEROMETER else u.replace("m/s²", "rad/s") for u in known.units) * m,
+        nonlinear_each=({},) * m,
+    )
+
+
+def is_beyond_gravity(finding: Finding) -> bool:
+    """Whether it names a gravity that the Earth does not have."""
+    least, largest = common_factors(ACCELEROMETER, None, None)
+    return finding.cause == GravityEntry.identifier and not least <= np.expm1(finding.amplitude[0]) <= largest
+
+
+def doubted_at_one_place(finding: Finding) -> Finding:
+    """A finding about gravity where all sessions state one place, which has one gravity: the change may be theirs."""
+    if finding.cause != GravityEntry.identifier or abs(finding.amplitude[0]) <= ONE_PLACE:
+        return finding
+    drift, again = SensorDrift.identifier, "measure another unit in the same place"
+    return replace(
+        finding,
+        advice=joined(" ", (ONE_PLACE_ADVICE, SCALED_ADVICE)),
+        alternatives=(drift, *finding.alternatives),
+        separations=(Separation(drift, (), 0.0, again, finding.strength), *finding.separations),
+        ranking=tuple(shared(finding, (drift,))),
     )
 
 

@@ -293,7 +293,8 @@ def rescored_detections(start: SearchState, detections: Sequence[Detection]) -> 
 
 def traced(start: SearchState, old: Scored) -> Scored:
     """A shape between the points of the grid with what the residuals of ``start`` show of it."""
-    columns, width = old.shape.columns, len(old.cause.units)
+    columns = old.shape.columns
+    width = len(old.cause.units) or columns.shape[-1]  # a mere pattern names no unit
     before = absorbed_before(start.residuals, old.cause, [old.shape.first(width)]) if old.lasting else 0.0
     own = start.residuals.trace(columns[..., :width], before)
     if columns.shape[-1] == width:

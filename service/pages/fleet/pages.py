@@ -13,8 +13,6 @@ from service.judging.use import Use, in_words
 from service.kit.copying import copied
 from service.outlook.rules.populations import Standout
 from service.pages.fleet.view import DUE, RETIRED, FleetView
-from service.pages.saved import Saved
-from service.people.views import ListPage
 from service.sessions.doubt import Reservations
 from service.sessions.states import Questioned
 from service.sessions.words.conditions import Condition, condition_of
@@ -24,7 +22,6 @@ from service.web.list_view import Shown
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
 NO_CHOICES = FleetChoices()
-NONE_SAVED = Saved(ListPage.FLEET, (), "", is_signed_in=False, may_share=False)
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
 
@@ -115,8 +112,6 @@ class FleetPage:
     """What is still being worked out; empty where nothing is."""
     follow: int | None
     """Seconds until that line looks again; None where it need not."""
-    saved: Saved
-    """Views of the list that were kept."""
 
     @property
     def first(self) -> int:
@@ -143,7 +138,6 @@ def fleet_page(
     choices: FleetChoices = NO_CHOICES,
     pending: str = "",
     follow: int | None = None,
-    kept: Saved = NONE_SAVED,
 ) -> FleetPage:
     """One page of units."""
     shown = Shown.of(view, units, lambda unit: unit.serial)
@@ -168,7 +162,6 @@ def fleet_page(
         retired=RETIRED,
         pending=pending,
         follow=follow,
-        saved=kept,
     )
 
 

@@ -9,12 +9,8 @@ from fastapi.responses import HTMLResponse
 
 from service.fleet.records import FleetChoices
 from service.fleet.store import Fleet
-from service.pages.saved import Saved, saved
 from service.pages.session.comparison import compare, comparison_page
 from service.pages.session.view import STATE_CHOICES, VERDICTS, SessionsView
-from service.people.admission import PersonOf
-from service.people.view_store import SavedViews
-from service.people.views import ListPage
 from service.sessions.lines import SessionLine, session_lines
 from service.sessions.records import StoredSession
 from service.sessions.store import Sessions
@@ -35,13 +31,9 @@ class SessionsPage:
     """Types and stands that the list can be narrowed to."""
     states: Mapping[str, str]
     verdicts: Mapping[str, str]
-    saved: Saved
-    """Views of the list that were kept."""
 
 
-def sessions_page(
-    found: Sequence[StoredSession], view: SessionsView, choices: FleetChoices, kept: Saved
-) -> SessionsPage:
+def sessions_page(found: Sequence[StoredSession], view: SessionsView, choices: FleetChoices) -> SessionsPage:
     """One page of sessions."""
     shown = Shown.of(view, found, lambda session: session.id)
     return SessionsPage(
@@ -51,7 +43,6 @@ def sessions_page(
         choices=choices,
         states=STATE_CHOICES,
         verdicts=VERDICTS,
-        saved=kept,
     )
 
 
@@ -60,13 +51,10 @@ Chosen = Annotated[str, Query(max_length=200, pattern=NO_NUL)]
 
 
 @router.get("/sessions")
-def show_sessions(
-    request: Request, store: Reading, person: PersonOf, view: Annotated[SessionsView, Query()]
-) -> HTMLResponse:
+def show_sessions(request: Request, store: Reading, view: Annotated[SessionsView, Query()]) -> HTMLResponse:
     """Sessions, the newest first unless another order is asked for."""
     found = Sessions(store).wanted(view.query())
-    kept = saved(SavedViews(store).of(person.login, ListPage.SESSIONS), view, ListPage.SESSIONS, person)
-    return render(request, "sessions.html", sessions_page(found, view, Fleet(store).choices(), kept))
+    return render(request, "sessions.html", sessions_page(found, view, Fleet(store).choices()))
 
 
 @router.get("/compare")

@@ -382,7 +382,7 @@ def _change(
         found = judge(calibration, reference, other, coverage_factor, steps=steps.get(last.session, NO_STEPS))
     else:
         seen = ReferenceComparison(reference, ParityResult.from_dict(calibration.parity))
-        found = judge_recording(calibration, seen, other, coverage_factor)
+        found = judge_recording(calibration, seen, other, coverage_factor, last.temperature)
     if found.verdict is last.verdict:
         return None
     worst = found.worst

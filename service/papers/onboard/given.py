@@ -7,6 +7,7 @@ from datetime import datetime
 import numpy as np
 
 from estimator.allan import BlockNoise
+from estimator.moments import as_stated
 from estimator.nominal_vector import NominalVector, nominal_vector
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from service.errors import ConflictError
@@ -76,7 +77,7 @@ def noisiest(given: ExportInput, kind: str, term: str) -> float | None:
 def heading(given: ExportInput, system: str) -> Iterator[str]:
     """The first comments of a file."""
     yield f"{system} parameters of unit {given.unit}, by {given.software}"
-    yield f"session {given.session}, measured {given.measured_at:%Y-%m-%dT%H:%M:%SZ}: {given.verdict}"
+    yield f"session {given.session}, measured {as_stated(given.measured_at)}: {given.verdict}"
     yield from _uses(given)
     if given.simulated:
         yield "SIMULATED: this unit does not exist"

@@ -1,7 +1,7 @@
 """Step: a session's file, and what its certificate states beside → all that the certificate states, computed again."""
 
 from dataclasses import replace
-from datetime import datetime
+from datetime import UTC, datetime
 
 from estimator.health import judge
 from estimator.health.parity import judge_parity
@@ -56,9 +56,13 @@ def with_reference(
 
 
 def _checked(raw: RawFile, printed: Printed, now: datetime) -> Checked:
-    """As at the upload; a file without a date was measured when the certificate says."""
+    """As at the upload; a file without a date was measured when the certificate says, whose day is UTC's where an
+    earlier release issued it."""
     new = check(raw.content, raw.name, now, lambda serial: serial == printed.serial)
-    return new if new.session.started_at is not None else as_checked(new.session, printed.measured_on, new.session.unit)
+    if new.session.started_at is None:
+        return as_checked(new.session, printed.measured_on, new.session.unit)
+    in_utc = new.measured_at.astimezone(UTC)
+    return replace(new, measured_at=in_utc) if printed.measured_on.date() == in_utc.date() else new
 
 
 def _decisions(found: Calibrated, inputs: RecomputationInputs) -> tuple[Decision, ...]:

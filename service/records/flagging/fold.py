@@ -20,6 +20,7 @@ from service.diagnosis.words.findings import summed_up
 from service.flags.records import Concern, Flag, Matter, NoticeKind
 from service.flags.store import Flags, Notices
 from service.fleet.store import Fleet, Refreshed
+from service.judging.judge import FAILS
 from service.judging.records import FlagEvidence, Key, Moment, SessionEvidence
 from service.judging.store import Derivations
 from service.judging.words import reason, verdict_in_words
@@ -33,11 +34,10 @@ from service.sessions.decision import Decision, Judged, Verdict, worst_of
 from service.sessions.records import StoredSession
 from service.sessions.store import Sessions
 from service.sessions.words.conditions import condition_of
+from service.sessions.words.motion import beyond_in_words
 from service.storage.queries import Store
 from service.units.store import Units
 
-FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
-"""Verdicts that raise a flag."""
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
@@ -62,7 +62,7 @@ def verdict_evidence(measured_at: datetime, judged: Judged) -> FlagEvidence:
     for sensor, decisions in _by_sensor(judged).items():
         failed = tuple(d for d in decisions if d.verdict in FAILS)
         if failed:
-            concerns.append(_verdict_concern(sensor, failed))
+            concerns.append(_verdict_concern(sensor, failed, judged))
         elif judged.is_reference:
             clear.append((Matter.TOLERANCE.value, sensor, say(NEW_REFERENCE, day=day, sensor=sensor)))
         elif decisions and all(d.verdict in PASSES for d in decisions):
@@ -77,12 +77,14 @@ def _by_sensor(judged: Judged) -> dict[str, list[Decision]]:
     return by_sensor
 
 
-def _verdict_concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
-    """The worst parameter in a sentence, the others by name."""
+def _verdict_concern(sensor: str, failed: tuple[Decision, ...], judged: Judged) -> Concern:
+    """The worst parameter in a sentence, the others by name; that all scale factors changed together, with each."""
     severity = max(d.verdict.severity for d in failed)
     others = [d.parameter for d in failed if d is not worst_of(failed)]
     more = say(" Also out of tolerance: {parameters}.", parameters=joined(", ", others)) if others else ""
-    return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
+    together = [m for m in judged.motions if any(d.kind == m.kind and d.parameter == "scale" for d in failed)]
+    said = (reason(failed) + more, *beyond_in_words(together, failed[0].nominal_factor))
+    return Concern(Matter.TOLERANCE, sensor, severity, joined(" ", said))
 
 
 NO_LONGER_FOUND = "The diagnosis of the session of {day} no longer finds it."

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from estimator.health.common_motion import AXES, SEPARATED, UNCLEAR, CommonMotion
+from estimator.health.common_motion import AXES, BEYOND, SEPARATED, UNCLEAR, CommonMotion
 from estimator.message import joined, say
+from estimator.session import ACCELEROMETER
 from estimator.wording import few
 from service.kit.measures import COARSE_MEASURES, DEGREE, Measure, deviation_measure, measured, number, signed
 
@@ -33,12 +34,19 @@ def motions_in_words(
     return tuple(line for line in lines if line is not None)
 
 
+def beyond_in_words(motions: Sequence[CommonMotion], coverage: float) -> tuple[str, ...]:
+    """A sentence on each common factor of scales that is beyond what the applied vector can do."""
+    return tuple(line.text for line in motions_in_words(motions, coverage) if line.tone == "fail")
+
+
 def is_significant(motion: CommonMotion) -> bool:
     """Whether the block moved as a whole, beyond what noise does once in a hundred sessions."""
     return motion.state == SEPARATED and motion.p_value is not None and motion.p_value < SIGNIFICANT
 
 
 def _line(motion: CommonMotion, coverage: float, of_kind: str, since: str) -> MotionLine | None:
+    if motion.state == BEYOND:
+        return MotionLine("fail", _beyond(motion, coverage, of_kind, since))
     if motion.state != SEPARATED:
         return MotionLine("none", _undivided(motion, of_kind))
     if is_significant(motion):
@@ -58,10 +66,25 @@ def _together(motion: CommonMotion, coverage: float, of_kind: str, since: str) -
             date=since,
             judged=JUDGED,
         )
-    size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
-    cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
-    parts = {"whose": of_kind, "size": size, "date": since, "cause": cause, "judged": JUDGED}
+    cause = "gravity or the stand's elevation" if motion.kind == ACCELEROMETER else "the stand or its clock"
+    parts = {"whose": of_kind, "size": _factor(motion, coverage), "date": since, "cause": cause, "judged": JUDGED}
     return say("All scale factors{whose} changed together by {size} {date}; cause: {cause}. {judged}", **parts)
+
+
+def _factor(motion: CommonMotion, coverage: float) -> str:
+    """``+1.0000 ± 0.0009 %``."""
+    return signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
+
+
+def _beyond(motion: CommonMotion, coverage: float, of_kind: str, since: str) -> str:
+    """A common factor that is the unit's, or of what reads it."""
+    parts = {"whose": of_kind, "size": _factor(motion, coverage), "date": since}
+    parts["input"] = "gravity" if motion.kind == ACCELEROMETER else "the stand or its clock"
+    return say(
+        "All scale factors{whose} changed together by {size} {date}, more than {input} can: check the supply voltage, "
+        "the converter's reference, the range setting and the temperature. Every sensor is judged by its whole change.",
+        **parts,
+    )
 
 
 def _turn_measure(motion: CommonMotion) -> Measure:

@@ -1,4 +1,4 @@
-"""A list is worked through: by keys, in saved views, flags given to somebody."""
+"""A list is worked through: by keys, flags given to somebody."""
 
 import pytest
 from playwright.sync_api import Browser, Page
@@ -48,22 +48,6 @@ def test_keys_can_be_switched_off(chromium: Browser, site: Site) -> None:
         page.goto(site.url)
         page.keyboard.press("j")
         assert page.locator("tr.at").count() == 0
-
-
-def test_a_view_is_saved_opened_and_removed(chromium: Browser, site: Site) -> None:
-    with opened(chromium, java_script_enabled=False) as (_, page):
-        page.goto(f"{site.url}/?condition=fail")
-        page.get_by_text("Save this view").click()
-        page.get_by_label("Name of the view").fill("unfit ones")
-        page.locator(".saved [name=by]").fill("K. Ito")
-        follow(page.get_by_role("button", name="Save"))
-        page.goto(site.url)
-        follow(page.get_by_role("link", name="unfit ones"))
-        assert page.url.endswith("/?condition=fail")
-        page.get_by_text("Remove this view").click()
-        page.locator(".saved [name=by]").fill("K. Ito")
-        follow(page.get_by_role("button", name="Remove it"))
-        assert page.get_by_role("link", name="unfit ones").count() == 0
 
 
 def test_a_session_gets_a_remark_and_a_file(chromium: Browser, site: Site) -> None:

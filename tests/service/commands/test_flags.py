@@ -72,15 +72,6 @@ def test_notes_and_files_are_put_on_a_session(run: Run, address: str, tmp_path: 
     assert run("attach", tmp_path / "photo.png", "--to", "nobody", *own).code == 1
 
 
-def test_saved_views_are_listed_with_their_addresses(run: Run, address: str) -> None:
-    assert run("views", "--format", "table", "--server", address).out == "No view is saved yet.\n"
-    new = {"page": "fleet", "name": "overdue", "query": "due=overdue", "by": "K. Ito"}
-    httpx.post(f"{address}/api/v1/views", json=new)
-    shown = run("views", "--format", "table", "--server", address).out.splitlines()[1].split()
-    assert shown == ["1", "fleet", "overdue", f"{address}/?due=overdue"]
-    assert [view["url"] for view in run("views", "--server", address).documents] == ["/?due=overdue"]
-
-
 def test_what_cannot_be_done_is_said_on_one_line(run: Run, address: str) -> None:
     ran = run("flags", "resolve", 7, "--by", "K. Ito", "--why", "gone", "--server", address)
     assert (ran.code, ran.out, ran.err) == (1, "", "imu-health: There is no flag 7.\n")

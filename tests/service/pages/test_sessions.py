@@ -6,11 +6,8 @@ import httpx
 import pytest
 
 from service.fleet.records import FleetChoices
-from service.kit.person import EVERYBODY
-from service.pages.saved import saved
 from service.pages.session.list_pages import sessions_page
 from service.pages.session.view import SessionsView
-from service.people.views import ListPage
 from service.sessions.decision import Verdict
 from service.sessions.records import StoredSession
 from tests.databases import one_engine
@@ -81,7 +78,7 @@ MORE = SessionsView.PAGE_SIZE + 1
 def test_pages_lead_to_one_another(
     session: StoredSession, view: SessionsView, count: int, ways: tuple[str, str]
 ) -> None:
-    page = sessions_page(found(session, count), view, FleetChoices(), saved((), view, ListPage.SESSIONS, EVERYBODY))
+    page = sessions_page(found(session, count), view, FleetChoices())
     assert (page.shown.earlier, page.shown.later) == ways
     assert len(page.lines) == min(count, SessionsView.PAGE_SIZE)
 
