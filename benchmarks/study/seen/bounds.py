@@ -96,8 +96,8 @@ def session(
         "started_at": (datetime(2026, 1, 1, 9, tzinfo=UTC) + timedelta(days=day)).isoformat(),
         "site": {"latitude_deg": true if stated is None else stated, "height_m": 100.0},
         "sensors": [
-            {"name": f"A{i + 1}", "nominal_axis": np.round(axis, 9).tolist(), "nominal_scale": 0.12, "reading_unit": "V"}
-            for i, axis in enumerate(unit.axes / np.linalg.norm(unit.axes, axis=1, keepdims=True))
+            {"name": f"A{i + 1}", "nominal_axis": axis.tolist(), "nominal_scale": 0.12, "reading_unit": "V"}
+            for i, axis in enumerate(unit.axes)
         ],
     }  # fmt: skip
     if unit.on_stand:
