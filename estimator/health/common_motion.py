@@ -29,7 +29,8 @@ them nearly as well (χ² higher by less than 2·ln 100) may be the one that mov
 remain must be more than half of all; if they are not, nobody can tell who moved: nothing is taken off and every sensor
 is judged on its whole change. So it is on a common factor beyond what the applied vector can have done to all scales
 (`common_factors`: gravity at one place is the same), at the same level: it is the unit's, or of what reads it. Axes of
-fewer than four sensors, and scales of fewer than three, never tell: of two axes that have parted, either may have moved.
+fewer than four sensors, and scales of fewer than three, never tell: of two axes that have parted, either may have
+moved.
 """
 
 from collections.abc import Mapping, Sequence

@@ -79,7 +79,7 @@ def _factor(motion: CommonMotion, coverage: float) -> str:
 def _beyond(motion: CommonMotion, coverage: float, of_kind: str, since: str) -> str:
     """A common factor that is the unit's, or of what reads it."""
     parts = {"whose": of_kind, "size": _factor(motion, coverage), "date": since}
-    parts["input"] = "gravity" if motion.kind == ACCELEROMETER else "the stand or its clock"
+    parts["input"] = "gravity at the stated place" if motion.kind == ACCELEROMETER else "the stand or its clock"
     return say(
         "All scale factors{whose} changed together by {size} {date}, more than {input} can: check the supply voltage, "
         "the converter's reference, the range setting and the temperature. Every sensor is judged by its whole change.",

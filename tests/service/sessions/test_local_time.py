@@ -21,7 +21,7 @@ def client(holding: Holding) -> httpx.Client:
 
 def test_programs_read_the_moment_with_its_offset(client: httpx.Client) -> None:
     assert client.get(f"/api/v1/sessions/{ID}").json()["started_at"] == AUCKLAND
-    assert client.get("/api/v1/fleet").json()["units"][0]["last_at"] == AUCKLAND
+    assert client.get("/api/v1/units").json()["units"][0]["last_at"] == AUCKLAND
 
 
 def test_pages_and_papers_show_the_day_of_the_place(client: httpx.Client) -> None:
