@@ -197,6 +197,8 @@ class CalibrationSession:
     """``simulated``; None when measured, which is what a file without the field says."""
     screening: tuple[ScreenFinding, ...] = ()
     """What was found in the raw rows before they were averaged; samples left out are NaN in ``readings``."""
+    unscreened: tuple[str, ...] = ()
+    """Kinds that the file declines to be screened for."""
 
     @property
     def is_raw(self) -> bool:

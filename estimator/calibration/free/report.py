@@ -136,4 +136,5 @@ def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) 
             enlarged_by=1.0,
         ),
         gauge=gauge,
+        screening=session.screening,
     )
