@@ -10,7 +10,7 @@ from estimator.reading.columns import Columns
 from estimator.reading.fields import Fields
 from estimator.reading.keys import DIRECTIONS
 from estimator.reading.problems import shown
-from estimator.screening import KINDS, OFF, Screen, Screening
+from estimator.screening import KINDS, OFF, Screen, Screening, declined_by
 from estimator.screening.clock import MOST_POSITIONS, no_rate, rate_of
 from estimator.session import ARBITRARY_ORIENTATIONS, RATE_TABLE, ROTATION_ALIGNMENT, Array, Sensor
 
@@ -68,16 +68,11 @@ def read_raw(
 def _declined(document: Fields) -> tuple[str, ...]:
     """The kinds that the file does not want to be screened for."""
     stated = document.values.get("screening")
-    if stated is None:
-        return ()
-    if stated == OFF:
-        return KINDS
-    listed = list(stated) if isinstance(stated, list | tuple) else None
-    if listed is None or any(kind not in KINDS for kind in listed):
+    declined = declined_by(stated)
+    if declined is None:
         advice = "is {stated}; give \"{off}\", or a list of what not to look for: {kinds}"
         document.add("screening", advice, stated=shown(stated), off=OFF, kinds=joined(", ", KINDS))
-        return ()
-    return tuple(listed)
+    return declined or ()
 
 
 def _found_rate(columns: Columns, time: Array | None, sensors: tuple[Sensor, ...], screen: Screen) -> float | None:

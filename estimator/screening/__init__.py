@@ -7,9 +7,9 @@ wild      samples far from all others of their rest, for means that they do not 
 Nothing here judges a sensor: a finding is of the recording. All of it can be declined, by kind or altogether.
 """
 
-from estimator.screening.findings import KINDS, OFF, Screening
+from estimator.screening.findings import KINDS, OFF, Screening, declined_by
 from estimator.screening.screen import Screen
 from estimator.screening.wild import without_wild
 from estimator.session import ScreenFinding
 
-__all__ = ["KINDS", "OFF", "Screen", "ScreenFinding", "Screening", "without_wild"]
+__all__ = ["KINDS", "OFF", "Screen", "ScreenFinding", "Screening", "declined_by", "without_wild"]

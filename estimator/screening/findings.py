@@ -24,6 +24,18 @@ ACTIONS = {
 KINDS = tuple(ACTIONS)
 """As a session file declines them."""
 
+
+
+def declined_by(stated: object) -> tuple[str, ...] | None:
+    """The kinds that a file declines in its own words; None where they are no such thing."""
+    if stated is None:
+        return ()
+    if stated == OFF:
+        return KINDS
+    listed = tuple(stated) if isinstance(stated, list | tuple) else None
+    return None if listed is None or any(kind not in KINDS for kind in listed) else listed
+
+
 TEMPLATES = {
     "missing": "No number in {rows} of {sensors}: left out.",
     "no-data": "{value} in {rows} of {sensors} carries no data (a marker, or the end of the range): left out.",

@@ -1,6 +1,7 @@
 """Jobs of a reading process, by name. Only that process loads the libraries of the formats."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import polars as pl
@@ -94,8 +95,9 @@ def first_rows(content: Content, filename: str) -> object:
 def _read(content: bytes, filename: str, *, part: bool = False) -> object:
     if is_wrapped(content):
         mapping, table = unwrapped(content, filename)
-        document, where = document_of(table, filename, layout_of(mapping, filename))
-        return read_session(document, name=filename, most=in_force().extent, part=part, where=where)
+        document, where, found = document_of(table, filename, layout_of(mapping, filename))
+        session = read_session(document, name=filename, most=in_force().extent, part=part, where=where)
+        return replace(session, screening=(*found, *session.screening))
     if content.startswith(XLSX):
         document, where = xlsx.read_with_places(content, filename)
         return read_session(document, name=filename, most=in_force().extent, part=part, where=where)
