@@ -7,6 +7,7 @@ from pathlib import Path
 import polars as pl
 
 from estimator.reading import read_session
+from estimator.screening import Screen
 from estimator.session import CalibrationSession
 from service.ingest import hdf5, mat, parquet, xlsx
 from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
@@ -33,8 +34,9 @@ def recording(path: Path, filename: str) -> Iterator[object]:
     head = _head(rows, filename)
     yield head
     names = [sensor.name for sensor in head.sensors]
+    screen = Screen(head.sensors, frozenset(head.unscreened), head.sample_rate)
     for frame in _frames(rows, names, filename):
-        yield frame.to_numpy()
+        yield frame.to_numpy() if head.sample_rate is None else screen.readings(frame.to_numpy())
 
 
 def _head(rows: TableScan, filename: str) -> CalibrationSession:
