@@ -1,0 +1,1 @@
+"""Studies whose generators share nothing with what they judge."""
