@@ -289,7 +289,7 @@ class Quietness:
 
 def quietness(readings: Array, rate: float) -> Quietness:
     """Variance of every window of readings (R, m), any unit, sampled at ``rate`` Hz, in noise floors."""
-    block, readings = block_length(rate), filled(readings)
+    block = block_length(rate)
     return quietness_of(block, *moments(readings, block), smallest_steps(readings))
 
 
@@ -299,18 +299,23 @@ def block_length(rate: float) -> int:
 
 
 def moments(readings: Array, block: int) -> tuple[Array, Array]:
-    """(blocks, m) mean and variance of every whole block of readings (R, m), their unit (squared)."""
+    """(blocks, m) mean and variance of every whole block of readings (R, m), their unit (squared), NaN where hardly any
+    is known."""
     count = len(readings) // block
     mean, within = np.empty((count, readings.shape[1])), np.empty((count, readings.shape[1]))
     for i, channel in enumerate(readings[: count * block].T):
         blocks = channel.reshape(count, block)
         mean[:, i], within[:, i] = blocks.mean(axis=1), blocks.var(axis=1)
+        for k in np.flatnonzero(np.isnan(mean[:, i])).tolist():
+            known = blocks[k][np.isfinite(blocks[k])]
+            if len(known) > 1:
+                mean[k, i], within[k, i] = known.mean(), known.var()
     return mean, within
 
 
 def smallest_steps(readings: Array) -> Array:
     """(m,) least change, above zero, from sample to sample of readings (R, m), their unit; infinite where none is."""
-    steps = [np.abs(np.diff(channel)) for channel in readings.T]
+    steps = [np.abs(np.diff(channel)) for channel in filled(readings).T]
     return np.array([changes.min(where=changes > 0, initial=np.inf) for changes in steps])
 
 
@@ -319,12 +324,16 @@ def quietness_of(block: int, mean: Array, within: Array, steps: Array) -> Quietn
     count, m = mean.shape
     if count < BLOCKS:
         return Quietness(block, np.empty(0))
-    total = np.zeros(count - BLOCKS + 1)
+    total, known = np.zeros(count - BLOCKS + 1), np.zeros(count - BLOCKS + 1)
     for i in range(m):
         view = np.lib.stride_tricks.sliding_window_view
         variance = view(within[:, i], BLOCKS).mean(axis=1) + view(mean[:, i], BLOCKS).var(axis=1)
-        total += variance / noise_floor(variance, float(steps[i]))
-    return Quietness(block, total / m)
+        usable = np.isfinite(variance)
+        if usable.any():
+            ratio = variance / noise_floor(variance[usable], float(steps[i]))
+            total[usable] += ratio[usable]
+            known += usable
+    return Quietness(block, np.divide(total, known, out=np.full_like(total, np.inf), where=known > 0))
 
 
 def noise_floor(variance: Array, step: float) -> float:

@@ -208,12 +208,11 @@ def _quietness(log: LongLog) -> _SeenRows:
     for at, part in _rows(log):
         readings = part.readings[:, watched]
         new = filled(readings if before is None else np.concatenate([before, readings]))
-        readings = new if before is None else new[1:]
         steps = np.minimum(steps, smallest_steps(new))
         readings = np.concatenate([remainder, readings])
         mean, within = moments(readings, block)
         means.append(mean)
         withins.append(within)
-        remainder, before, samples = readings[len(mean) * block :], readings[-1:], at + len(part.readings)
+        remainder, before, samples = readings[len(mean) * block :], new[-1:], at + len(part.readings)
     quiet = quietness_of(block, np.concatenate(means), np.concatenate(withins), steps)
     return _SeenRows(quiet, head.sample_rate, samples)

@@ -37,7 +37,7 @@ def declined_by(stated: object) -> tuple[str, ...] | None:
 
 
 TEMPLATES = {
-    "missing": "No number in {rows} of {sensors}: left out.",
+    "missing": "No reading in {rows} of {sensors} (empty, no number, or beyond any instrument): left out.",
     "no-data": "{value} in {rows} of {sensors} carries no data (a marker, or the end of the range): left out.",
     "sign-lost": "{sensors} jumps by {value} between neighbouring samples: read without its sign. Corrected in {rows}.",
     "zero-vectors": "{sensors} are exactly 0 together in {rows} between others: no reading was there. Left out.",

@@ -41,6 +41,8 @@ BY_CHANCE = 5.0
 three coarse channels unchanged in two of three changes of the vector)."""
 OFTEN = 0.2
 """Share of repeated vectors from which a logger is faster than its sensor: it takes every reading more than once."""
+ON_STEP = 0.05
+"""Of a step: mean distance of readings from the multiples of it; of readings in no steps it is a quarter."""
 LOOKED_AT = 4096
 """Samples, evenly chosen, from which a typical step is taken: known to 2 %."""
 
@@ -66,6 +68,25 @@ def without_sign(x: Array) -> int | None:
         return None
     most = max(float(np.quantile(before[~jumps], 0.999)), 1.0)
     return bits if np.median(after[jumps]) <= AGAIN * most else None
+
+
+def unit_of(x: Array) -> float:
+    """The step of whose multiples x (R,) consists, in its unit; 1 of counts and of what consists of none.
+
+    From small multiples on to larger ones: each tells the step so much better that the next are told apart.
+    """
+    values = np.unique(x[:LOOKED_AT])
+    unit, span = smallest_step(x), float(np.ptp(values)) if len(values) else 0.0
+    if is_whole(x) or unit <= 0 or len(values) < LONG or span > 2.0 ** BITS[-1] * unit:
+        return 1.0
+    apart = np.concatenate([np.diff(values), values - values[0]])
+    for reach in 10.0 ** np.arange(1, 2 + np.ceil(np.log10(span / unit))):
+        near = apart[(apart > 0) & (apart <= reach * unit)]
+        places = np.round(near / unit)
+        unit = float((near @ places) / (places @ places))
+        if np.abs(near / unit - np.round(near / unit)).mean() > ON_STEP:
+            return 1.0
+    return unit
 
 
 def is_whole(x: Array) -> bool:
@@ -109,15 +130,15 @@ def markers(x: Array) -> list[tuple[float, Rows]]:
 
 
 def _candidates(x: Array, free: Mask, step: float) -> list[float]:
-    """Known markers, and extremes that come again, among the values that x leaps to."""
+    """Known markers, and extremes and the most frequent that come again, among the values that x leaps to."""
     y = x[free]
     if len(y) < 2:
         return []
     leaps = np.append(True, np.abs(np.diff(y)) > APART * step)
     landed, count = np.unique(y[leaps], return_counts=True)
     known = np.isin(landed, MARKERS)
-    ends = np.isin(landed, (y.min(), y.max())) & (count >= AGAIN)
-    return list(map(float, landed[known | ends]))
+    ends = np.isin(landed, (y.min(), y.max())) | (np.arange(len(landed)) == count.argmax())
+    return list(map(float, landed[known | (ends & (count >= AGAIN))]))
 
 
 def _leaping(x: Array, free: Mask, value: float, values: list[float], step: float) -> Rows:

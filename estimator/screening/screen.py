@@ -90,20 +90,21 @@ class Screen:
 
     def _signs(self, values: Array, kind: str, channels: list[int], at: int) -> None:
         finite = {i: np.isfinite(values[:, i]) for i in channels}
+        units = {i: samples.unit_of(values[finite[i], i]) if values[finite[i], i].min(initial=0) >= 0 else 1.0 for i in channels}
+        words = {i: np.round(values[:, i] / units[i]) if units[i] != 1.0 else values[:, i] for i in channels}
         if kind not in self.signs:
-            bits = (samples.without_sign(values[finite[i], i]) for i in channels)
-            below = (samples.is_just_below_zero(values[finite[i], i]) for i in channels if kind == GYROSCOPE)
+            bits = (samples.without_sign(words[i][finite[i]]) for i in channels)
+            below = (samples.is_just_below_zero(words[i][finite[i]]) for i in channels if kind == GYROSCOPE)
             known = next((n for n in (*bits, *below) if n is not None), None)
             if known is None:
                 return
             self.signs[kind] = known
         bits = self.signs[kind]
         for i in channels:
-            x = values[:, i]
-            if samples.may_be_unsigned(x[finite[i]], bits):
-                high = np.flatnonzero(x >= 2.0 ** (bits - 1))
-                self.found += seen("sign-lost", (self.sensors[i].name,), high, at, 2.0**bits)
-                values[high, i] -= 2.0**bits
+            if samples.may_be_unsigned(words[i][finite[i]], bits):
+                high, wrap = np.flatnonzero(words[i] >= 2.0 ** (bits - 1)), units[i] * 2.0**bits
+                self.found += seen("sign-lost", (self.sensors[i].name,), high, at, wrap)
+                values[high, i] -= wrap
 
     def _vectors(
         self, what: str, values: Array, channels: list[int], at: int, of: Callable[[Array], Array]
