@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from estimator.applied_vector import gravity
-from estimator.errors import Problem, ScheduleError
 from estimator.message import joined, say
 from estimator.parity.blocks import ANY, AUTO, MOTIONS, BlockSelection, select
 from estimator.parity.freed import freed

@@ -21,7 +21,9 @@ from estimator.session import Array
 Column = Sequence[object] | Array
 """Cells as written: numbers, texts, None; or all numbers as an array."""
 Mask = NDArray[np.bool_]
-NO_NUMBER = frozenset(("nan", "-nan", "inf", "-inf", "+inf", "infinity", "na", "n/a", "null", "none", "-", "--", "#n/a"))
+NO_NUMBER = frozenset(
+    ("nan", "-nan", "inf", "-inf", "+inf", "infinity", "na", "n/a", "null", "none", "-", "--", "#n/a")
+)
 """Texts that sources write where there is no reading."""
 
 

@@ -36,7 +36,13 @@ class Raw:
 
 
 def read_raw(
-    document: Fields, columns: Columns, programme: str, sensors: tuple[Sensor, ...], *, part: bool, screen: Screen | None
+    document: Fields,
+    columns: Columns,
+    programme: str,
+    sensors: tuple[Sensor, ...],
+    *,
+    part: bool,
+    screen: Screen | None,
 ) -> Raw:
     """Records what cannot be corrected. A ``part`` of a longer log without its ``screen`` is taken as it stands."""
     rate = document.optional_number("sample_rate_hz", WITHIN["sample_rate_hz"])
@@ -61,7 +67,12 @@ def read_raw(
     if programme in EVERY_ROW and not part:
         for finding in screen.findings:
             if finding.action == "left-out" and finding.sensors:
-                fault(finding.sensors[0], "{finding} {programme} needs every row.", programme=programme, finding=finding.message)
+                fault(
+                    finding.sensors[0],
+                    "{finding} {programme} needs every row.",
+                    programme=programme,
+                    finding=finding.message,
+                )
     return Raw(readings, time, rate, screen.findings if is_alone else (), declined)
 
 
@@ -70,7 +81,7 @@ def _declined(document: Fields) -> tuple[str, ...]:
     stated = document.values.get("screening")
     declined = declined_by(stated)
     if declined is None:
-        advice = "is {stated}; give \"{off}\", or a list of what not to look for: {kinds}"
+        advice = 'is {stated}; give "{off}", or a list of what not to look for: {kinds}'
         document.add("screening", advice, stated=shown(stated), off=OFF, kinds=joined(", ", KINDS))
     return declined or ()
 

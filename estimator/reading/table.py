@@ -50,7 +50,7 @@ class Table:
 def read_table(
     document: Fields, programme: str, sensors: tuple[Sensor, ...], *, part: bool = False, screen: Screen | None = None
 ) -> Table | None:
-    """Every array of the table; None when there is no usable table at all. ``part`` and ``screen`` as in `read_session`."""
+    """Every array of the table; None when there is no usable one. ``part`` and ``screen`` as in `read_session`."""
     columns = read_columns(document)
     if columns is None:
         return None

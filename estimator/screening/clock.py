@@ -16,7 +16,9 @@ DAY = 86_400.0
 """s; clocks that show the time of day."""
 WEEK = 7 * DAY
 """s; clocks of satellite navigation."""
-RANGES = np.array(sorted({2.0**bits * unit for bits in (16, 24, 31, 32) for unit in (1e-9, 1e-6, 1e-3, 1.0)} | {DAY, WEEK}))
+RANGES = np.array(
+    sorted({2.0**bits * unit for bits in (16, 24, 31, 32) for unit in (1e-9, 1e-6, 1e-3, 1.0)} | {DAY, WEEK})
+)
 """s after which clocks begin anew: words of ticks of ns, µs, ms and s."""
 CLOSE = 0.5
 """Of a step: how near the fall comes to the range less a step."""
@@ -58,7 +60,7 @@ class Clock:
         self._added, self._last, self._per_unit, self._advanced = 0.0, np.nan, 1.0, False
 
     def add(self, time: Array, at: int, moved: Array) -> tuple[Array, list[Seen]]:
-        """The times (R,) of the next rows, from row ``at`` on, and what was found; ``moved`` (R,) where a row belongs to
+        """The times (R,) of the next rows, from row ``at`` on, and what was found; ``moved`` (R,) where a row stands in
         another position than the one before, so that its time may leap."""
         if at == 0 and self.rate is not None:
             self._per_unit, found = self._unit(time)
@@ -101,7 +103,7 @@ class Clock:
             fall = before - time[j]
             if fall <= 0:  # mended with an earlier one
                 continue
-            near = RANGES[(np.abs(RANGES - fall - usual) <= CLOSE * usual) & (RANGES >= FINE * usual)]
+            near = RANGES[(np.abs(RANGES - fall - usual) <= CLOSE * usual) & (FINE * usual <= RANGES)]
             if len(near) and "clock" not in self._declined:
                 self._added += near[0]
                 time[j:] += near[0]
@@ -109,7 +111,7 @@ class Clock:
             elif self.rate is not None and 0 < j < len(time) - 1 and time[j + 1] > time[j - 1] and self._may_mend:
                 time[j] = (time[j - 1] + time[j + 1]) / 2
                 found += seen("stamps", (), np.array([j]), at)
-            elif self.rate is not None and 1 < j and time[j - 2] < time[j] and self._may_mend:
+            elif self.rate is not None and j > 1 and time[j - 2] < time[j] and self._may_mend:
                 time[j - 1] = (time[j - 2] + time[j]) / 2
                 found += seen("stamps", (), np.array([j - 1]), at)
             else:
@@ -171,5 +173,7 @@ def no_rate(rows: int, time: Array | None) -> str:
     elif np.ptp(time) == 0:
         advice = say("its time_s never advances: write it with all its digits, or give sample_rate_hz")
     else:
-        advice = say("for a raw log give sample_rate_hz; time_s advances by {step} a row", step=f"{usual_step(time):.4g}")
+        advice = say(
+            "for a raw log give sample_rate_hz; time_s advances by {step} a row", step=f"{usual_step(time):.4g}"
+        )
     return say(text, rows=f"{rows:,}", advice=advice)

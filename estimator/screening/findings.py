@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.message import joined, say
+from estimator.message import joined, say, say_count
 from estimator.session import CORRECTED_SAMPLES, LEFT_OUT, NOTED, ScreenFinding
 
 Screening = tuple[ScreenFinding, ...]
@@ -23,7 +23,6 @@ ACTIONS = {
 """Kind → what is done about it."""
 KINDS = tuple(ACTIONS)
 """As a session file declines them."""
-
 
 
 def declined_by(stated: object) -> tuple[str, ...] | None:
@@ -57,6 +56,7 @@ TEMPLATES = {
 }
 """Kind → how it is said, every one with the same places."""
 
+
 @dataclass(frozen=True)
 class Seen:
     """One kind of thing in some rows, counted from 0 within the whole file."""
@@ -73,7 +73,9 @@ class Seen:
         """With the same thing of another part of the file."""
         value = max(filter(None.__ne__, (self.value, other.value)), default=None)
         both = tuple(dict.fromkeys((*self.sensors, *other.sensors)))
-        return Seen(self.kind, both, self.rows + other.rows, min(self.first, other.first), max(self.last, other.last), value)
+        return Seen(
+            self.kind, both, self.rows + other.rows, min(self.first, other.first), max(self.last, other.last), value
+        )
 
     @property
     def finding(self) -> ScreenFinding:
@@ -92,9 +94,7 @@ class Seen:
 
 
 def _rows(rows: int, first: int, last: int) -> str:
-    if rows == 1:
-        return say("row {first}", first=first)
-    return say("{rows} rows ({first} to {last})", rows=f"{rows:,}", first=first, last=last)
+    return say_count("{n} row ({first})", "{n} rows ({first} to {last})", rows, n=f"{rows:,}", first=first, last=last)
 
 
 def plain(value: float) -> str:
@@ -103,7 +103,7 @@ def plain(value: float) -> str:
 
 
 def seen(kind: str, sensors: Iterable[str], rows: np.ndarray, at: int, value: float | None = None) -> list[Seen]:
-    """The thing in ``rows`` (k,), numbers from 0 within a part that begins at row ``at``; nothing where there is none."""
+    """The thing in ``rows`` (k,), numbers from 0 within a part that begins at row ``at``; nothing where none is."""
     if not len(rows):
         return []
     return [Seen(kind, tuple(sensors), len(rows), at + int(rows[0]), at + int(rows[-1]), value)]

@@ -5,8 +5,6 @@ nothing by themselves: a quiet sensor of coarse steps repeats its value, and sev
 their steps make it likely; only what chance does not explain is left out.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,7 +31,7 @@ AGAIN = 3
 LONG = 20
 """Samples at exactly one value that noise of several steps cannot give: a chance of a third, twenty times over."""
 LONGER = 10.0
-"""Times the usual length of runs: that of the longest of a million, where a quiet sensor repeats its value by chance."""
+"""Times the usual length of runs: the longest of a million, where a quiet sensor repeats its value by chance."""
 SOME = 3
 """Longest runs that do not count for the usual one: a channel freezes rarely, a quiet sensor all the time."""
 BY_CHANCE = 5.0

@@ -90,7 +90,10 @@ class Screen:
 
     def _signs(self, values: Array, kind: str, channels: list[int], at: int) -> None:
         finite = {i: np.isfinite(values[:, i]) for i in channels}
-        units = {i: samples.unit_of(values[finite[i], i]) if values[finite[i], i].min(initial=0) >= 0 else 1.0 for i in channels}
+        units = {
+            i: samples.unit_of(values[finite[i], i]) if values[finite[i], i].min(initial=0) >= 0 else 1.0
+            for i in channels
+        }
         words = {i: np.round(values[:, i] / units[i]) if units[i] != 1.0 else values[:, i] for i in channels}
         if kind not in self.signs:
             bits = (samples.without_sign(words[i][finite[i]]) for i in channels)
@@ -106,9 +109,7 @@ class Screen:
                 self.found += seen("sign-lost", (self.sensors[i].name,), high, at, wrap)
                 values[high, i] -= wrap
 
-    def _vectors(
-        self, what: str, values: Array, channels: list[int], at: int, of: Callable[[Array], Array]
-    ) -> None:
+    def _vectors(self, what: str, values: Array, channels: list[int], at: int, of: Callable[[Array], Array]) -> None:
         rows = np.flatnonzero(np.isfinite(values[:, channels]).all(axis=1))
         left = rows[of(values[np.ix_(rows, channels)])]
         if len(left):

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.study.seen.raw_files --n 400 --seed 1``: raw files with what loggers do to them, on five paths.
+"""``python -m benchmarks.study.seen.raw_files --n 400 --seed 1``: raw files with what loggers do, on five paths.
 
 A block of three accelerometers and three gyros is held still by hand in many orientations. Its samples are written as a
 session in JSON, as a long session in CSV that is averaged while it is scanned, as a table of one's own, as MAT and as
@@ -90,7 +90,10 @@ def world(rng: np.random.Generator) -> World:
     for k in range(RESTS):
         turn = rng.normal(0, 1, 3)
         turn *= rng.uniform(0.8, 2.2) / np.linalg.norm(turn)
-        turns += [np.repeat(now.as_matrix()[None], still, 0), (now * Rotation.from_rotvec(course[:, None] * turn)).as_matrix()]
+        turns += [
+            np.repeat(now.as_matrix()[None], still, 0),
+            (now * Rotation.from_rotvec(course[:, None] * turn)).as_matrix(),
+        ]
         speed = np.gradient(course) * RATE
         rates += [np.zeros((still, 3)), speed[:, None] * turn + 0.05 * rng.normal(0, 1, (moving, 3))]
         place += [np.full(still, k), np.full(moving, -1)]
@@ -122,7 +125,9 @@ def _marked(value: float, channels: list[int], share: float) -> Fault:
 
 def sign_lost(channels: list[int]) -> Fault:
     """Words read without their sign."""
-    return lambda case: replace(case, values=np.where(_of(channels) & (case.values < 0), case.values + 65536, case.values))
+    return lambda case: replace(
+        case, values=np.where(_of(channels) & (case.values < 0), case.values + 65536, case.values)
+    )
 
 
 def _of(channels: list[int]) -> Array:
@@ -405,7 +410,10 @@ OUTCOMES = ("right", "by name", "refused", "named, numbers off", "SILENTLY WRONG
 def table(n: int, seed: int) -> str:
     """How many came out how, fault by fault."""
     found = list(draws(n, seed))
-    lines = [f"| fault | {' | '.join(OUTCOMES)} | kinds | worst, U |", "| --- |" + " ---: |" * len(OUTCOMES) + " --- | ---: |"]
+    lines = [
+        f"| fault | {' | '.join(OUTCOMES)} | kinds | worst, U |",
+        "| --- |" + " ---: |" * len(OUTCOMES) + " --- | ---: |",
+    ]
     for fault in (*FAULTS, "sound", "all"):
         of = [d for d in found if fault in ("all", d.fault)]
         tally, kinds = Counter(d.outcome for d in of), Counter(kind for d in of for kind in d.kinds)

@@ -83,8 +83,8 @@ class Grid:
 
 
 def grid_of(content: bytes, filename: str, stated: Mapping[str, Any], declined: Collection[str] = ()) -> Grid:
-    """The table in a file; ``stated`` are the settings of ``taken`` that were chosen by hand, ``declined`` what a log is
-    not to be screened for."""
+    """The table in a file; ``stated``: the settings of ``taken`` that were chosen by hand; ``declined``: what a log is
+    not screened for."""
     require_table(content, filename)
     if content.startswith(XLSX):
         return _workbook(content, filename, stated)

@@ -23,7 +23,7 @@ DAY = 86_400.0
 
 
 def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where, Screening]:
-    """The session's document, a function from field and row to the cell in the file, and what a log's samples showed."""
+    """The session's document, a function from field and row to the cell in the file, and what a log's samples show."""
     grid = grid_of(content, filename, layout.table, declined_by(layout.session.get("screening")) or ())
     problems = [*_other_columns(grid, layout), *_unit_problems(layout)]
     if problems:
