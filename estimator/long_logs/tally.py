@@ -114,12 +114,16 @@ class RowTally:
             samples[:m][wild.T] = np.nan
             self._stray += stray(self.head.sensors, wild, at)
         away = samples - self._first[i, :, None]
-        if (none := np.isnan(away)).any():
+        begins = inside[starts] - inside[0]
+        sums = np.add.reduceat(away, begins, axis=1).T
+        if np.isnan(sums).any():
+            none = np.isnan(away)
             if not len(self._missing):
                 self._missing = np.zeros_like(self._sums)
-            self._missing[i, starts] += np.add.reduceat(none.astype(float), inside[starts] - inside[0], axis=1).T
+            self._missing[i, starts] += np.add.reduceat(none.astype(float), begins, axis=1).T
             away[none] = 0.0
-        self._sums[i, starts] += np.add.reduceat(away, inside[starts] - inside[0], axis=1).T
+            sums = np.add.reduceat(away, begins, axis=1).T
+        self._sums[i, starts] += sums
         self._squares[i] += np.einsum("jr,jr->j", away[:m], away[:m])
 
     def at(self, chosen: NDArray[np.bool_]) -> "RowTally":

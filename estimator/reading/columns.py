@@ -69,7 +69,8 @@ class Columns:
             array = as_floats(plain)
         if array is None:
             return self._faulty(name, plain, within, holes=True)
-        return np.where(within.held_by(array), array, np.nan)
+        good = within.held_by(array)
+        return array if good.all() else np.where(good, array, np.nan)
 
     def words(self, name: str, allowed: tuple[str, ...]) -> NDArray[np.int64]:
         """(R,) index into the allowed words."""

@@ -47,8 +47,8 @@ LOOKED_AT = 4096
 
 def usual_step(x: Array) -> float:
     """Median change, other than 0, between neighbours of x (R,), in its unit; 0 where it never changes."""
-    steps = np.abs(np.diff(x))
-    steps = steps[:: max(len(steps) // LOOKED_AT, 1)]
+    every = max(len(x) // LOOKED_AT, 1)
+    steps = np.abs(x[1::every] - x[:-1:every])
     steps = steps[steps > 0]
     return float(np.median(steps)) if len(steps) else 0.0
 
@@ -188,8 +188,10 @@ def smallest_step(x: Array) -> float:
 def frozen(x: Array) -> Mask:
     """(R,) samples of finite x (R,) that only repeat one value for long, where the channel scatters elsewhere."""
     result = np.zeros(len(x), dtype=bool)
-    change = np.flatnonzero(np.diff(x)) + 1
-    if len(x) < 2 * LONG or not len(change):
+    if len(x) < 2 * LONG or not (x[LONG - 1 :] == x[: 1 - LONG]).any():
+        return result
+    change = np.flatnonzero(x[1:] != x[:-1]) + 1
+    if not len(change):
         return result
     start = np.concatenate([[0], change])
     length = np.diff(np.append(start, len(x)))
@@ -225,12 +227,15 @@ def repeated(x: Array) -> Mask:
     return np.append(False, same) if len(large) and same[large + 1].mean() > 0.5 * share else none
 
 
-def at_end(x: Array) -> list[tuple[float, Rows]]:
-    """Extremes of finite x (R,) that it stands at for several samples in a row again and again, with their rows."""
-    found = []
-    for value in (x.min(), x.max()):
-        stood = x == value
-        runs = stood[2:] & stood[1:-1] & stood[:-2]
-        if np.count_nonzero(runs) >= LONG and usual_step(x) > APART * smallest_step(x):
-            found.append((float(value), np.flatnonzero(stood)))
-    return found
+def share_of_equal(x: Array) -> float:
+    """Of the neighbours in x (R,)."""
+    return float(np.count_nonzero(x[1:] == x[:-1])) / max(len(x) - 1, 1)
+
+
+def at_end(x: Array, value: float) -> Mask:
+    """(R,) where finite x (R,) stands at an extreme ``value`` that it runs into again and again."""
+    stood = x == value
+    edge = np.flatnonzero(stood[1:] != stood[:-1])
+    beside = np.abs(x[np.where(stood[edge], edge + 1, edge)] - value)
+    is_met = len(edge) > AGAIN and 2 * np.count_nonzero(stood) >= AGAIN * len(edge)
+    return stood if is_met and np.median(beside) > APART * smallest_step(x) else np.zeros(len(x), dtype=bool)

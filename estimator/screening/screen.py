@@ -1,6 +1,7 @@
 """All that is screened in one raw file, part after part: a part knows what those before it showed."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import groupby
 
 import numpy as np
@@ -63,51 +64,49 @@ class Screen:
         return stands
 
     def readings(self, readings: Array) -> Array:
-        """The readings (R, m) of the next rows, with NaN for those left out."""
+        """The readings (R, m) of the next rows, with NaN for those left out; what is given may be changed."""
         at = self._read
         self._read += len(readings)
-        values = np.array(readings, dtype=float, order="F")
+        values = np.require(readings, float, ["F", "W"])
         self._missing(values, at)
         for kind, channels in self._kinds.items():
             if self.looks_for("sign-lost"):
                 self._signs(values, kind, channels, at)
-            if self.looks_for("zero-vectors"):
-                self._vectors("zero-vectors", values, channels, at, lambda x, k=kind: _zero(x, k))
+            if self.looks_for("zero-vectors") and (values[:, channels[0]] == 0).any():
+                weighed = kind == ACCELEROMETER
+                self._vectors("zero-vectors", values, channels, at, partial(samples.zero_vectors, weighed=weighed))
         for i in range(len(self.sensors)):
             self._channel(values, i, at)
-        if self.looks_for("repeated"):
-            for channels in self._kinds.values():
+        for channels in self._kinds.values():
+            if self.looks_for("repeated") and samples.share_of_equal(values[:, channels[0]]) >= samples.OFTEN / 2:
                 self._vectors("repeated", values, channels, at, samples.repeated)
         return values
 
     def _missing(self, values: Array, at: int) -> None:
         for i, sensor in enumerate(self.sensors):
             x = values[:, i]
-            none = np.flatnonzero(~(np.abs(x) <= samples.LARGEST))
-            if len(none):
+            if not (x.min(initial=0) >= -samples.LARGEST and x.max(initial=0) <= samples.LARGEST):
+                none = np.flatnonzero(~(np.abs(x) <= samples.LARGEST))
                 self.found += seen("missing", (sensor.name,), none, at)
                 values[none, i] = np.nan
 
     def _signs(self, values: Array, kind: str, channels: list[int], at: int) -> None:
-        finite = {i: np.isfinite(values[:, i]) for i in channels}
-        units = {
-            i: samples.unit_of(values[finite[i], i]) if values[finite[i], i].min(initial=0) >= 0 else 1.0
-            for i in channels
-        }
-        words = {i: np.round(values[:, i] / units[i]) if units[i] != 1.0 else values[:, i] for i in channels}
+        """Reads the words of a kind with their sign, where one channel shows that they lost it."""
+        words = {i: values[:, i] for i in channels if np.fmin.reduce(values[:, i], initial=np.inf) >= 0}
+        units = {i: samples.unit_of(x[np.isfinite(x)]) for i, x in words.items()}
+        words = {i: x if units[i] == 1 else np.round(x / units[i]) for i, x in words.items()}
+        known = {i: x[np.isfinite(x)] for i, x in words.items()}
         if kind not in self.signs:
-            bits = (samples.without_sign(words[i][finite[i]]) for i in channels)
-            below = (samples.is_just_below_zero(words[i][finite[i]]) for i in channels if kind == GYROSCOPE)
-            known = next((n for n in (*bits, *below) if n is not None), None)
-            if known is None:
+            of = (samples.without_sign, *([samples.is_just_below_zero] if kind == GYROSCOPE else []))
+            bits = next((n for test in of for x in known.values() if (n := test(x)) is not None), None)
+            if bits is None:
                 return
-            self.signs[kind] = known
+            self.signs[kind] = bits
         bits = self.signs[kind]
-        for i in channels:
-            if samples.may_be_unsigned(words[i][finite[i]], bits):
-                high, wrap = np.flatnonzero(words[i] >= 2.0 ** (bits - 1)), units[i] * 2.0**bits
-                self.found += seen("sign-lost", (self.sensors[i].name,), high, at, wrap)
-                values[high, i] -= wrap
+        for i in (i for i, x in known.items() if samples.may_be_unsigned(x, bits)):
+            high, wrap = np.flatnonzero(words[i] >= 2.0 ** (bits - 1)), units[i] * 2.0**bits
+            self.found += seen("sign-lost", (self.sensors[i].name,), high, at, wrap)
+            values[high, i] -= wrap
 
     def _vectors(self, what: str, values: Array, channels: list[int], at: int, of: Callable[[Array], Array]) -> None:
         rows = np.flatnonzero(np.isfinite(values[:, channels]).all(axis=1))
@@ -118,21 +117,20 @@ class Screen:
 
     def _channel(self, values: Array, i: int, at: int) -> None:
         name = (self.sensors[i].name,)
-        rows = np.flatnonzero(np.isfinite(values[:, i]))
-        x = values[rows, i]
         if self.looks_for("no-data"):
+            rows, x = _known(values[:, i])
             for value, none in samples.markers(x):
                 self.found += seen("no-data", name, rows[none], at, value)
                 values[rows[none], i] = np.nan
-            rows = np.flatnonzero(np.isfinite(values[:, i]))
-            x = values[rows, i]
+        rows, x = _known(values[:, i])
         if not len(x):
             return
-        only = float(x[0]) if x.min() == x.max() else None
+        low, high = float(x.min()), float(x.max())
+        only = low if low == high else None
         self._constant[i] = only if self._constant.get(i, only) == only else None
         if self.looks_for("saturated"):
-            for value, stood in samples.at_end(x):
-                self.found += seen("saturated", name, rows[stood], at, value)
+            for value in (low, high):
+                self.found += seen("saturated", name, rows[samples.at_end(x, value)], at, value)
         if self.looks_for("frozen"):
             still = rows[samples.frozen(x)]
             self.found += seen("frozen", name, still, at)
@@ -157,5 +155,7 @@ class Screen:
         return together(self.found)
 
 
-def _zero(x: Array, kind: str) -> Array:
-    return samples.zero_vectors(x, weighed=kind == ACCELEROMETER)
+def _known(x: Array) -> tuple[Array, Array]:
+    """Rows of x (R,) that hold a number, and what they hold."""
+    known = np.isfinite(x)
+    return np.flatnonzero(known), x if known.all() else x[known]
